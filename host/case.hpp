@@ -1,0 +1,146 @@
+#pragma once
+/// A case: everything a run is told, typed, validated and in SI. The case file (io/case_file.hpp) knows text, keys and
+/// units; this header knows what they mean. Every member's default is the default of its key.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace voussoir::host {
+
+enum class CaseKind { pack, probe, column, tunnel };
+enum class MaterialKind { grains, linear_elastic };
+enum class Precision { single_precision, double_precision };
+enum class LossGeometry { updated_lagrangian, fixed_mesh };
+
+/// [soil] The grains and their contacts (method.md, section 3).
+struct SoilCase {
+  double size_minimum = 2.0e-3;     ///< smallest grain diameter [m]
+  double size_maximum = 4.75e-3;    ///< largest grain diameter [m]; radii are uniform by number in between
+  double modulus = 3.0e9;           ///< contact modulus E [Pa]
+  double stiffness_ratio = 0.5;     ///< k_t / k_n [-]
+  double friction = 0.43633231299858238;  ///< contact friction angle [rad], 25 deg
+  double rolling_stiffness = 1.0;   ///< beta, k_r = beta k_t r1 r2 [-]; 0 with rolling_limit = 0: no rolling resistance
+  double rolling_limit = 0.6;       ///< eta, |M| <= eta r f_n [-]
+  double damping = 0.3;             ///< local damping [-]
+  double density = 2650.0;          ///< grain density [kg/m3]
+  double thickness = 0.1;           ///< out-of-plane thickness t of an RVE [m]
+};
+
+/// [packing] How the RVEs' common packing is made.
+struct PackingCase {
+  int grains = 700;                     ///< grains of one RVE
+  std::int64_t seed = 1;                ///< first seed; the candidates are seed, seed + 1, ...
+  std::vector<std::int64_t> seeds;      ///< the seeds to make (kind = pack); empty: those of seed and candidates
+  int candidates = 1;                   ///< seeds tried; the one with the least |tau_xy|/sigma_yy is taken
+  double consolidation_friction = 0.0;  ///< friction coefficient mu_t during consolidation [-]
+  double pressure = 1.0e3;              ///< isotropic pressure of the finished packing [Pa]
+};
+
+/// [engine] Speed and accuracy of the grain engine (method.md, section 6).
+struct EngineCase {
+  Precision precision = Precision::single_precision;  ///< value type of the pair loop
+  double inertial_number = 1.0e-4;  ///< target inertial number of an increment [-]
+  double hold_tolerance = 1.0e-3;   ///< unbalanced force ratio that ends the hold [-]
+  int hold_cap = 1000;              ///< most steps of a hold
+  double skin = 0.1;                ///< neighbour skin over the mean grain diameter [-]
+  int minimum_steps = 100;          ///< fewest strain steps of an increment
+  int maximum_steps = 20000;        ///< most strain steps of an increment
+};
+
+/// [ground] The half domain: symmetry axis at x = 0, base at y = 0 (method.md, section 4).
+struct GroundCase {
+  double unit_weight = 20.0e3;  ///< gamma [N/m3]
+  double surcharge = 1.0e3;     ///< pressure on the surface [Pa]; equals the RVEs' initial pressure
+  double width = 35.0;          ///< half width [m]
+  double height = 35.0;         ///< [m]
+  double diameter = 5.0;        ///< tunnel diameter D [m]
+  double cover_ratio = 2.0;     ///< C/D [-]
+  double mesh_size_opening = 0.6;  ///< element size at the opening [m]
+  double mesh_size_far = 4.0;      ///< element size at the far boundary [m]
+
+  [[nodiscard]] double cover() const { return cover_ratio * diameter; }                      ///< C [m]
+  [[nodiscard]] double axis_height() const { return height - cover() - 0.5 * diameter; }     ///< y of the axis [m]
+  [[nodiscard]] double invert_height() const { return axis_height() - 0.5 * diameter; }      ///< y of the invert [m]
+  [[nodiscard]] double crown_height() const { return axis_height() + 0.5 * diameter; }       ///< y of the crown [m]
+};
+
+/// [column] The oedometric column that measures K0 (sigma_yy).
+struct ColumnCase {
+  int elements = 20;   ///< elements along the height
+  double width = 1.0;  ///< width of its single row of elements [m]
+};
+
+/// [gravity] Load increments of the column and of the gravity stage.
+struct GravityCase {
+  double ratio = 1.5;          ///< growth of the base stress from one increment to the next [-]
+  double uniform_step = 0.05;  ///< load factor step at which the increments become uniform [-]
+  double smallest_step = 1.0e-5;  ///< load factor step below which cutting gives up [-]
+};
+
+/// [volume_loss]
+struct VolumeLossCase {
+  double total = 0.20;  ///< V_l at the end [-]
+  int increments = 80;
+  LossGeometry geometry = LossGeometry::updated_lagrangian;
+  double smallest_step = 1.0e-5;  ///< step of V_l below which cutting gives up [-]
+};
+
+/// [newton] What "converged" means (design.md, The continuum), and how it is reached.
+struct NewtonCase {
+  double tolerance = 1.0e-3;               ///< of the free residual, relative to the external force [-]
+  double displacement_tolerance = 1.0e-2;  ///< of the last correction, relative to the increment [-]
+  int maximum_iterations = 30;
+  int anderson_depth = 5;
+  double initial_tangent_fraction = 0.05;  ///< share of the initial tangent added to the tangent [-]
+};
+
+/// [output]
+struct OutputCase {
+  int every = 1;          ///< increments of a stage between two result files; a stage's last is always written
+  bool tangents = false;  ///< write the material tangents too
+  std::vector<std::int64_t> rves;  ///< Gauss points whose whole RVE is written with each increment
+};
+
+/// [elastic] The verification material.
+struct ElasticCase {
+  double modulus = 50.0e6;  ///< Young's modulus E [Pa]
+  double poisson = 0.3;     ///< Poisson's ratio [-]
+};
+
+/// [probe] Displacement gradients put on the packing, one after another, each from the packing's own state.
+struct ProbeCase {
+  double pressure = 1.0e5;      ///< isotropic pressure of the probed packing [Pa]
+  double strain = 1.0e-4;       ///< size of each probe [-]
+};
+
+struct Case {
+  CaseKind kind = CaseKind::tunnel;
+  MaterialKind material = MaterialKind::grains;
+  SoilCase soil;
+  PackingCase packing;
+  EngineCase engine;
+  GroundCase ground;
+  ColumnCase column;
+  GravityCase gravity;
+  VolumeLossCase volume_loss;
+  NewtonCase newton;
+  OutputCase output;
+  ElasticCase elastic;
+  ProbeCase probe;
+
+  std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
+  std::string resolved;     ///< TOML of every value after defaults and overrides
+  std::string fingerprint;  ///< of everything that decides the numbers; equal fingerprints give equal results
+};
+
+/// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) on anything wrong:
+/// unknown keys, wrong units, values outside their limits, values that do not fit together.
+[[nodiscard]] Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+[[nodiscard]] std::string to_string(CaseKind kind);
+[[nodiscard]] std::string to_string(MaterialKind kind);
+
+}  // namespace voussoir::host

@@ -1,0 +1,15 @@
+#pragma once
+/// The one place where a case's material becomes a batch.
+
+#include <cstddef>
+#include <memory>
+
+#include "fem/material_batch.hpp"
+#include "host/case.hpp"
+
+namespace voussoir::host {
+
+/// A batch of `n_points` points of the case's material, all at the case's isotropic initial pressure (packing.pressure).
+[[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_material(const Case& input, std::size_t n_points);
+
+}  // namespace voussoir::host
