@@ -1,0 +1,24 @@
+# Writes OUTPUT, the definitions behind host/build_info.hpp. Run by the build, before every compilation of host.
+execute_process(COMMAND git -C "${SOURCE}" describe --always --dirty --abbrev=12
+  OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+if(failed)
+  set(revision "unknown")
+endif()
+set(text "#include \"host/build_info.hpp\"
+
+namespace voussoir::host {
+
+const char* const build_version = \"${VERSION}\";
+const char* const build_revision = \"${revision}\";
+const char* const build_compiler = \"${COMPILER}\";
+const char* const build_type = \"${BUILD_TYPE}\";
+
+}  // namespace voussoir::host
+")
+set(old "")
+if(EXISTS "${OUTPUT}")
+  file(READ "${OUTPUT}" old)
+endif()
+if(NOT old STREQUAL text)
+  file(WRITE "${OUTPUT}" "${text}")
+endif()
