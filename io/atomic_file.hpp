@@ -1,0 +1,21 @@
+#pragma once
+/// Files that exist completely or not at all: write under `temporary_name`, then `publish`.
+
+#include <filesystem>
+
+namespace voussoir::io {
+
+/// Name beside `target` to write to; leftovers of a killed writer end in ".tmp" and are ignored by every reader here.
+[[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& target);
+
+/// Syncs the closed temporary file to the disk, renames it to `target`, syncs the folder.
+/// Throws std::runtime_error naming the file.
+void publish(const std::filesystem::path& target);
+
+/// Writes text through temporary_name and publish.
+void write_text(const std::filesystem::path& target, const std::string& text);
+
+/// Removes what killed writers left in `folder` (files ending in ".tmp").
+void remove_leftovers(const std::filesystem::path& folder);
+
+}  // namespace voussoir::io

@@ -1,0 +1,121 @@
+#pragma once
+/// Case files (TOML) with checked values: every key read is recorded, so that unknown keys are errors and the resolved
+/// case (defaults and overrides included) can be printed and stored.
+///
+///     CaseFile file = CaseFile::load("case.toml", {"mesh.size=0.5 m"});
+///     Table ground = file.root().table("ground");
+///     double depth = ground.quantity("depth", Dimension::length, {.fallback = "35 m", .positive = true});
+///     file.finish();  // unknown keys are reported here
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/units.hpp"
+
+namespace voussoir::io {
+
+/// What a user wrote wrong, as one line: "case.toml:12: ground.depth: must be positive, is -3 m". The place is
+/// "file:line", or "--set" for a value given on the command line.
+class InputError : public std::runtime_error {
+ public:
+  InputError(const std::string& place, const std::string& key, const std::string& sentence);
+};
+
+/// Limits of a quantity, written like the user's own values ("1 kPa"); without a fallback the key is required.
+struct QuantityRule {
+  std::optional<std::string> fallback = {};
+  std::optional<std::string> at_least = {};
+  std::optional<std::string> at_most = {};
+  bool positive = false;
+};
+
+struct IntegerRule {
+  std::optional<std::int64_t> fallback = {};
+  std::optional<std::int64_t> at_least = {};
+  std::optional<std::int64_t> at_most = {};
+};
+
+struct CaseNode;   // a key of the file, its place, and what was made of it
+struct CaseState;  // the whole file
+
+/// A view of one table of a case file; cheap to copy. A table that the file lacks reads as an empty one, so that
+/// defaults apply and required keys are reported as missing. All reading functions throw InputError.
+class Table {
+ public:
+  /// The key stands in the file or was set on the command line. Does not count as reading it.
+  [[nodiscard]] bool has(std::string_view key) const;
+
+  /// SI value of "5 mm"; plain numbers and "%" for Dimension::none.
+  [[nodiscard]] double quantity(std::string_view key, Dimension dimension, const QuantityRule& rule = {}) const;
+  /// Dimensionless quantity.
+  [[nodiscard]] double number(std::string_view key, const QuantityRule& rule = {}) const;
+  [[nodiscard]] std::int64_t integer(std::string_view key, const IntegerRule& rule = {}) const;
+  [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = {}) const;
+  [[nodiscard]] std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
+  /// One of `choices`; the message of an error lists them.
+  [[nodiscard]] std::string choice(std::string_view key, const std::vector<std::string>& choices,
+                                   std::optional<std::string> fallback = {}) const;
+  /// An existing file or folder, relative to the folder of the case file.
+  [[nodiscard]] std::filesystem::path path(std::string_view key) const;
+
+  /// Arrays; the rule's limits hold for each entry, its fallback is not used.
+  [[nodiscard]] std::vector<double> quantities(std::string_view key, Dimension dimension, const QuantityRule& rule = {},
+                                               std::optional<std::vector<std::string>> fallback = {}) const;
+  [[nodiscard]] std::vector<std::int64_t> integers(std::string_view key, const IntegerRule& rule = {},
+                                                   std::optional<std::vector<std::int64_t>> fallback = {}) const;
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key,
+                                               std::optional<std::vector<std::string>> fallback = {}) const;
+
+  [[nodiscard]] Table table(std::string_view key) const;
+  /// [[key]] tables in the order of the file, empty when there is none.
+  [[nodiscard]] std::vector<Table> tables(std::string_view key) const;
+  /// Names of the keys present, in the order of the file (for tables whose keys are names chosen by the user).
+  [[nodiscard]] std::vector<std::string> keys() const;
+
+  /// An error at this key's place in the file, for checks that need more than one value.
+  [[nodiscard]] InputError error(std::string_view key, const std::string& sentence) const;
+
+ private:
+  friend class CaseFile;
+  Table(std::shared_ptr<CaseState> state, CaseNode& node) : state_(std::move(state)), node_(&node) {}
+  [[nodiscard]] CaseNode* find(std::string_view key) const;
+  [[nodiscard]] CaseNode& take(std::string_view key, bool has_fallback) const;
+  [[nodiscard]] std::string full_key(std::string_view key) const;
+
+  std::shared_ptr<CaseState> state_;
+  CaseNode* node_;
+};
+
+class CaseFile {
+ public:
+  /// Reads a TOML file; each override is "table.key=value" ("stage[0].steps=4" inside an array of tables). The value is
+  /// TOML, or else taken as text, so that quotes may be left out: "mesh.size=0.5 m".
+  /// Throws InputError: no such file, bad TOML (with its line), bad override.
+  [[nodiscard]] static CaseFile load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+
+  [[nodiscard]] Table root() const;
+  [[nodiscard]] const std::filesystem::path& path() const;
+
+  /// Throws InputError for the first key that nobody has read, with the nearest known name as a hint.
+  void finish() const;
+
+  /// All values read so far, as TOML in the units that a user writes; origins ("default", "--set") as comments.
+  [[nodiscard]] std::string resolved() const;
+
+  /// Hash (16 hex digits) of the values read so far, without the tables or keys named in `without` (those that cannot
+  /// change a result, such as the number of threads).
+  [[nodiscard]] std::string fingerprint(std::span<const std::string> without = {}) const;
+
+ private:
+  explicit CaseFile(std::shared_ptr<CaseState> state) : state_(std::move(state)) {}
+  std::shared_ptr<CaseState> state_;
+};
+
+}  // namespace voussoir::io

@@ -1,0 +1,63 @@
+#pragma once
+/// Checkpoints: named blobs, bit-exact, with a checksum over the whole file and the fingerprint of the resolved case.
+/// The last two are kept, so that one damaged by a full disk or a kill costs one increment, not the run.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace voussoir::io {
+
+/// Named values to store. `get...` throw std::runtime_error when the name is missing or its size is no multiple of the
+/// element's.
+class Checkpoint {
+ public:
+  void put(const std::string& name, std::vector<std::byte> bytes);
+  void put_doubles(const std::string& name, std::span<const double> values);
+  void put_integers(const std::string& name, std::span<const std::int64_t> values);
+  void put_text(const std::string& name, const std::string& text);
+
+  [[nodiscard]] bool has(const std::string& name) const { return blobs_.contains(name); }
+  [[nodiscard]] const std::vector<std::byte>& get(const std::string& name) const;
+  [[nodiscard]] std::vector<double> get_doubles(const std::string& name) const;
+  [[nodiscard]] std::vector<std::int64_t> get_integers(const std::string& name) const;
+  [[nodiscard]] std::string get_text(const std::string& name) const;
+
+  [[nodiscard]] const std::map<std::string, std::vector<std::byte>>& blobs() const { return blobs_; }
+
+ private:
+  std::map<std::string, std::vector<std::byte>> blobs_;
+};
+
+/// The checkpoints of one run: FOLDER/checkpoint_NNNN.bin, NNNN the increment after which it was taken.
+class CheckpointStore {
+ public:
+  CheckpointStore(std::filesystem::path folder, std::string fingerprint);
+
+  /// Written beside, synced, renamed; then all but the last two are removed. Throws std::runtime_error.
+  void save(int increment, const Checkpoint& checkpoint) const;
+
+  struct Loaded {
+    int increment = 0;
+    Checkpoint checkpoint;
+    std::vector<std::string> skipped = {};  ///< one sentence for each damaged file passed over
+  };
+
+  /// The newest undamaged checkpoint; nothing when there is none. Throws std::runtime_error when the newest undamaged
+  /// one belongs to another case, or when files exist and all are damaged.
+  [[nodiscard]] std::optional<Loaded> load_latest() const;
+
+  /// Removes all checkpoints of the folder (a new run starts).
+  void clear() const;
+
+ private:
+  std::filesystem::path folder_;
+  std::string fingerprint_;
+};
+
+}  // namespace voussoir::io

@@ -1,0 +1,51 @@
+#pragma once
+/// Packings of grains on disk, so that a packing made once is not made again, and packings of other codes can be read.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace voussoir::io {
+
+/// One periodic packing. Contact histories are kept as the caller names them: history[contact * names.size() + k].
+struct Packing {
+  std::vector<double> radius;       ///< [m]
+  std::vector<double> x, y;         ///< centres [m]
+  std::vector<double> rotation;     ///< [rad]
+  std::array<double, 4> cell = {};  ///< [a_x b_x; a_y b_y] row by row, cell vectors are columns [m]
+  double thickness = 0.1;           ///< out-of-plane [m]
+  std::vector<std::int64_t> contact_i, contact_j;
+  std::vector<std::string> history_names;
+  std::vector<double> history;                ///< (contact, history_names)
+  std::map<std::string, double> numbers;      ///< void_ratio [-], pressure [Pa], seed, ... (SI)
+  std::map<std::string, std::string> labels;  ///< recipe, recipe_fingerprint, soil, ...
+
+  [[nodiscard]] std::size_t grains() const { return radius.size(); }
+  [[nodiscard]] std::size_t contacts() const { return contact_i.size(); }
+};
+
+/// Writes an HDF5 file (FORMAT.md) through a temporary name. Throws std::invalid_argument when sizes disagree,
+/// std::runtime_error when the file cannot be written.
+void save_packing(const std::filesystem::path& path, const Packing& packing);
+
+/// Reads a file of save_packing. Throws std::runtime_error: missing, damaged, no packing, sizes disagree.
+[[nodiscard]] Packing load_packing(const std::filesystem::path& path);
+
+/// Reads NAME_particles.csv (id,x_m,y_m,r_m,theta_z_rad) and NAME_meta.json beside it (hSize: cell vectors as columns, Lz
+/// or hSize[2][2]: thickness); `path` is either file. Other numbers of the JSON file go to `numbers`, texts to `labels`.
+/// No contact histories. Throws std::runtime_error naming file and line.
+[[nodiscard]] Packing load_packing_csv(const std::filesystem::path& path);
+
+/// Name of the cached packing of a recipe: FOLDER/packing_FINGERPRINT.h5.
+[[nodiscard]] std::filesystem::path packing_path(const std::filesystem::path& folder,
+                                                 const std::string& recipe_fingerprint);
+
+/// The cached packing; nothing when it is missing, damaged, or its label "recipe_fingerprint" is another one.
+[[nodiscard]] std::optional<Packing> find_packing(const std::filesystem::path& folder,
+                                                  const std::string& recipe_fingerprint);
+
+}  // namespace voussoir::io
