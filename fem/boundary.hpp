@@ -1,0 +1,55 @@
+#pragma once
+/// Prescribed displacements and consistent nodal forces. Forces are per metre out of plane: vectors of n_dofs [N/m].
+
+#include <functional>
+#include <map>
+
+#include "fem/material_batch.hpp"
+#include "fem/mesh.hpp"
+
+namespace voussoir::fem {
+
+/// Prescribed displacement increments by degree of freedom (2 * node + axis) [m].
+using Constraints = std::map<int, double>;
+
+/// Adds `value` on one axis (0: x, 1: y) of the nodes. Throws std::invalid_argument where a different value stands.
+void constrain(Constraints& constraints, const std::vector<int>& nodes, int axis, double value);
+
+/// Eccentric volume loss, eqs. (17)-(19) as a homothety about the invert: u = (sqrt(1 - V_l) - 1)(x - x_invert) [m], x on
+/// the original coordinates and V_l the total loss. Increments are differences of two calls. 0 <= V_l < 1.
+[[nodiscard]] Point volume_loss_displacement(const Point& x, const Point& invert, double volume_loss);
+
+/// The increment of volume loss from V_l = from to V_l = to on the nodes of "opening"; both axes.
+void constrain_volume_loss(Constraints& constraints, const Mesh& mesh, double from, double to);
+
+using StressField = std::function<Stress(const Point&)>;  ///< Cauchy stress at a point of the boundary [Pa]
+
+/// Body force b [N/m3], e.g. (0, -unit weight).
+[[nodiscard]] Eigen::VectorXd body_force(const Mesh& mesh, const Coordinates& coordinates, const Point& b);
+
+/// A pressure p [Pa] (positive: pushes on the soil) on boundary edges: t = -p N, N out of the soil.
+[[nodiscard]] Eigen::VectorXd pressure_force(const Coordinates& coordinates, const std::vector<Edge>& edges, double p);
+
+/// Tractions t = sigma(x) N of a stress field, N out of the soil; three Gauss points an edge. Eqs. (15), (16).
+[[nodiscard]] Eigen::VectorXd traction_force(const Coordinates& coordinates, const std::vector<Edge>& edges,
+                                             const StressField& field);
+
+/// Eqs. (15), (16): normal and shear stress (sigma_n along N, tau along (-m, l)) on a face with unit normal N = (l, m).
+struct FaceStress {
+  double normal;  ///< [Pa]
+  double shear;   ///< [Pa]
+};
+[[nodiscard]] FaceStress face_stress(const Stress& stress, const Point& normal);
+
+/// Ground at rest at load factor lambda: s_yy = -(lambda * unit_weight * (height - y) + surcharge), s_xx = K0(s_yy) s_yy,
+/// s_xy = 0. `k0` takes s_yy (negative) [Pa].
+struct GeostaticStress {
+  double unit_weight;  ///< [N/m3]
+  double height;       ///< y of the surface [m]
+  double surcharge;    ///< [Pa]
+  double load_factor;  ///< lambda [-]
+  std::function<double(double)> k0;
+  [[nodiscard]] Stress operator()(const Point& x) const;
+};
+
+}  // namespace voussoir::fem

@@ -1,0 +1,119 @@
+#pragma once
+/// One load increment to equilibrium: Newton with Anderson acceleration on a tangent that is only roughly right.
+///
+/// Converged means, at the last evaluated iterate, all of
+///   |R_free| <= tolerance * max(|f_ext|, |reactions|, reference_force) + noise floor,
+///   |du| <= displacement_tolerance * |Du|, or |du| <= length_tolerance,
+/// with R = f_ext - f_int, 2-norms, du = K^-1 R the correction that would follow (it is not applied), Du the increment.
+
+#include <functional>
+#include <string>
+
+#include "fem/assembly.hpp"
+#include "fem/boundary.hpp"
+#include "fem/mesh_state.hpp"
+
+namespace voussoir::fem {
+
+struct NewtonOptions {
+  double tolerance = 1e-3;               ///< on the residual force [-]
+  double displacement_tolerance = 1e-2;  ///< on the correction [-]
+  double length_tolerance = 1e-9;        ///< a correction below it counts as none (2-norm over all dofs) [m]
+  int max_iterations = 40;
+  double initial_tangent_share = 0.02;  ///< times the stage's initial tangent is added to the tangent; > 0 where it may vanish
+  int refactor_every = 1;               ///< iterates between new tangents; the first iterate always has a new one
+  int anderson_depth = 5;               ///< 0: plain Newton
+  double anderson_condition = 1e6;      ///< limit on the condition of the least squares; older pairs are dropped beyond
+  double growth_limit = 3.0;            ///< a residual grown by more than this halves the step and restarts Anderson
+  int max_halvings = 2;                 ///< of one correction
+  bool use_noise_floor = true;          ///< adds the forces of BatchReport::stress_noise to the residual's bound
+};
+
+enum class NewtonStatus {
+  converged,
+  max_iterations,
+  material_failed,        ///< BatchReport::usable was false at every trial step
+  not_positive_definite,  ///< even with a hundred times the initial tangent's share
+  inverted_element,       ///< det J or det F_rel not positive at every trial step
+  not_finite              ///< a stress, force or displacement is not a number
+};
+[[nodiscard]] const char* to_string(NewtonStatus status);
+
+struct NewtonReport {
+  NewtonStatus status = NewtonStatus::max_iterations;
+  int iterations = 0;                      ///< iterates reached (the last is the converged one)
+  int evaluations = 0;                     ///< calls of MaterialBatch::evaluate
+  int factorisations = 0;
+  std::vector<double> residual_history;    ///< |R_free| of each iterate [N/m]
+  std::vector<double> correction_history;  ///< |K^-1 R| of each iterate [m]
+  double residual = 0;                     ///< |R_free| at the end [N/m]
+  double residual_bound = 0;               ///< what it is compared with [N/m], the noise floor included
+  double noise_floor = 0;                  ///< [N/m]
+  double external_norm = 0;                ///< |f_ext| [N/m]
+  double reaction_norm = 0;                ///< |reactions| [N/m]
+  double increment_norm = 0;               ///< |Du| [m]
+  double largest_nodal_ratio = 0;          ///< max over nodes of |R_i| / sum of |element forces| at the node [-]
+  std::size_t work = 0;                    ///< sum of BatchReport::work
+  BatchReport material;                    ///< of the last evaluation
+};
+
+/// What an increment is asked for.
+struct IncrementLoad {
+  Eigen::VectorXd external_force;  ///< at the end of the increment, n_dofs [N/m]
+  Constraints prescribed;          ///< displacement increments [m]
+  double predictor_ratio = 0;      ///< first iterate = ratio * last increment (+ elastic lift); 0: elastic from rest
+  double reference_force = 0;      ///< see the convergence definition, e.g. the norm of a stage's final load [N/m]
+};
+
+/// The last iterate. All of it is valid only if the report says converged.
+struct Increment {
+  Eigen::VectorXd displacement;     ///< Du, n_dofs [m]
+  std::vector<Gradient> gradients;  ///< F_rel - I, n_points [-]
+  std::vector<Stress> stress;       ///< n_points [Pa]
+  std::vector<Tangent> tangent;     ///< n_points [Pa]
+  Eigen::VectorXd external_force;   ///< n_dofs [N/m]
+  Eigen::VectorXd reactions;        ///< f_int - f_ext at constrained dofs, zero elsewhere; of the support on the soil [N/m]
+  GaussPoints points;               ///< the geometry of the integration
+};
+
+/// An iterate as it happens, for progress; `bound` as NewtonReport::residual_bound.
+struct Iterate {
+  int iteration;
+  double residual;
+  double bound;
+  const BatchReport& material;
+};
+
+class NewtonSolver {
+ public:
+  /// Keeps references to the mesh and the material. Throws std::invalid_argument if their sizes differ or an option is
+  /// out of range.
+  NewtonSolver(const Mesh& mesh, MaterialBatch& material, Kinematics kinematics, const NewtonOptions& options);
+
+  /// Finds the equilibrium; neither `state` nor the material's committed state changes.
+  [[nodiscard]] NewtonReport solve_increment(const MeshState& state, const IncrementLoad& load, Increment& increment);
+
+  /// Takes the increment over into the state and commits the material. Only after a converged `solve_increment`.
+  void commit(MeshState& state, const Increment& increment);
+
+  std::function<void(const Iterate&)> on_iterate;  ///< may be empty
+
+  [[nodiscard]] const Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] MaterialBatch& material() { return material_; }
+
+ private:
+  struct Workspace;
+  const Mesh& mesh_;
+  MaterialBatch& material_;
+  Kinematics kinematics_;
+  NewtonOptions options_;
+  StiffnessAssembler assembler_;
+  SparseSolver solver_;
+};
+
+/// Force on the residual's norm of independent stress errors of `stress_noise` rms [Pa] at every Gauss point:
+/// |R|^2 = noise^2 * sum over points of volume^2 * sum over free dofs of |grad N|^2 [N/m].
+[[nodiscard]] double noise_force(const Mesh& mesh, const GaussPoints& points, const std::vector<char>& constrained,
+                                 double stress_noise);
+
+}  // namespace voussoir::fem
