@@ -1,0 +1,86 @@
+#pragma once
+/// The contact law as a value: named constants and one pure call (method.md §3; the rules are Yade's, so that the two codes
+/// can be compared grain by grain). No views, no indices: it is tested alone along a path before any packing exists.
+///
+/// A new law is a struct with this shape: `History` (what it remembers), `has_rolling`, constants, and `operator()`.
+
+#include "kernels/lane.hpp"
+
+namespace voussoir::kernels {
+
+/// What a grain is made of. One class of Table 1.
+struct GrainMaterial {
+  double modulus = 3.0e9;          ///< contact modulus E [Pa]
+  double stiffness_ratio = 0.5;    ///< k_t/k_n [-]
+  double friction = 0.466307658;   ///< tan(friction angle) [-]
+  double rolling_stiffness = 1.0;  ///< beta in k_r = beta k_t r1 r2 [-]
+  double rolling_limit = 0.6;      ///< eta in |m| <= eta r f_n [-]
+};
+
+/// Constants of one pair in contact.
+struct PairConstants {
+  double normal_stiffness;      ///< k_n [N/m]
+  double tangential_stiffness;  ///< k_t [N/m]
+  double rolling_stiffness;     ///< k_r [N m/rad]
+  double friction;              ///< mu [-]
+  double rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
+};
+
+/// Two springs in series, each of stiffness 2*s: 2 s1 s2 / (s1 + s2).
+KOKKOS_INLINE_FUNCTION double in_series(double s1, double s2) { return 2.0 * s1 * s2 / (s1 + s2); }
+
+/// Combination rules of method.md §3 for grains of radii r1, r2 [m].
+KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2, double r2) {
+  const double kt = in_series(m1.modulus * m1.stiffness_ratio * r1, m2.modulus * m2.stiffness_ratio * r2);
+  const double beta = 0.5 * (m1.rolling_stiffness + m2.rolling_stiffness);
+  const double arm1 = m1.rolling_limit * r1;
+  const double arm2 = m2.rolling_limit * r2;
+  return {.normal_stiffness = in_series(m1.modulus * r1, m2.modulus * r2),
+          .tangential_stiffness = kt,
+          .rolling_stiffness = beta * kt * r1 * r2,
+          .friction = m1.friction < m2.friction ? m1.friction : m2.friction,
+          .rolling_arm = arm1 < arm2 ? arm1 : arm2};
+}
+
+/// Relative motion at a contact during one step.
+template <class V>
+struct ContactMotion {
+  V overlap;  ///< delta [m]; <= 0 means no contact
+  V sliding;  ///< increment of the sliding of j past i along t [m]
+  V rolling;  ///< increment of the relative rotation of j against i [rad]
+};
+
+template <class V>
+struct ContactForce {
+  V normal;      ///< f_n >= 0, repulsion [N]
+  V tangential;  ///< f_t on i along t [N]
+  V moment;      ///< m on i [N m]
+};
+
+/// Linear normal spring, tangential spring with Coulomb cap, rolling spring with plastic cap (Iwashita and Oda 1998).
+template <class V, bool Rolling>
+struct LinearContactLaw {
+  static constexpr bool has_rolling = Rolling;
+
+  /// Spring forces carried from step to step.
+  struct History {
+    V tangential;  ///< [N]
+    V moment;      ///< [N m], untouched without rolling
+  };
+
+  V normal_stiffness, tangential_stiffness, rolling_stiffness, friction, rolling_arm;  ///< as in PairConstants
+
+  /// Without contact every force and the history become zero: both caps are multiples of f_n.
+  KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> operator()(const ContactMotion<V>& motion, History& history) const {
+    const V fn = larger(normal_stiffness * motion.overlap, V(0));
+    history.tangential = clamp_to(fused(tangential_stiffness, motion.sliding, history.tangential), friction * fn);
+    if constexpr (Rolling) {
+      history.moment = clamp_to(fused(rolling_stiffness, motion.rolling, history.moment), rolling_arm * fn);
+      return {fn, history.tangential, history.moment};
+    } else {
+      return {fn, history.tangential, V(0)};
+    }
+  }
+};
+
+}  // namespace voussoir::kernels
