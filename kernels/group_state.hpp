@@ -1,0 +1,106 @@
+#pragma once
+/// Working state of one group: W RVEs cloned from one packing, one per lane, all lanes of a number side by side.
+///
+/// Layout (grain, quantity, lane) and (pair, quantity, lane): everything one pair touches is a run of whole cache lines. One
+/// thread owns a group for a whole increment, so it stays in L1/L2.
+
+#include <cstdint>
+#include <string>
+
+#include "kernels/contact_law.hpp"
+#include "kernels/kinematics.hpp"
+
+namespace voussoir::kernels {
+
+/// What moves of a grain, relative to the affine field and since the lane's last rebase; velocities are per step.
+template <class V>
+struct GrainLanes {
+  V u_x, u_y;      ///< displacement [m]
+  V w_x, w_y;      ///< velocity [m/step]
+  V spin;          ///< [rad/step]
+  V force_x, force_y, torque;  ///< partial sums while a step runs, zero between steps [N], [N m]
+  V rotation;      ///< since the last commit [rad]
+};
+
+/// What a grain is, the same in all lanes.
+template <class real>
+struct GrainShape {
+  real radius;              ///< [m]
+  real mobility;            ///< dt^2/m [m/N]
+  real rotational_mobility; ///< dt^2/J [rad/(N m)]
+};
+
+/// A candidate contact, lane by lane.
+template <class V>
+struct PairLanes {
+  V branch_x, branch_y;  ///< b0 at the lane's last rebase [m]; 0 where the lane does not list the pair
+  V gap;                 ///< g0 = |b0|^2 - R^2 [m^2]; R^2 where the lane does not list the pair: never in contact
+  V tangential, moment;  ///< law history [N], [N m]
+};
+
+/// A candidate contact, the same in all lanes. Rows are grains i, `other` is j > i.
+template <class real>
+struct PairShape {
+  std::int32_t other;
+  std::int32_t active;  ///< 1 while any lane may hold history; a pair is skipped only when no lane touches and this is 0
+  real sum_radii;       ///< R [m]
+  real inverse_sum;     ///< 1/R
+  real inverse_sum_squared;
+  real radius_other;
+  real normal_stiffness, tangential_stiffness, rolling_stiffness, friction, rolling_arm;
+};
+
+/// Rigid and affine motion of the cells, rounded from double once a step.
+template <class V>
+struct CellMotion {
+  V f_xx, f_xy, f_yx, f_yy;  ///< F - I since the lane's last rebase
+  V d_xx, d_xy, d_yy;        ///< D = sym E of the motion that led to the current positions
+  V e_xx, e_xy, e_yx, e_yy;  ///< E of the coming motion
+  V rotation;                ///< W of the coming motion
+  V alive;                   ///< 1, or 0 for a lane that is finished, empty or lost
+};
+
+/// Sums over one sweep, lane by lane.
+template <class V>
+struct SweepSums {
+  V stress_xx = V(0), stress_xy = V(0), stress_yx = V(0), stress_yy = V(0);  ///< sum P_i b_j [N m]
+  V force_squared = V(0);  ///< sum |f|^2 over grains [N^2]
+};
+
+template <class V>
+struct GroupState {
+  template <class T>
+  using Array = Kokkos::View<T*, Kokkos::HostSpace>;
+
+  int n_grains = 0;
+  int n_pairs = 0;
+  double local_damping = 0.3;
+  Array<GrainLanes<V>> grains;
+  Array<GrainShape<real_of<V>>> shapes;
+  Array<int> row;  ///< pairs of grain i: row(i) .. row(i+1)
+  Array<PairLanes<V>> pairs;
+  Array<PairShape<real_of<V>>> pair_shapes;
+  CellMotion<V> motion;
+
+  void reserve_grains(int n) {
+    if (n <= static_cast<int>(grains.extent(0))) return;
+    grains = allocate<GrainLanes<V>>("grains", n);
+    shapes = allocate<GrainShape<real_of<V>>>("shapes", n);
+    row = allocate<int>("row", n + 1);
+  }
+
+  void reserve_pairs(int n) {
+    if (n <= static_cast<int>(pairs.extent(0))) return;
+    pairs = allocate<PairLanes<V>>("pairs", n);
+    pair_shapes = allocate<PairShape<real_of<V>>>("pair_shapes", n);
+  }
+
+ private:
+  template <class T>
+  static Array<T> allocate(const char* what, int n) {
+    const std::string label = std::string("voussoir::group_state::") + what;
+    return Array<T>(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), static_cast<std::size_t>(n));
+  }
+};
+
+}  // namespace voussoir::kernels
