@@ -1,0 +1,105 @@
+#pragma once
+/// All RVEs of a run: what they are (packings), where they stand (committed state), and where the last evaluation left
+/// them (trial state). Data only; verbs are in advance_rves.hpp.
+///
+/// Layout (RVE, grain, component), LayoutRight: one thread walks one group, one RVE is contiguous. State is double, whatever
+/// the lanes compute in, and complete: neighbour lists derive from it.
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "kernels/contact_law.hpp"
+#include "kernels/kinematics.hpp"
+
+namespace voussoir::kernels {
+
+/// What all RVEs cloned from one packing share.
+struct Packing {
+  std::vector<double> radii;  ///< [m]
+  GrainMaterial material;
+  double thickness = 0.1;      ///< out of plane [m]
+  double local_damping = 0.3;  ///< Cundall's lambda [-]
+
+  [[nodiscard]] int size() const { return static_cast<int>(radii.size()); }
+  [[nodiscard]] double mean_diameter() const;
+  [[nodiscard]] double largest_radius() const;
+  [[nodiscard]] double solid_area() const;     ///< sum of pi r^2 [m^2]
+  [[nodiscard]] double mean_mobility() const;  ///< mean of dt^2/m [m/N], see kernels/README.md "Mobilities"
+};
+
+/// dt^2/m and dt^2/J of a grain of radius r, see kernels/README.md "Mobilities".
+[[nodiscard]] double mobility_of(const GrainMaterial& material, double radius);
+[[nodiscard]] double rotational_mobility_of(const GrainMaterial& material, double radius);
+
+/// States of `n` RVEs of at most `grains` grains.
+struct RveStates {
+  template <class T>
+  using Array = Kokkos::View<T, Kokkos::LayoutRight, Kokkos::HostSpace>;
+
+  Array<double** [2]> position;        ///< [m], wrapped into the cell
+  Array<double**> rotation;            ///< absolute [rad]
+  Array<double* [4]> cell;             ///< H row-major; columns are the periodic vectors [m]
+  Array<int*> contact_count;
+  Array<std::uint32_t**> contact_key;  ///< pair_key(i, j), ascending
+  Array<double** [2]> contact_history; ///< tangential force [N], rolling moment [N m]
+
+  RveStates() = default;
+  RveStates(std::string_view label, std::size_t n, int grains);
+  [[nodiscard]] int contact_capacity() const { return static_cast<int>(contact_key.extent(1)); }
+};
+
+/// A pair i < j in one word; ascending keys are ordered by (i, j).
+[[nodiscard]] constexpr std::uint32_t pair_key(int i, int j) {
+  return (static_cast<std::uint32_t>(i) << 16) | static_cast<std::uint32_t>(j);
+}
+[[nodiscard]] constexpr int first_of(std::uint32_t key) { return static_cast<int>(key >> 16); }
+[[nodiscard]] constexpr int second_of(std::uint32_t key) { return static_cast<int>(key & 0xffffU); }
+
+inline constexpr int max_grains = 65535;  ///< indices of a pair fit one word
+
+/// How an evaluation of one RVE ended. The last three make the increment unusable; `open` and `step_limit` are reported.
+enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, overlap_limit, not_finite };
+
+[[nodiscard]] constexpr bool is_failure(RveStatus s) { return s >= RveStatus::neighbour_overflow; }
+[[nodiscard]] const char* name_of(RveStatus s);
+
+/// Answer of one RVE.
+struct RveReport {
+  RveStatus status = RveStatus::converged;
+  int steps = 0;                ///< executed, hold included
+  int contacts = 0;
+  double stress[4] = {};        ///< Love-Weber, xx xy yx yy, tension positive [Pa]
+  double tangent[6] = {};       ///< eq. (4) symmetrised, xxxx xxyy xxxy yyyy yyxy xyxy [Pa]
+  double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
+  double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
+  double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]
+
+  [[nodiscard]] double pressure() const { return -0.5 * (stress[0] + stress[3]); }  ///< compression positive [Pa]
+};
+
+/// Candidate contacts of a committed state, kept between evaluations; derived, never stored.
+struct CandidateCache {
+  std::vector<std::vector<std::uint32_t>> keys;
+  std::vector<char> valid;
+};
+
+struct RveBatch {
+  std::vector<Packing> packings;
+  std::vector<int> packing_of;  ///< by RVE
+  RveStates committed;
+  RveStates trial;
+  CandidateCache candidates;
+
+  [[nodiscard]] std::size_t size() const { return packing_of.size(); }
+  [[nodiscard]] const Packing& packing(std::size_t rve) const { return packings[static_cast<std::size_t>(packing_of[rve])]; }
+};
+
+/// Room for RVEs of the given packings; states are to be filled by the caller.
+[[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of);
+
+/// The trial states become the committed ones.
+void commit(RveBatch& batch);
+
+}  // namespace voussoir::kernels
