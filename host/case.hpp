@@ -35,6 +35,7 @@ struct PackingCase {
   std::int64_t seed = 1;                ///< first seed; the candidates are seed, seed + 1, ...
   std::vector<std::int64_t> seeds;      ///< the seeds to make (kind = pack); empty: those of seed and candidates
   int candidates = 1;                   ///< seeds tried; the one with the least |tau_xy|/sigma_yy is taken
+  std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
   double consolidation_friction = 0.0;  ///< friction coefficient mu_t during consolidation [-]
   double pressure = 1.0e3;              ///< isotropic pressure of the finished packing [Pa]
 };
@@ -77,7 +78,6 @@ struct ColumnCase {
 struct GravityCase {
   double ratio = 1.5;          ///< growth of the base stress from one increment to the next [-]
   double uniform_step = 0.05;  ///< load factor step at which the increments become uniform [-]
-  double smallest_step = 1.0e-5;  ///< load factor step below which cutting gives up [-]
 };
 
 /// [volume_loss]
@@ -85,22 +85,21 @@ struct VolumeLossCase {
   double total = 0.20;  ///< V_l at the end [-]
   int increments = 80;
   LossGeometry geometry = LossGeometry::updated_lagrangian;
-  double smallest_step = 1.0e-5;  ///< step of V_l below which cutting gives up [-]
 };
 
 /// [newton] What "converged" means (design.md, The continuum), and how it is reached.
 struct NewtonCase {
   double tolerance = 1.0e-3;               ///< of the free residual, relative to the external force [-]
   double displacement_tolerance = 1.0e-2;  ///< of the last correction, relative to the increment [-]
-  int maximum_iterations = 30;
-  int anderson_depth = 5;
-  double initial_tangent_fraction = 0.05;  ///< share of the initial tangent added to the tangent [-]
+  int maximum_iterations = 40;
+  int anderson_depth = 5;                  ///< 0: plain Newton
+  double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
+  double smallest_cut = 1.0 / 64.0;        ///< smallest share of a planned step that cutting tries [-]
 };
 
 /// [output]
 struct OutputCase {
   int every = 1;          ///< increments of a stage between two result files; a stage's last is always written
-  bool tangents = false;  ///< write the material tangents too
   std::vector<std::int64_t> rves;  ///< Gauss points whose whole RVE is written with each increment
 };
 

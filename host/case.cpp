@@ -1,0 +1,90 @@
+#include "host/case.hpp"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "host/case_tables.hpp"
+#include "io/case_file.hpp"
+
+namespace voussoir::host {
+namespace {
+
+constexpr std::array<std::pair<CaseKind, const char*>, 4> kind_names{{{CaseKind::pack, "pack"},
+                                                                      {CaseKind::probe, "probe"},
+                                                                      {CaseKind::column, "column"},
+                                                                      {CaseKind::tunnel, "tunnel"}}};
+
+CaseKind read_kind(const io::Table& root) {
+  std::vector<std::string> names;
+  for (const auto& [kind, name] : kind_names) names.emplace_back(name);
+  const std::string wanted = root.choice("kind", names);
+  for (const auto& [kind, name] : kind_names) {
+    if (wanted == name) return kind;
+  }
+  throw std::logic_error("a choice that was not offered");
+}
+
+/// Tables of the grains. A case of another material may keep them, so that one `--set` changes the material.
+void read_grain_tables(const io::Table& root, Case& input) {
+  input.soil = read_soil(root.table("soil"));
+  input.packing = read_packing(root.table("packing"));
+  input.engine = read_engine(root.table("engine"));
+  if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
+}
+
+void read_ground_tables(const io::Table& root, Case& input) {
+  const bool with_tunnel = input.kind == CaseKind::tunnel;
+  const std::string material = root.choice("material", {"grains", "linear_elastic"}, "grains");
+  input.material = material == "grains" ? MaterialKind::grains : MaterialKind::linear_elastic;
+  input.elastic = read_elastic(root.table("elastic"));
+  input.ground = read_ground(root.table("ground"), with_tunnel);
+  input.column = read_column(root.table("column"));
+  input.gravity = read_gravity(root.table("gravity"));
+  if (with_tunnel) input.volume_loss = read_volume_loss(root.table("volume_loss"));
+  input.newton = read_newton(root.table("newton"));
+  input.output = read_output(root.table("output"));
+  if (std::abs(input.ground.surcharge - input.packing.pressure) > 1e-9 * input.packing.pressure) {
+    throw root.table("ground").error("surcharge", "must equal packing.pressure: the ground starts at rest under it");
+  }
+  if (input.ground.surcharge > 0.5 * input.ground.unit_weight * input.ground.height) {
+    throw root.table("ground").error("surcharge", "is more than half the weight of the ground");
+  }
+}
+
+/// The key `title`, else the folder of a case.toml, else the file's stem.
+std::string default_title(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  const std::string folder = std::filesystem::absolute(file).parent_path().filename().string();
+  return stem == "case" && !folder.empty() ? folder : stem;
+}
+
+}  // namespace
+
+Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const io::CaseFile text = io::CaseFile::load(file, overrides);
+  const io::Table root = text.root();
+  Case input;
+  input.kind = read_kind(root);
+  input.name = root.text("title", default_title(file));
+  read_grain_tables(root, input);
+  if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
+  text.finish();
+  input.resolved = text.resolved();
+  const std::array<std::string, 3> without{"title", "output", "packing.folder"};  // none of them changes a number
+  input.fingerprint = text.fingerprint(without);
+  return input;
+}
+
+std::string to_string(CaseKind kind) {
+  for (const auto& [candidate, name] : kind_names) {
+    if (candidate == kind) return name;
+  }
+  return "unknown";
+}
+
+std::string to_string(MaterialKind kind) { return kind == MaterialKind::grains ? "grains" : "linear_elastic"; }
+
+}  // namespace voussoir::host

@@ -1,0 +1,86 @@
+// The tables of the ground and its stages: [ground], [column], [gravity], [volume_loss], [newton], [output], [elastic].
+#include <string>
+
+#include "host/case_tables.hpp"
+#include "io/units.hpp"
+
+namespace voussoir::host {
+
+using io::Dimension;
+
+ElasticCase read_elastic(const io::Table& table) {
+  ElasticCase elastic;
+  read_quantity(table, "modulus", Dimension::pressure, elastic.modulus, {.positive = true});
+  read_quantity(table, "poisson", Dimension::none, elastic.poisson, {.at_least = "0", .at_most = "0.49"});
+  return elastic;
+}
+
+GroundCase read_ground(const io::Table& table, bool with_tunnel) {
+  GroundCase ground;
+  read_quantity(table, "unit_weight", Dimension::unit_weight, ground.unit_weight, {.positive = true});
+  read_quantity(table, "surcharge", Dimension::pressure, ground.surcharge, {.positive = true});
+  read_quantity(table, "height", Dimension::length, ground.height, {.positive = true});
+  if (!with_tunnel) return ground;
+  read_quantity(table, "width", Dimension::length, ground.width, {.positive = true});
+  read_quantity(table, "diameter", Dimension::length, ground.diameter, {.positive = true});
+  read_quantity(table, "cover_ratio", Dimension::none, ground.cover_ratio, {.at_least = "0.25", .at_most = "20"});
+  read_quantity(table, "mesh_size_opening", Dimension::length, ground.mesh_size_opening, {.positive = true});
+  read_quantity(table, "mesh_size_far", Dimension::length, ground.mesh_size_far, {.positive = true});
+  if (ground.invert_height() < 0.5 * ground.diameter) {
+    throw table.error("cover_ratio", "leaves less than D/2 of ground below the invert");
+  }
+  if (ground.width < 1.5 * ground.diameter) throw table.error("width", "is less than 1.5 tunnel diameters");
+  if (ground.mesh_size_opening > 0.5 * ground.diameter) {
+    throw table.error("mesh_size_opening", "is more than half the diameter");
+  }
+  if (ground.mesh_size_far < ground.mesh_size_opening) {
+    throw table.error("mesh_size_far", "is smaller than mesh_size_opening");
+  }
+  return ground;
+}
+
+ColumnCase read_column(const io::Table& table) {
+  ColumnCase column;
+  read_integer(table, "elements", column.elements, {.at_least = 2, .at_most = 10000});
+  read_quantity(table, "width", Dimension::length, column.width, {.positive = true});
+  return column;
+}
+
+GravityCase read_gravity(const io::Table& table) {
+  GravityCase gravity;
+  read_quantity(table, "ratio", Dimension::none, gravity.ratio, {.at_least = "1.01", .at_most = "10"});
+  read_quantity(table, "uniform_step", Dimension::none, gravity.uniform_step, {.at_least = "1e-4", .at_most = "1"});
+  return gravity;
+}
+
+VolumeLossCase read_volume_loss(const io::Table& table) {
+  VolumeLossCase loss;
+  read_quantity(table, "total", Dimension::none, loss.total, {.at_most = "0.9", .positive = true});
+  read_integer(table, "increments", loss.increments, {.at_least = 1, .at_most = 100000});
+  loss.geometry = table.choice("geometry", {"updated_lagrangian", "fixed_mesh"}, "updated_lagrangian") == "fixed_mesh"
+                      ? LossGeometry::fixed_mesh
+                      : LossGeometry::updated_lagrangian;
+  return loss;
+}
+
+NewtonCase read_newton(const io::Table& table) {
+  NewtonCase newton;
+  read_quantity(table, "tolerance", Dimension::none, newton.tolerance, {.at_most = "0.1", .positive = true});
+  read_quantity(table, "displacement_tolerance", Dimension::none, newton.displacement_tolerance,
+                {.at_most = "1", .positive = true});
+  read_integer(table, "maximum_iterations", newton.maximum_iterations, {.at_least = 1, .at_most = 10000});
+  read_integer(table, "anderson_depth", newton.anderson_depth, {.at_least = 0, .at_most = 50});
+  read_quantity(table, "initial_tangent_fraction", Dimension::none, newton.initial_tangent_fraction,
+                {.at_least = "0", .at_most = "10"});
+  read_quantity(table, "smallest_cut", Dimension::none, newton.smallest_cut, {.at_most = "1", .positive = true});
+  return newton;
+}
+
+OutputCase read_output(const io::Table& table) {
+  OutputCase output;
+  read_integer(table, "every", output.every, {.at_least = 1, .at_most = 1'000'000});
+  output.rves = table.integers("rves", {.at_least = 0}, std::vector<std::int64_t>{});
+  return output;
+}
+
+}  // namespace voussoir::host
