@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""The tree is the architecture: fails when it is not.
+
+Checks, over all files of the checkout (or of the folder given as the only argument):
+  - an include stays within the lines of the table FOLDERS, for our folders and for third-party libraries;
+  - an include of ours is written from the root of the repository and the file exists;
+  - a source file has at most 400 lines;
+  - a folder has a README.md.
+Prints one line per finding, `file:line: what`, and exits with 1 when there is any.
+"""
+
+import os
+import re
+import sys
+from pathlib import Path
+
+OURS = ("kernels", "fem", "io", "host", "tests")
+
+# folder -> (our folders, third-party libraries) that it may include. Standard headers are free to all, and fmt stands in
+# for std::format (not in g++ 12) everywhere but in kernels, which write no text.
+FOLDERS = {
+    "kernels": ({"kernels"}, {"Kokkos", "intrinsics"}),
+    "fem": ({"fem"}, {"Eigen", "SuiteSparse", "Gmsh", "OpenMP", "fmt"}),
+    "io": ({"io"}, {"HDF5", "toml++", "JSON", "fmt", "POSIX"}),
+    # host joins the others, so it holds their types (Kokkos views, Eigen matrices) and starts Kokkos.
+    "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX"}),
+    "tests": (set(OURS), None),  # None: any
+    "tools": (set(), {"CUDA"}),
+}
+
+# Libraries that even their own folder keeps in a few files.
+CONFINED = {
+    "Gmsh": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
+    # to give back the thread number that Gmsh changes
+    "OpenMP": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
+}
+
+LIBRARIES = {
+    "Kokkos": r"Kokkos(Exp)?_\w+\.hpp|desul/.*",
+    "Eigen": r"(unsupported/)?Eigen/\w+",
+    "SuiteSparse": r"(suitesparse/)?(cholmod|umfpack|amd|colamd|SuiteSparse_config)\w*\.h",
+    "Gmsh": r"gmsh(c)?\.h(_cwrap)?",
+    "HDF5": r"(hdf5|H5\w+|hdf5_hl)\.h|H5Cpp\.h|highfive/.*",
+    "toml++": r"toml\.hpp|toml\+\+/.*",
+    "JSON": r"nlohmann/json(_fwd)?\.hpp",
+    "OpenMP": r"omp\.h",
+    "CLI11": r"CLI/\w+\.hpp",
+    "spdlog": r"spdlog/.*",
+    "fmt": r"fmt/.*",
+    "GoogleTest": r"(gtest|gmock)/.*",
+    "Google Benchmark": r"benchmark/.*",
+    "CUDA": r"cuda\w*\.h",
+    "intrinsics": r"immintrin\.h",
+    "POSIX": r"(sys/\w+|unistd|fcntl|signal|termios)\.h",
+    "standard": r"[a-z_0-9]+",
+}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+SOURCES = {".cpp", ".hpp", ".h", ".c", ".cu", ".py", ".sh"}
+LONGEST = 400
+NOT_OURS = {"build", "out"}
+
+
+def folders_of(root):
+    """Every folder of the checkout with its files; hidden and generated ones are left out."""
+    for folder, children, files in os.walk(root):
+        top = Path(folder) == root
+        children[:] = sorted(c for c in children if not (c.startswith((".", "__")) or (top and c in NOT_OURS)))
+        yield Path(folder), sorted(f for f in files if not f.startswith("."))
+
+
+def library_of(header):
+    return next((name for name, pattern in LIBRARIES.items() if re.fullmatch(pattern, header)), None)
+
+
+def include_fault(root, path, quote, header):
+    """What is wrong with one include of the file `path` (relative to root), or None."""
+    folder = path.parts[0]
+    if folder not in FOLDERS:
+        return f"source files belong into one of {', '.join(FOLDERS)}"
+    ours, libraries = FOLDERS[folder]
+    if header.split("/")[0] in OURS and library_of(header) is None:
+        other = header.split("/")[0]
+        if other not in ours:
+            return f"{folder} may not include {other} ({header})"
+        return None if (root / header).is_file() else f"no such file: {header}"
+    library = library_of(header)
+    if library is None and quote == '"':
+        return f'write "{header}" from the root of the repository'
+    if library is None:
+        return f"<{header}> is of no library known to tools/check_includes.py"
+    if library != "standard" and libraries is not None and library not in libraries:
+        return f"{folder} may not include {library} ({header})"
+    if library in CONFINED and not CONFINED[library].fullmatch(path.as_posix()):
+        return f"{library} may be included by {CONFINED[library].pattern} only ({header})"
+    return None
+
+
+def file_findings(root, path):
+    lines = (root / path).read_text(encoding="utf-8").splitlines()
+    if len(lines) > LONGEST:
+        yield f"{path}:{len(lines)}: longer than {LONGEST} lines"
+    if path.suffix == ".py":
+        return
+    for number, line in enumerate(lines, 1):
+        match = INCLUDE.match(line)
+        fault = match and include_fault(root, path, *match.groups())
+        if fault:
+            yield f"{path}:{number}: {fault}"
+
+
+def findings(root):
+    for folder, files in folders_of(root):
+        if files and "README.md" not in files:
+            yield f"{folder.relative_to(root)}/: no README.md"
+        for name in files:
+            path = (folder / name).relative_to(root)
+            if path.suffix in SOURCES or name == "CMakeLists.txt" or path.parts[0] == "tools" and not path.suffix:
+                yield from file_findings(root, path)
+
+
+def main():
+    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent.parent).resolve()
+    found = list(findings(root))
+    print("\n".join(found) if found else "check_includes: nothing found")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
