@@ -16,6 +16,7 @@ struct Mat2 {
   }
   friend Mat2 operator+(const Mat2& a, const Mat2& b) { return {a.xx + b.xx, a.xy + b.xy, a.yx + b.yx, a.yy + b.yy}; }
   friend Mat2 operator*(double s, const Mat2& a) { return {s * a.xx, s * a.xy, s * a.yx, s * a.yy}; }
+  friend bool operator==(const Mat2&, const Mat2&) = default;
   [[nodiscard]] double det() const { return xx * yy - xy * yx; }
   [[nodiscard]] double norm() const { return std::sqrt(xx * xx + xy * xy + yx * yx + yy * yy); }
   [[nodiscard]] Mat2 inverse() const { return (1.0 / det()) * Mat2{yy, -xy, -yx, xx}; }
@@ -52,6 +53,5 @@ inline constexpr Mat2 identity2{1, 0, 0, 1};
   const double s = 0.5 * std::log(det);
   return Mat2{s, 0, 0, s} + ratio * b;
 }
-
 
 }  // namespace voussoir::kernels

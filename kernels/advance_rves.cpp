@@ -1,0 +1,144 @@
+#include "kernels/advance_rves.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#include "kernels/advance_group.hpp"
+
+namespace voussoir::kernels {
+
+namespace {
+
+/// Subnormal numbers are flushed to zero while a group runs: grains at rest decay into them, at ten times the cost a step.
+class FlushSubnormals {
+ public:
+#if defined(__SSE2__)
+  FlushSubnormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040U); }
+  ~FlushSubnormals() { _mm_setcsr(saved_); }
+
+ private:
+  unsigned saved_;
+#else
+  FlushSubnormals() = default;
+  ~FlushSubnormals() {}
+#endif
+
+ public:
+  FlushSubnormals(const FlushSubnormals&) = delete;
+  FlushSubnormals& operator=(const FlushSubnormals&) = delete;
+};
+
+int predicted_steps(const StrainRequest& r) { return r.strain_steps + r.hold_cap / 4; }
+int predicted_steps(const ServoRequest& r) { return r.max_steps; }
+
+/// RVEs of one packing side by side, most work first, so that lanes end together and the longest group starts first.
+template <int width, class Request>
+std::vector<GroupMembers<width>> form_groups(const RveBatch& batch, std::span<const Request> requests) {
+  std::vector<int> order(batch.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto steps = [&](int rve) { return predicted_steps(requests[static_cast<std::size_t>(rve)]); };
+  const auto packing = [&](int rve) { return batch.packing_of[static_cast<std::size_t>(rve)]; };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return packing(a) != packing(b) ? packing(a) < packing(b) : steps(a) > steps(b);
+  });
+  std::vector<GroupMembers<width>> groups;
+  int lane = width;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (lane == width || packing(order[k]) != packing(order[k - 1])) {
+      groups.emplace_back().fill(-1);
+      lane = 0;
+    }
+    groups.back()[static_cast<std::size_t>(lane++)] = order[k];
+  }
+  std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) { return steps(a[0]) > steps(b[0]); });
+  return groups;
+}
+
+template <int width>
+Work count_work(const RveBatch& batch, const std::vector<GroupMembers<width>>& groups, std::span<const RveReport> reports) {
+  Work work;
+  for (const auto& group : groups) {
+    const auto grains = static_cast<std::size_t>(batch.packing(static_cast<std::size_t>(group[0])).size());
+    int longest = 0;
+    for (const int rve : group) {
+      if (rve < 0) continue;
+      const int steps = reports[static_cast<std::size_t>(rve)].steps;
+      work.particle_steps += grains * static_cast<std::size_t>(steps);
+      longest = std::max(longest, steps);
+    }
+    work.lane_steps += grains * static_cast<std::size_t>(longest) * static_cast<std::size_t>(width);
+  }
+  return work;
+}
+
+template <class V, bool Rolling, class Drive>
+Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
+            std::span<RveReport> reports) {
+  using Space = Kokkos::DefaultHostExecutionSpace;
+  using Advance = GroupAdvance<V, Rolling, Drive>;
+  const auto groups = form_groups<lane_count<V>>(batch, requests);
+  const Space space;
+  Kokkos::Experimental::UniqueToken<Space> tokens(space);
+  std::vector<std::unique_ptr<Advance>> workers(static_cast<std::size_t>(tokens.size()));
+  for (auto& worker : workers) worker = std::make_unique<Advance>();
+  Kokkos::parallel_for(
+      "voussoir::advance_rves::groups",
+      Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(space, 0, groups.size()).set_chunk_size(1),
+      [&](std::size_t g) {
+        const FlushSubnormals flush;
+        const auto token = tokens.acquire();
+        workers[static_cast<std::size_t>(token)]->run(batch, groups[g], requests, settings, reports);
+        tokens.release(token);
+      });
+  space.fence("voussoir::advance_rves::groups");
+  return count_work<lane_count<V>>(batch, groups, reports);
+}
+
+/// One RVE per packing leaves wide lanes empty: those run one to a group in the same code.
+bool mostly_alone(const RveBatch& batch) { return batch.size() < 2 * batch.packings.size(); }
+
+bool rolls(const RveBatch& batch) {
+  return std::any_of(batch.packings.begin(), batch.packings.end(), [](const Packing& p) {
+    return p.material.rolling_stiffness > 0 && p.material.rolling_limit > 0;
+  });
+}
+
+template <class Drive, class real>
+Work choose(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
+            std::span<RveReport> reports) {
+  using Wide = WideLane<real>;
+  using Single = SingleLane<real>;
+  if (mostly_alone(batch)) {
+    return rolls(batch) ? launch<Single, true, Drive>(batch, requests, settings, reports)
+                        : launch<Single, false, Drive>(batch, requests, settings, reports);
+  }
+  return rolls(batch) ? launch<Wide, true, Drive>(batch, requests, settings, reports)
+                      : launch<Wide, false, Drive>(batch, requests, settings, reports);
+}
+
+template <class Drive>
+Work advance_with(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
+                  std::span<RveReport> reports) {
+  return settings.precision == Precision::float32 ? choose<Drive, float>(batch, requests, settings, reports)
+                                                  : choose<Drive, double>(batch, requests, settings, reports);
+}
+
+}  // namespace
+
+Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
+             std::span<RveReport> reports) {
+  return advance_with<StrainDrive>(batch, requests, settings, reports);
+}
+
+Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
+             std::span<RveReport> reports) {
+  return advance_with<ServoDrive>(batch, requests, settings, reports);
+}
+
+}  // namespace voussoir::kernels

@@ -1,0 +1,29 @@
+#pragma once
+/// The engine's verbs: all RVEs of a batch, each by its own request, from committed to trial state.
+///
+/// RVEs are sorted into groups of one packing and similar predicted work; a group costs its slowest lane. Every RVE's
+/// answer is bit-identical whatever its group, lane or thread (same build, same precision).
+
+#include <span>
+
+#include "kernels/rve_batch.hpp"
+#include "kernels/settings.hpp"
+
+namespace voussoir::kernels {
+
+/// What one call cost.
+struct Work {
+  std::size_t particle_steps = 0;  ///< executed steps x grains of live lanes
+  std::size_t lane_steps = 0;      ///< the same with frozen and empty lanes counted: what the hardware did
+};
+
+/// Given motions. `requests` and `reports` have batch.size() entries.
+/// Writes batch.trial; never throws for a numerical reason: each RVE's status says how it ended.
+Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
+             std::span<RveReport> reports);
+
+/// Stress-controlled cells (consolidation, element tests).
+Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
+             std::span<RveReport> reports);
+
+}  // namespace voussoir::kernels

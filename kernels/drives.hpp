@@ -1,0 +1,114 @@
+#pragma once
+/// How a lane's cell is driven: a given motion (the ground) or stresses (consolidation, element tests).
+///
+/// A drive is a template argument of the time loop. `rate(step)` is the velocity gradient per step, `looks(step)` asks for
+/// a measuring step, `judge(step, ...)` sees what it measured and says whether the lane is done.
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/rve_batch.hpp"
+#include "kernels/settings.hpp"
+
+namespace voussoir::kernels {
+
+/// What a measuring step saw of one lane.
+struct Measurement {
+  double stress_xx = 0, stress_yy = 0;  ///< tension positive [Pa]
+  double unbalanced = 0;                ///< rms|f| / (max(p, floor) t d) [-]
+};
+
+enum class Verdict { running, converged, step_limit };
+
+/// F(t) = exp(t log F_rel / n) for n steps, then rest until the forces balance.
+class StrainDrive {
+ public:
+  using Request = StrainRequest;
+
+  StrainDrive() = default;
+  StrainDrive(const StrainRequest& request, const Packing&, const EngineSettings& settings)
+      : strain_steps_(request.strain_steps),
+        last_(request.strain_steps + request.hold_cap),
+        interval_(settings.look_interval),
+        tolerance_(settings.hold_tolerance),
+        total_(log_of(request.f_rel)) {
+    if (strain_steps_ > 0) rate_ = (1.0 / strain_steps_) * total_;
+  }
+
+  /// False for a motion without a real logarithm (NaN, det F <= 0): the RVE is not run.
+  [[nodiscard]] bool possible() const { return std::isfinite(total_.norm()); }
+  [[nodiscard]] Mat2 rate(int step) const { return step < strain_steps_ ? rate_ : Mat2{}; }
+  [[nodiscard]] bool looks(int step) const { return step >= strain_steps_ && (step % interval_ == 0 || step >= last_); }
+  [[nodiscard]] double strain_rate() const { return rate_.norm(); }
+
+  Verdict judge(int step, const Measurement& m) {
+    if (step < strain_steps_) return Verdict::running;
+    if (m.unbalanced < tolerance_) return Verdict::converged;
+    return step >= last_ ? Verdict::step_limit : Verdict::running;
+  }
+
+ private:
+  int strain_steps_ = 0;
+  int last_ = 0;
+  int interval_ = 1;
+  double tolerance_ = 0;
+  Mat2 total_;
+  Mat2 rate_;
+};
+
+/// Velocity-form PI control of each stress-controlled axis against a reference modulus (E r / t of the packing): the
+/// proportional part alone leaves an offset with stiff grains (method.md §6).
+class ServoDrive {
+ public:
+  using Request = ServoRequest;
+
+  ServoDrive() = default;
+  ServoDrive(const ServoRequest& request, const Packing& packing, const EngineSettings& settings)
+      : request_(request),
+        tolerance_(settings.hold_tolerance),
+        floor_(settings.pressure_floor),
+        modulus_(packing.material.modulus * 0.5 * packing.mean_diameter() / packing.thickness) {
+    rate_x_.value = request.x.stress_controlled ? 0.0 : request.x.target;
+    rate_y_.value = request.y.stress_controlled ? 0.0 : request.y.target;
+  }
+
+  [[nodiscard]] bool possible() const { return std::isfinite(request_.x.target) && std::isfinite(request_.y.target); }
+  [[nodiscard]] Mat2 rate(int) const { return {rate_x_.value, 0, 0, rate_y_.value}; }
+  [[nodiscard]] bool looks(int) const { return true; }
+  [[nodiscard]] double strain_rate() const { return rate(0).norm(); }
+
+  Verdict judge(int step, const Measurement& m) {
+    const bool x_ok = follow(request_.x, m.stress_xx, rate_x_);
+    const bool y_ok = follow(request_.y, m.stress_yy, rate_y_);
+    settled_ = x_ok && y_ok && m.unbalanced < tolerance_ ? settled_ + 1 : 0;
+    if (settled_ >= request_.settle_steps) return Verdict::converged;
+    return step >= request_.max_steps ? Verdict::step_limit : Verdict::running;
+  }
+
+ private:
+  static constexpr double proportional = 0.02;                               ///< share of the error per step
+  static constexpr double integral = 0.25 * proportional * proportional;     ///< critical damping of the loop
+
+  struct Rate {
+    double value = 0;
+    double sum = 0;
+  };
+
+  bool follow(const ServoAxis& axis, double stress, Rate& rate) const {
+    if (!axis.stress_controlled) return true;
+    const double error = (axis.target - stress) / modulus_;
+    const double wanted = proportional * error + integral * (rate.sum + error);
+    rate.value = std::clamp(wanted, -request_.max_rate, request_.max_rate);
+    if (wanted == rate.value) rate.sum += error;  // no wind-up while the rate is at its limit
+    return std::abs(axis.target - stress) <= request_.stress_tolerance * std::max(std::abs(axis.target), floor_);
+  }
+
+  ServoRequest request_;
+  double tolerance_ = 0;
+  double floor_ = 0;
+  double modulus_ = 1;
+  Rate rate_x_, rate_y_;
+  int settled_ = 0;
+};
+
+}  // namespace voussoir::kernels

@@ -1,0 +1,43 @@
+#pragma once
+/// What a caller asks of the engine.
+
+#include "kernels/kinematics.hpp"
+
+namespace voussoir::kernels {
+
+enum class Precision { float32, float64 };
+
+/// Numerical settings of a run. Defaults and what they cost: docs of the case file's [engine] table.
+struct EngineSettings {
+  Precision precision = Precision::float32;
+  double skin = 0.08;              ///< list skin / mean diameter [-]
+  double hold_tolerance = 1e-3;    ///< unbalanced ratio that ends a hold [-]
+  double pressure_floor = 100.0;   ///< ratios use max(p, floor) [Pa]
+  double overlap_limit = 0.15;     ///< overlap / (r_i + r_j) at which an RVE is given up [-]
+  int look_interval = 16;          ///< steps between looks at stress and unbalanced force
+  int list_interval = 8;           ///< steps between looks at displacements
+};
+
+/// Given motion of one RVE: F_rel reached in `strain_steps` equal steps, then at most `hold_cap` steps of rest.
+struct StrainRequest {
+  Mat2 f_rel = identity2;
+  int strain_steps = 0;
+  int hold_cap = 0;
+};
+
+/// One axis of a stress-controlled cell.
+struct ServoAxis {
+  bool stress_controlled = true;
+  double target = 0;  ///< stress, tension positive [Pa], or rate per step [-] when not stress controlled
+};
+
+/// Rectangular cell whose axes follow a stress (PI control) or a rate.
+struct ServoRequest {
+  ServoAxis x, y;
+  double max_rate = 1e-5;        ///< largest |strain| per step [-]
+  double stress_tolerance = 1e-3;///< |sigma - target| / max(|target|, floor) that counts as reached [-]
+  int max_steps = 100000;        ///< ends as step_limit
+  int settle_steps = 200;        ///< steps that stress and unbalanced ratio must stay within tolerance
+};
+
+}  // namespace voussoir::kernels
