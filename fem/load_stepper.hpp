@@ -68,8 +68,9 @@ struct StepCallbacks {
                                       const std::vector<double>& targets, const StepOptions& options,
                                       const StepCallbacks& callbacks = {});
 
-/// Parameters from `first` to 1 that grow by `ratio` until their difference reaches `uniform`, then evenly: gravity's load
-/// factors (method: base stress x 1.5, then steps of 0.05).
-[[nodiscard]] std::vector<double> geometric_targets(double first, double ratio, double uniform);
+/// Load factors from 0 to 1 whose carried stress start + lambda grows by `ratio` from one to the next until the step
+/// reaches `largest_step`, evenly after. Gravity: start = surcharge / (unit weight * height), ratio 1.5, largest_step 0.05.
+/// Throws std::invalid_argument.
+[[nodiscard]] std::vector<double> geometric_targets(double start, double ratio, double largest_step);
 
 }  // namespace voussoir::fem

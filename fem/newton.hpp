@@ -52,7 +52,7 @@ struct NewtonReport {
   double external_norm = 0;                ///< |f_ext| [N/m]
   double reaction_norm = 0;                ///< |reactions| [N/m]
   double increment_norm = 0;               ///< |Du| [m]
-  double largest_nodal_ratio = 0;          ///< max over nodes of |R_i| / sum of |element forces| at the node [-]
+  double largest_nodal_ratio = 0;          ///< max over nodes of |R_i| / (sum of |element forces| + |f_ext|) there [-]
   std::size_t work = 0;                    ///< sum of BatchReport::work
   BatchReport material;                    ///< of the last evaluation
 };
@@ -61,7 +61,7 @@ struct NewtonReport {
 struct IncrementLoad {
   Eigen::VectorXd external_force;  ///< at the end of the increment, n_dofs [N/m]
   Constraints prescribed;          ///< displacement increments [m]
-  double predictor_ratio = 0;      ///< first iterate = ratio * last increment (+ elastic lift); 0: elastic from rest
+  double predictor_ratio = 0;      ///< first iterate: ratio * last increment; 0: elastic from the committed state
   double reference_force = 0;      ///< see the convergence definition, e.g. the norm of a stage's final load [N/m]
 };
 

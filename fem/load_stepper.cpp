@@ -1,0 +1,129 @@
+#include "fem/load_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace voussoir::fem {
+
+namespace {
+
+void require(bool holds, const char* sentence) {
+  if (!holds) throw std::invalid_argument(std::string("load stepper: ") + sentence);
+}
+
+void check(const MeshState& state, const LoadPath& path, const std::vector<double>& targets, const StepOptions& o) {
+  require(static_cast<bool>(path.external_force) && static_cast<bool>(path.prescribed_increment),
+          "the load path lacks a function");
+  require(o.cut > 0 && o.cut < 1, "cut must be between 0 and 1");
+  require(o.growth >= 1, "growth must be at least 1");
+  require(o.smallest > 0 && o.smallest <= 1, "smallest must be in (0, 1]");
+  double previous = state.start;
+  for (const double target : targets) {
+    require(std::isfinite(target) && target > previous, "the targets must be finite and increase from the stage's start");
+    previous = target;
+  }
+}
+
+/// Where the next attempt ends: the target, or as far as the limit lets; a rest shorter than a quarter of a step is
+/// shared evenly over two, as a sliver would spoil the predictor after it.
+double attempt_end(const MeshState& state, double target) {
+  const double rest = target - state.parameter;
+  if (state.step_limit == 0 || rest <= state.step_limit) return target;
+  return state.parameter + (rest < 1.25 * state.step_limit ? 0.5 * rest : state.step_limit);
+}
+
+IncrementLoad load_between(const LoadPath& path, const MeshState& state, double to, bool use_predictor) {
+  constexpr double largest_ratio = 2;  // beyond it, extrapolation is worse than the elastic start
+  IncrementLoad load{path.external_force(to), path.prescribed_increment(state.parameter, to), 0, path.reference_force};
+  if (use_predictor && state.last_step > 0) {
+    const double ratio = (to - state.parameter) / state.last_step;
+    if (ratio <= largest_ratio) load.predictor_ratio = ratio;
+  }
+  return load;
+}
+
+std::string describe(const NewtonReport& newton, double from, double to) {
+  std::ostringstream text;
+  text.precision(10);
+  text << to_string(newton.status) << " in the increment from " << from << " to " << to << " (residual "
+       << newton.residual << " N/m, allowed " << newton.residual_bound << " N/m, " << newton.iterations << " iterations)";
+  if (!newton.material.message.empty()) text << ": " << newton.material.message;
+  return text.str();
+}
+
+/// Walks to one target; `nominal` is the distance from the target before it. True: reached, go on.
+bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& state, const LoadPath& path,
+             const StepOptions& options, const StepCallbacks& callbacks, StepReport& report) {
+  while (state.parameter < target) {
+    const double from = state.parameter;
+    const double to = attempt_end(state, target);
+    const IncrementLoad load = load_between(path, state, to, options.use_predictor);
+    Increment increment;
+    report.last = solver.solve_increment(state, load, increment);
+    report.work += report.last.work;
+    if (report.last.status != NewtonStatus::converged) {
+      ++report.cuts;
+      if (callbacks.on_failed) callbacks.on_failed({from, to, report.last});
+      if ((to - from) * options.cut < options.smallest * nominal) {
+        report.status = StepStatus::gave_up;
+        report.message = describe(report.last, from, to);
+        return false;
+      }
+      state.step_limit = (to - from) * options.cut;
+      continue;
+    }
+    solver.commit(state, increment);
+    ++report.increments;
+    state.parameter = to;
+    state.last_step = to - from;
+    state.step_limit *= options.growth;
+    if (state.step_limit >= nominal) state.step_limit = 0;
+    if (callbacks.on_converged &&
+        !callbacks.on_converged({from, to, to == target, report.last, increment, state})) {
+      report.status = StepStatus::stopped;
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+StepReport advance_load(NewtonSolver& solver, MeshState& state, const LoadPath& path,
+                        const std::vector<double>& targets, const StepOptions& options,
+                        const StepCallbacks& callbacks) {
+  check(state, path, targets, options);
+  StepReport report;
+  double previous = state.start;
+  for (const double target : targets) {
+    if (!walk_to(target, target - previous, solver, state, path, options, callbacks, report)) break;
+    previous = target;
+  }
+  return report;
+}
+
+std::vector<double> geometric_targets(double start, double ratio, double largest_step) {
+  require(start > 0 && std::isfinite(start), "geometric targets: start must be positive");
+  require(ratio > 1 && std::isfinite(ratio), "geometric targets: ratio must be above 1");
+  require(largest_step > 1e-6 && largest_step <= 1, "geometric targets: largest_step must be in (1e-6, 1]");
+  std::vector<double> targets;
+  double reached = 0;
+  for (double carried = start * ratio; carried - start < 1 && carried - start - reached < largest_step; carried *= ratio)
+    targets.push_back(reached = carried - start);
+  const int uniform = std::max(1, static_cast<int>(std::ceil((1 - reached) / largest_step - 1e-9)));
+  for (int k = 1; k <= uniform; ++k) targets.push_back(k == uniform ? 1.0 : reached + (1 - reached) * k / uniform);
+  return targets;
+}
+
+const char* to_string(StepStatus status) {
+  switch (status) {
+    case StepStatus::finished: return "finished";
+    case StepStatus::stopped: return "stopped";
+    case StepStatus::gave_up: return "gave_up";
+  }
+  return "unknown";
+}
+
+}  // namespace voussoir::fem

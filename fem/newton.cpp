@@ -1,0 +1,277 @@
+#include "fem/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <optional>
+#include <stdexcept>
+
+#include "fem/anderson.hpp"
+
+namespace voussoir::fem {
+
+namespace {
+
+using Failure = std::optional<NewtonStatus>;  ///< empty: all is well
+
+void check(const NewtonOptions& o) {
+  const auto require = [](bool holds, const char* sentence) {
+    if (!holds) throw std::invalid_argument(std::string("newton: ") + sentence);
+  };
+  require(o.tolerance > 0 && o.displacement_tolerance > 0, "the tolerances must be positive");
+  require(o.length_tolerance >= 0, "the length tolerance must not be negative");
+  require(o.max_iterations >= 1 && o.refactor_every >= 1, "max_iterations and refactor_every must be at least 1");
+  require(o.initial_tangent_share >= 0, "the initial tangent's share must not be negative");
+  require(o.anderson_depth >= 0 && o.anderson_condition > 1, "Anderson's depth must be >= 0, its condition > 1");
+  require(o.growth_limit > 1 && o.max_halvings >= 0, "growth_limit must be > 1, max_halvings >= 0");
+}
+
+}  // namespace
+
+/// One call of solve_increment: its iterate, its residual and its report.
+struct NewtonSolver::Workspace {
+  NewtonSolver& solver;
+  const MeshState& state;
+  const IncrementLoad& load;
+  Increment& increment;
+  NewtonReport report{};
+  std::vector<char> constrained{};
+  std::vector<Gradient> displacement_gradient{};
+  Eigen::VectorXd residual{};  ///< zero at constrained dofs
+  AndersonHistory history{solver.options_.anderson_depth, solver.options_.anderson_condition};
+  Eigen::VectorXd step{};
+
+  Failure prepare();
+  Failure predict();
+  Failure take_step();
+  Failure refactor();
+  Failure find_step();
+  Failure evaluate();
+  void form_residual();
+  [[nodiscard]] bool converged() const;
+  NewtonReport stop(NewtonStatus status);
+};
+
+NewtonReport NewtonSolver::solve_increment(const MeshState& state, const IncrementLoad& load, Increment& increment) {
+  Workspace work{.solver = *this, .state = state, .load = load, .increment = increment};
+  if (const Failure failure = work.prepare()) return work.stop(*failure);  // geometry, constraints
+  material_.begin_increment();
+  if (const Failure failure = work.predict()) return work.stop(*failure);  // first step
+  for (int iteration = 1;; ++iteration) {
+    work.report.iterations = iteration;
+    if (const Failure failure = work.take_step()) return work.stop(*failure);  // gradients, material, residual
+    if ((iteration - 1) % options_.refactor_every == 0)
+      if (const Failure failure = work.refactor()) return work.stop(*failure);  // assemble, factorise
+    if (const Failure failure = work.find_step()) return work.stop(*failure);   // solve, accelerate
+    if (on_iterate) on_iterate({iteration, work.report.residual, work.report.residual_bound, work.report.material});
+    if (work.converged()) return work.stop(NewtonStatus::converged);
+    if (iteration == options_.max_iterations) return work.stop(NewtonStatus::max_iterations);
+  }
+}
+
+Failure NewtonSolver::Workspace::prepare() {
+  const Mesh& mesh = solver.mesh_;
+  if (load.external_force.size() != mesh.n_dofs()) throw std::invalid_argument("newton: external force of wrong size");
+  constrained.assign(mesh.n_dofs(), 0);
+  for (const auto& [dof, value] : load.prescribed) {
+    if (dof < 0 || dof >= mesh.n_dofs()) throw std::invalid_argument("newton: a constraint on no degree of freedom");
+    constrained[dof] = 1;
+  }
+  increment.stress.resize(mesh.n_points());
+  increment.tangent.resize(mesh.n_points());
+  increment.gradients.resize(mesh.n_points());
+  increment.external_force = load.external_force;
+  increment.displacement = Eigen::VectorXd::Zero(mesh.n_dofs());
+  increment.points = gauss_points(mesh, state.coordinates);
+  if (!(increment.points.smallest_jacobian > 0)) return NewtonStatus::inverted_element;
+  return {};
+}
+
+/// The first step: the last increment scaled, or (ratio 0) the elastic answer to the load not yet carried; either is
+/// completed by the elastic answer to what its constrained dofs lack of their prescribed values, so that no element
+/// takes the boundary's motion alone.
+Failure NewtonSolver::Workspace::predict() {
+  const Mesh& mesh = solver.mesh_;
+  solver.material_.committed(increment.stress, increment.tangent);
+  if (const Failure failure = refactor()) return failure;
+  const Eigen::VectorXd guess = load.predictor_ratio * state.last_increment;
+  Eigen::VectorXd lift = Eigen::VectorXd::Zero(mesh.n_dofs());
+  for (const auto& [dof, value] : load.prescribed) lift[dof] = value - guess[dof];
+  displacement_gradients(mesh, increment.points, lift, displacement_gradient);
+  std::vector<Stress> stress(mesh.n_points());
+  for (int i = 0; i < mesh.n_points(); ++i) {
+    stress[i] = (increment.tangent[i] + solver.options_.initial_tangent_share * state.initial_tangent[i]) *
+                strain_of(displacement_gradient[i]);
+    if (load.predictor_ratio == 0) stress[i] += increment.stress[i];
+  }
+  Eigen::VectorXd right = -internal_force(mesh, increment.points, stress).force;
+  if (load.predictor_ratio == 0) right += load.external_force;
+  for (const auto& [dof, value] : load.prescribed) right[dof] = 0;
+  step = guess + lift + solver.solver_.solve(right);
+  for (const auto& [dof, value] : load.prescribed) step[dof] = value;
+  return step.allFinite() ? Failure{} : Failure{NewtonStatus::not_finite};
+}
+
+/// Moves by `step` and evaluates there. A step that fails or makes the residual grow strongly is halved: what grew is
+/// still a valid iterate and is kept if no shorter step is better, what failed is not.
+Failure NewtonSolver::Workspace::take_step() {
+  const Eigen::VectorXd base = increment.displacement;
+  const bool first = report.iterations == 1;  // its base lacks the prescribed values: no shorter step is meaningful
+  const double before = report.residual;
+  Failure failure;
+  for (int halving = 0; halving <= (first ? 0 : solver.options_.max_halvings); ++halving) {
+    if (halving > 0) history.restart();
+    increment.displacement = base + std::ldexp(1.0, -halving) * step;
+    failure = evaluate();
+    if (failure) continue;
+    form_residual();
+    if (!std::isfinite(report.residual)) {
+      failure = NewtonStatus::not_finite;
+      continue;
+    }
+    const double limit = std::max(solver.options_.growth_limit * before, report.residual_bound);
+    if (first || report.residual <= limit) break;
+  }
+  if (failure) return failure;
+  report.residual_history.push_back(report.residual);
+  history.add(increment.displacement, residual);
+  return {};
+}
+
+/// Displacement -> F_rel - I -> stress and tangent.
+Failure NewtonSolver::Workspace::evaluate() {
+  const Mesh& mesh = solver.mesh_;
+  if (!increment.displacement.allFinite()) return NewtonStatus::not_finite;
+  displacement_gradients(mesh, increment.points, increment.displacement, displacement_gradient);
+  for (int i = 0; i < mesh.n_points(); ++i) {
+    Gradient h = displacement_gradient[i];
+    if (solver.kinematics_ == Kinematics::fixed_mesh)
+      h *= (Eigen::Matrix2d::Identity() + state.deformation[i]).inverse();
+    if (!((Eigen::Matrix2d::Identity() + h).determinant() > 0)) return NewtonStatus::inverted_element;
+    increment.gradients[i] = h;
+  }
+  report.material = solver.material_.evaluate(increment.gradients, increment.stress, increment.tangent);
+  ++report.evaluations;
+  report.work += report.material.work;
+  return report.material.usable ? Failure{} : Failure{NewtonStatus::material_failed};
+}
+
+void NewtonSolver::Workspace::form_residual() {
+  const Mesh& mesh = solver.mesh_;
+  const NewtonOptions& options = solver.options_;
+  const InternalForce internal = internal_force(mesh, increment.points, increment.stress);
+  residual = load.external_force - internal.force;
+  increment.reactions = Eigen::VectorXd::Zero(mesh.n_dofs());
+  for (const auto& [dof, value] : load.prescribed) {
+    increment.reactions[dof] = -residual[dof];
+    residual[dof] = 0;
+  }
+  report.residual = residual.norm();
+  report.external_norm = load.external_force.norm();
+  report.reaction_norm = increment.reactions.norm();
+  report.noise_floor = options.use_noise_floor
+                           ? noise_force(mesh, increment.points, constrained, report.material.stress_noise)
+                           : 0.0;
+  report.residual_bound =
+      options.tolerance * std::max({report.external_norm, report.reaction_norm, load.reference_force}) +
+      report.noise_floor;
+  report.largest_nodal_ratio = 0;
+  for (int node = 0; node < mesh.n_nodes(); ++node) {
+    const double scale = internal.magnitude[node] + load.external_force.segment<2>(2 * node).norm();
+    const double force = residual.segment<2>(2 * node).norm();
+    if (force > 0) report.largest_nodal_ratio = std::max(report.largest_nodal_ratio, force / scale);
+  }
+}
+
+/// K from the present tangents plus a share of the initial ones (it steers the iteration, not the answer); where that is
+/// not positive definite, ten and a hundred times the share.
+Failure NewtonSolver::Workspace::refactor() {
+  constexpr double smallest_share = 0.02;
+  double share = solver.options_.initial_tangent_share;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    std::vector<Tangent> tangents = increment.tangent;
+    for (std::size_t i = 0; i < tangents.size(); ++i) tangents[i] += share * state.initial_tangent[i];
+    const std::vector<double> values = solver.assembler_.assemble(increment.points, tangents, constrained);
+    if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }))
+      return NewtonStatus::not_finite;
+    const FactorStatus status = solver.solver_.factorise(values);
+    ++report.factorisations;
+    if (status == FactorStatus::ok) return {};
+    if (status == FactorStatus::out_of_memory) throw std::bad_alloc();
+    share = 10 * std::max(share, smallest_share);
+  }
+  return NewtonStatus::not_positive_definite;
+}
+
+Failure NewtonSolver::Workspace::find_step() {
+  const AndersonHistory::Step next = history.step(solver.solver_);
+  if (!next.accelerated.allFinite()) return NewtonStatus::not_finite;
+  report.correction_history.push_back(next.newton.norm());
+  report.increment_norm = increment.displacement.norm();
+  step = next.accelerated;
+  return {};
+}
+
+bool NewtonSolver::Workspace::converged() const {
+  const NewtonOptions& options = solver.options_;
+  const double correction = report.correction_history.back();
+  return report.residual <= report.residual_bound &&
+         (correction <= options.displacement_tolerance * report.increment_norm || correction <= options.length_tolerance);
+}
+
+NewtonReport NewtonSolver::Workspace::stop(NewtonStatus status) {
+  report.status = status;
+  return std::move(report);
+}
+
+NewtonSolver::NewtonSolver(const Mesh& mesh, MaterialBatch& material, Kinematics kinematics,
+                           const NewtonOptions& options)
+    : mesh_(mesh),
+      material_(material),
+      kinematics_(kinematics),
+      options_(options),
+      assembler_(mesh),
+      solver_(assembler_.pattern()) {
+  check(options);
+  if (material.size() != static_cast<std::size_t>(mesh.n_points()))
+    throw std::invalid_argument("newton: the material has " + std::to_string(material.size()) + " points, the mesh " +
+                                std::to_string(mesh.n_points()));
+}
+
+void NewtonSolver::commit(MeshState& state, const Increment& increment) {
+  material_.commit();
+  state.displacement += increment.displacement;
+  state.last_increment = increment.displacement;
+  if (kinematics_ == Kinematics::updated_lagrangian)
+    state.coordinates.reshaped() += increment.displacement;
+  for (std::size_t i = 0; i < state.deformation.size(); ++i) {
+    const Gradient& h = increment.gradients[i];
+    state.deformation[i] += h + h * state.deformation[i];  // F_rel F_n - I without cancellation
+  }
+}
+
+double noise_force(const Mesh& mesh, const GaussPoints& points, const std::vector<char>& constrained,
+                   double stress_noise) {
+  double sum = 0;
+  for (int i = 0; i < mesh.n_points(); ++i)
+    for (int a = 0; a < 8; ++a) {
+      const int node = mesh.elements[i / 4][a];
+      const int free_dofs = 2 - (constrained[2 * node] != 0) - (constrained[2 * node + 1] != 0);
+      sum += points.volumes[i] * points.volumes[i] * free_dofs * points.gradients[i].row(a).squaredNorm();
+    }
+  return stress_noise * std::sqrt(sum);
+}
+
+const char* to_string(NewtonStatus status) {
+  switch (status) {
+    case NewtonStatus::converged: return "converged";
+    case NewtonStatus::max_iterations: return "max_iterations";
+    case NewtonStatus::material_failed: return "material_failed";
+    case NewtonStatus::not_positive_definite: return "not_positive_definite";
+    case NewtonStatus::inverted_element: return "inverted_element";
+    case NewtonStatus::not_finite: return "not_finite";
+  }
+  return "unknown";
+}
+
+}  // namespace voussoir::fem
