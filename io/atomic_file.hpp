@@ -2,6 +2,7 @@
 /// Files that exist completely or not at all: write under `temporary_name`, then `publish`.
 
 #include <filesystem>
+#include <string>
 
 namespace voussoir::io {
 

@@ -13,16 +13,16 @@ namespace voussoir::io {
 
 /// One periodic packing. Contact histories are kept as the caller names them: history[contact * names.size() + k].
 struct Packing {
-  std::vector<double> radius;       ///< [m]
-  std::vector<double> x, y;         ///< centres [m]
-  std::vector<double> rotation;     ///< [rad]
-  std::array<double, 4> cell = {};  ///< [a_x b_x; a_y b_y] row by row, cell vectors are columns [m]
-  double thickness = 0.1;           ///< out-of-plane [m]
-  std::vector<std::int64_t> contact_i, contact_j;
-  std::vector<std::string> history_names;
-  std::vector<double> history;                ///< (contact, history_names)
-  std::map<std::string, double> numbers;      ///< void_ratio [-], pressure [Pa], seed, ... (SI)
-  std::map<std::string, std::string> labels;  ///< recipe, recipe_fingerprint, soil, ...
+  std::vector<double> radius = {};     ///< [m]
+  std::vector<double> x = {}, y = {};  ///< centres [m]
+  std::vector<double> rotation = {};   ///< [rad]
+  std::array<double, 4> cell = {};     ///< [a_x b_x; a_y b_y] row by row, cell vectors are columns [m]
+  double thickness = 0.1;              ///< out-of-plane [m]
+  std::vector<std::int64_t> contact_i = {}, contact_j = {};
+  std::vector<std::string> history_names = {};
+  std::vector<double> history = {};                ///< (contact, history_names)
+  std::map<std::string, double> numbers = {};      ///< void_ratio [-], pressure [Pa], seed, ... (SI)
+  std::map<std::string, std::string> labels = {};  ///< recipe, recipe_fingerprint, soil, ...
 
   [[nodiscard]] std::size_t grains() const { return radius.size(); }
   [[nodiscard]] std::size_t contacts() const { return contact_i.size(); }

@@ -49,6 +49,6 @@ struct UnitError : std::runtime_error {
 [[nodiscard]] double parse_quantity(std::string_view text, Dimension expected);
 
 /// An SI value as a user would write it ("5 mm"); parse_quantity gives back the same bits.
-[[nodiscard]] std::string format_quantity(double si_value, Dimension dimension);
+[[nodiscard]] std::string format_quantity(double in_si, Dimension dimension);
 
 }  // namespace voussoir::io

@@ -1,0 +1,274 @@
+#include "io/case_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/case_node.hpp"
+
+namespace voussoir::io {
+
+namespace {
+
+using Kind = CaseNode::Kind;
+
+std::string one_line(const std::string& place, const std::string& key, const std::string& sentence) {
+  const std::string separator = place == "--set" ? " " : ": ";
+  return key.empty() ? fmt::format("{}: {}", place, sentence)
+                     : fmt::format("{}{}{}: {}", place, separator, key, sentence);
+}
+
+[[noreturn]] void fail(const CaseNode& node, const std::string& sentence) {
+  throw InputError(node.place, node.key, sentence);
+}
+
+void expect(const CaseNode& node, Kind kind) {
+  if (node.kind != kind) {
+    fail(node, fmt::format("must be {}, is {}", kind_name(kind), kind_name(node.kind)));
+  }
+}
+
+/// The quantity as the user wrote it, to be parsed like a quantity in quotes.
+std::string written_quantity(const CaseNode& node, Dimension dimension) {
+  switch (node.kind) {
+    case Kind::text:
+      return std::get<std::string>(node.value);
+    case Kind::integer:
+      return fmt::format("{}", std::get<std::int64_t>(node.value));
+    case Kind::number:
+      return fmt::format("{}", std::get<double>(node.value));
+    default:
+      break;
+  }
+  const bool plain = dimension == Dimension::none;
+  fail(node,
+       fmt::format("must be {}, is {}",
+                   plain ? "a number" : "a quantity in quotes, such as \"1 " + std::string(si_unit(dimension)) + "\"",
+                   kind_name(node.kind)));
+}
+
+double checked_quantity(const CaseNode& node, const std::string& written, Dimension dimension,
+                        const QuantityRule& rule) {
+  double value = 0;
+  try {
+    value = parse_quantity(written, dimension);
+  } catch (const UnitError& error) {
+    fail(node, error.what());
+  }
+  if (rule.positive && !(value > 0)) {
+    fail(node, fmt::format("must be positive, is {}", written));
+  }
+  if (rule.at_least && !(value >= parse_quantity(*rule.at_least, dimension))) {
+    fail(node, fmt::format("must be at least {}, is {}", *rule.at_least, written));
+  }
+  if (rule.at_most && !(value <= parse_quantity(*rule.at_most, dimension))) {
+    fail(node, fmt::format("must be at most {}, is {}", *rule.at_most, written));
+  }
+  return value;
+}
+
+/// Reads one quantity and notes it as TOML; `fallback` stands in for a node that the user did not write.
+double read_quantity(CaseNode& node, Dimension dimension, const QuantityRule& rule,
+                     const std::optional<std::string>& fallback) {
+  const std::string written = node.written ? written_quantity(node, dimension) : fallback.value();
+  const double value = checked_quantity(node, written, dimension, rule);
+  const bool is_number = written.find_first_not_of("0123456789+-.eE") == std::string::npos;
+  node.resolved = is_number ? written : toml_text(written);
+  return value;
+}
+
+std::int64_t read_integer(CaseNode& node, const IntegerRule& rule, const std::optional<std::int64_t>& fallback) {
+  if (node.written) {
+    expect(node, Kind::integer);
+  }
+  const std::int64_t value = node.written ? std::get<std::int64_t>(node.value) : fallback.value();
+  if (rule.at_least && value < *rule.at_least) {
+    fail(node, fmt::format("must be at least {}, is {}", *rule.at_least, value));
+  }
+  if (rule.at_most && value > *rule.at_most) {
+    fail(node, fmt::format("must be at most {}, is {}", *rule.at_most, value));
+  }
+  node.resolved = fmt::format("{}", value);
+  return value;
+}
+
+std::string read_text(CaseNode& node, const std::optional<std::string>& fallback) {
+  if (node.written) {
+    expect(node, Kind::text);
+  }
+  const std::string value = node.written ? std::get<std::string>(node.value) : fallback.value();
+  node.resolved = toml_text(value);
+  return value;
+}
+
+/// Reads an array entry by entry: read_one(entry, default of this entry) -> value.
+template <class T, class Default, class ReadOne>
+std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Default>>& fallback, ReadOne read_one) {
+  if (node.written) {
+    expect(node, Kind::array);
+  } else if (node.children.empty()) {
+    for (std::size_t i = 0; i < fallback->size(); ++i) {
+      node.add(fmt::format("[{}]", i), node.place);
+    }
+  }
+  std::vector<T> values;
+  std::vector<std::string> texts;
+  for (const auto& entry : node.children) {
+    entry->read = true;
+    values.push_back(read_one(*entry, node.written ? std::optional<Default>{} : fallback->at(values.size())));
+    texts.push_back(entry->resolved);
+  }
+  node.resolved = fmt::format("[{}]", fmt::join(texts, ", "));
+  return values;
+}
+
+}  // namespace
+
+InputError::InputError(const std::string& place, const std::string& key, const std::string& sentence)
+    : std::runtime_error(one_line(place, key, sentence)) {}
+
+CaseNode* Table::find(std::string_view key) const {
+  CaseNode* node = node_->find(key);
+  return node != nullptr && node->written ? node : nullptr;
+}
+
+std::string Table::full_key(std::string_view key) const {
+  return node_->key.empty() ? std::string(key) : fmt::format("{}.{}", node_->key, key);
+}
+
+CaseNode& Table::take(std::string_view key, bool has_fallback) const {
+  CaseNode* node = node_->find(key);
+  if (node == nullptr) {
+    if (!has_fallback) {
+      throw error(key, "is missing");
+    }
+    node = &node_->add(std::string(key), node_->place);
+  }
+  node->read = true;
+  return *node;
+}
+
+bool Table::has(std::string_view key) const {
+  return find(key) != nullptr;
+}
+
+double Table::quantity(std::string_view key, Dimension dimension, const QuantityRule& rule) const {
+  return read_quantity(take(key, rule.fallback.has_value()), dimension, rule, rule.fallback);
+}
+
+double Table::number(std::string_view key, const QuantityRule& rule) const {
+  return quantity(key, Dimension::none, rule);
+}
+
+std::int64_t Table::integer(std::string_view key, const IntegerRule& rule) const {
+  return read_integer(take(key, rule.fallback.has_value()), rule, rule.fallback);
+}
+
+bool Table::boolean(std::string_view key, std::optional<bool> fallback) const {
+  CaseNode& node = take(key, fallback.has_value());
+  if (node.written) {
+    expect(node, Kind::boolean);
+  }
+  const bool value = node.written ? std::get<bool>(node.value) : fallback.value();
+  node.resolved = value ? "true" : "false";
+  return value;
+}
+
+std::string Table::text(std::string_view key, std::optional<std::string> fallback) const {
+  return read_text(take(key, fallback.has_value()), fallback);
+}
+
+std::string Table::choice(std::string_view key, const std::vector<std::string>& choices,
+                          std::optional<std::string> fallback) const {
+  CaseNode& node = take(key, fallback.has_value());
+  std::string value = read_text(node, fallback);
+  if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
+    fail(node, fmt::format("must be one of {}, is {}", fmt::join(choices, ", "), value));
+  }
+  return value;
+}
+
+std::filesystem::path Table::path(std::string_view key) const {
+  CaseNode& node = take(key, false);
+  const auto path = state_->path.parent_path() / read_text(node, {});
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    fail(node, fmt::format("{} does not exist", path.string()));
+  }
+  return path;
+}
+
+std::vector<double> Table::quantities(std::string_view key, Dimension dimension, const QuantityRule& rule,
+                                      std::optional<std::vector<std::string>> fallback) const {
+  return read_array<double>(take(key, fallback.has_value()), fallback,
+                            [&](CaseNode& entry, const auto& entry_fallback) {
+                              return read_quantity(entry, dimension, rule, entry_fallback);
+                            });
+}
+
+std::vector<std::int64_t> Table::integers(std::string_view key, const IntegerRule& rule,
+                                          std::optional<std::vector<std::int64_t>> fallback) const {
+  return read_array<std::int64_t>(
+      take(key, fallback.has_value()), fallback,
+      [&](CaseNode& entry, const auto& entry_fallback) { return read_integer(entry, rule, entry_fallback); });
+}
+
+std::vector<std::string> Table::texts(std::string_view key, std::optional<std::vector<std::string>> fallback) const {
+  return read_array<std::string>(take(key, fallback.has_value()), fallback, read_text);
+}
+
+Table Table::table(std::string_view key) const {
+  CaseNode& node = take(key, true);
+  if (node.written) {
+    expect(node, Kind::table);
+  }
+  node.kind = Kind::table;
+  return {state_, node};
+}
+
+std::vector<Table> Table::tables(std::string_view key) const {
+  std::vector<Table> all;
+  CaseNode* node = find(key);
+  if (node == nullptr) {
+    return all;
+  }
+  node->read = true;
+  expect(*node, Kind::array);
+  for (const auto& entry : node->children) {
+    expect(*entry, Kind::table);
+    entry->read = true;
+    all.push_back(Table(state_, *entry));
+  }
+  return all;
+}
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::string> names;
+  for (const auto& child : node_->children) {
+    if (child->written) {
+      names.push_back(child->name);
+    }
+  }
+  return names;
+}
+
+InputError Table::error(std::string_view key, const std::string& sentence) const {
+  const CaseNode* node = node_->find(key);
+  return {node != nullptr ? node->place : node_->place, full_key(key), sentence};
+}
+
+CaseFile CaseFile::load(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
+  return CaseFile(parse_case(path, overrides));
+}
+
+Table CaseFile::root() const {
+  return {state_, state_->root};
+}
+
+const std::filesystem::path& CaseFile::path() const {
+  return state_->path;
+}
+
+}  // namespace voussoir::io

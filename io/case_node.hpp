@@ -1,0 +1,46 @@
+#pragma once
+/// The tree behind a case file: what the user wrote, where, and what was made of it. Private to io.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace voussoir::io {
+
+struct CaseNode {
+  enum class Kind { absent, boolean, integer, number, text, array, table, other };
+
+  std::string name;   ///< last part of the key; "[2]" in an array
+  std::string key;    ///< full key, e.g. "stage[2].steps"
+  std::string place;  ///< "case.toml:12", "--set", or the place of the table that lacks the key
+  Kind kind = Kind::absent;
+  std::variant<std::monostate, bool, std::int64_t, double, std::string> value = {};
+  std::vector<std::unique_ptr<CaseNode>> children = {};
+  bool written = false;       ///< by the user; else a default took its place
+  bool read = false;          ///< the program knows this key
+  std::string resolved = {};  ///< value as TOML, once read
+
+  [[nodiscard]] CaseNode* find(std::string_view child_name);
+  CaseNode& add(std::string child_name, std::string child_place);
+};
+
+struct CaseState {
+  std::filesystem::path path;
+  CaseNode root;
+};
+
+/// Reads the file and applies the overrides. Throws InputError.
+[[nodiscard]] std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path,
+                                                    const std::vector<std::string>& overrides);
+
+/// "a number", "a table", ... for messages.
+[[nodiscard]] std::string_view kind_name(CaseNode::Kind kind);
+
+/// Text in quotes, escaped as TOML wants it.
+[[nodiscard]] std::string toml_text(std::string_view text);
+
+}  // namespace voussoir::io

@@ -1,0 +1,150 @@
+/// What a case file says after it was read: unknown keys, the resolved case, its fingerprint.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <utility>
+
+#include "io/case_file.hpp"
+#include "io/case_node.hpp"
+#include "io/hash.hpp"
+
+namespace voussoir::io {
+
+namespace {
+
+using Kind = CaseNode::Kind;
+
+/// Levenshtein distance.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+void collect_known(const CaseNode& node, std::vector<const CaseNode*>& known) {
+  for (const auto& child : node.children) {
+    if (child->read) {
+      known.push_back(child.get());
+      collect_known(*child, known);
+    }
+  }
+}
+
+/// A known key with nearly this name in the same table, or with this very name in another one; empty when there is none.
+std::string hint(const CaseNode& root, const CaseNode& parent, const CaseNode& unknown) {
+  std::size_t best = unknown.name.size() / 3 + 1;
+  std::string name;
+  for (const auto& sibling : parent.children) {
+    const std::size_t distance = edit_distance(sibling->name, unknown.name);
+    if (sibling->read && distance <= best && sibling->name.front() != '[') {
+      best = distance;
+      name = sibling->name;
+    }
+  }
+  if (name.empty()) {
+    std::vector<const CaseNode*> known;
+    collect_known(root, known);
+    const auto same =
+        std::find_if(known.begin(), known.end(), [&](const CaseNode* node) { return node->name == unknown.name; });
+    name = same == known.end() ? "" : (*same)->key;
+  }
+  return name.empty() ? "" : fmt::format("; did you mean \"{}\"?", name);
+}
+
+void refuse_unknown(const CaseNode& root, const CaseNode& node) {
+  for (const auto& child : node.children) {
+    if (!child->read) {
+      throw InputError(child->place, child->key, "unknown key" + hint(root, node, *child));
+    }
+    if (child->kind == Kind::table || child->kind == Kind::array) {
+      refuse_unknown(root, *child);
+    }
+  }
+}
+
+bool is_array_of_tables(const CaseNode& node) {
+  return node.kind == Kind::array && !node.children.empty() && node.children.front()->kind == Kind::table;
+}
+
+std::string_view origin_comment(const CaseNode& node) {
+  if (!node.written) {
+    return "  # default";
+  }
+  return node.place == "--set" ? "  # --set" : "";
+}
+
+/// Bare where TOML allows it.
+std::string toml_key(const std::string& name) {
+  const bool bare =
+      std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+  return bare && !name.empty() ? name : toml_text(name);
+}
+
+void emit(const CaseNode& node, const std::string& header, std::string& out) {
+  for (const auto& child : node.children) {
+    if (!child->resolved.empty()) {
+      out += fmt::format("{} = {}{}\n", toml_key(child->name), child->resolved, origin_comment(*child));
+    }
+  }
+  for (const auto& child : node.children) {
+    const std::string child_header = header.empty() ? toml_key(child->name) : header + "." + toml_key(child->name);
+    if (child->kind == Kind::table && child->read) {
+      out += fmt::format("\n[{}]\n", child_header);
+      emit(*child, child_header, out);
+    } else if (is_array_of_tables(*child)) {
+      for (const auto& entry : child->children) {
+        out += fmt::format("\n[[{}]]\n", child_header);
+        emit(*entry, child_header, out);
+      }
+    }
+  }
+}
+
+bool is_within(const std::string& key, const std::string& table) {
+  return key.starts_with(table) && (key.size() == table.size() || key[table.size()] == '.' || key[table.size()] == '[');
+}
+
+void collect_resolved(const CaseNode& node, std::span<const std::string> without, std::vector<std::string>& lines) {
+  for (const auto& child : node.children) {
+    if (std::any_of(without.begin(), without.end(), [&](const auto& table) { return is_within(child->key, table); })) {
+      continue;
+    }
+    if (!child->resolved.empty()) {
+      lines.push_back(fmt::format("{}={}\n", child->key, child->resolved));
+    } else {
+      collect_resolved(*child, without, lines);
+    }
+  }
+}
+
+}  // namespace
+
+void CaseFile::finish() const {
+  refuse_unknown(state_->root, state_->root);
+}
+
+std::string CaseFile::resolved() const {
+  std::string out;
+  emit(state_->root, "", out);
+  return out;
+}
+
+std::string CaseFile::fingerprint(std::span<const std::string> without) const {
+  std::vector<std::string> lines;
+  collect_resolved(state_->root, without, lines);
+  std::sort(lines.begin(), lines.end());
+  return fingerprint_of(std::accumulate(lines.begin(), lines.end(), std::string{}));
+}
+
+}  // namespace voussoir::io

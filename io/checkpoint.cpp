@@ -1,0 +1,253 @@
+#include "io/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+
+#include "io/atomic_file.hpp"
+#include "io/hash.hpp"
+
+namespace voussoir::io {
+
+namespace {
+
+constexpr std::string_view magic = "voussoir checkpoint 1";
+namespace fs = std::filesystem;
+
+template <class T>
+std::vector<std::byte> bytes_of(std::span<const T> values) {
+  const auto bytes = std::as_bytes(values);
+  return {bytes.begin(), bytes.end()};
+}
+
+template <class T>
+std::vector<T> values_of(const std::string& name, const std::vector<std::byte>& bytes) {
+  if (bytes.size() % sizeof(T) != 0) {
+    throw std::runtime_error(
+        fmt::format("checkpoint: \"{}\" has {} bytes, no multiple of {}", name, bytes.size(), sizeof(T)));
+  }
+  std::vector<T> values(bytes.size() / sizeof(T));
+  if (!bytes.empty()) {
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+  }
+  return values;
+}
+
+/// Writes pieces and keeps the hash of all of them.
+class HashedWriter {
+ public:
+  explicit HashedWriter(const fs::path& path) : file_(path, std::ios::binary) {}
+
+  void bytes(std::span<const std::byte> piece) {
+    hash_ = fnv1a(piece, hash_);
+    file_.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+  }
+  void integer(std::uint64_t value) { bytes(std::as_bytes(std::span(&value, 1))); }
+  void text(std::string_view value) {
+    integer(value.size());
+    bytes(std::as_bytes(std::span(value.data(), value.size())));
+  }
+  /// Ends the file with the hash; false when anything could not be written.
+  bool finish() {
+    integer(hash_);
+    file_.close();
+    return !file_.fail();
+  }
+
+ private:
+  std::ofstream file_;
+  std::uint64_t hash_ = fnv_start;
+};
+
+/// Takes pieces from bytes whose hash was checked; a length beyond the end still throws.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+  std::span<const std::byte> take(std::uint64_t size) {
+    if (size > rest_.size()) {
+      throw std::runtime_error("ends too early");
+    }
+    const auto piece = rest_.first(size);
+    rest_ = rest_.subspan(size);
+    return piece;
+  }
+  std::uint64_t integer() {
+    std::uint64_t value = 0;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  std::string text() {
+    const auto piece = take(integer());
+    return {reinterpret_cast<const char*>(piece.data()), piece.size()};
+  }
+
+ private:
+  std::span<const std::byte> rest_;
+};
+
+struct Content {
+  std::string fingerprint;
+  Checkpoint checkpoint;
+};
+
+/// Throws std::runtime_error with a reason when the file is damaged.
+Content read(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file.tellg();
+  if (!file || size < static_cast<std::streamoff>(sizeof(std::uint64_t))) {
+    throw std::runtime_error("is empty or cannot be read");
+  }
+  std::vector<std::byte> all(static_cast<std::size_t>(size));
+  file.seekg(0).read(reinterpret_cast<char*>(all.data()), size);
+  if (!file) {
+    throw std::runtime_error("cannot be read");
+  }
+  const auto body = std::span<const std::byte>(all).first(all.size() - sizeof(std::uint64_t));
+  if (Reader(std::span<const std::byte>(all).last(sizeof(std::uint64_t))).integer() != fnv1a(body)) {
+    throw std::runtime_error("is damaged (checksum)");
+  }
+  Reader reader(body);
+  if (reader.text() != magic) {
+    throw std::runtime_error("is no checkpoint of this version");
+  }
+  Content content{.fingerprint = reader.text(), .checkpoint = {}};
+  for (std::uint64_t left = reader.integer(); left > 0; --left) {
+    const std::string name = reader.text();
+    const auto blob = reader.take(reader.integer());
+    content.checkpoint.put(name, {blob.begin(), blob.end()});
+  }
+  return content;
+}
+
+fs::path checkpoint_path(const fs::path& folder, int increment) {
+  return folder / fmt::format("checkpoint_{:04}.bin", increment);
+}
+
+/// All checkpoints of a folder, oldest first, by number.
+std::map<int, fs::path> list(const fs::path& folder) {
+  std::map<int, fs::path> found;
+  if (!fs::is_directory(folder)) {
+    return found;
+  }
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    int number = 0;
+    if (std::sscanf(name.c_str(), "checkpoint_%d.bin", &number) == 1 &&
+        checkpoint_path(folder, number).filename() == name) {
+      found[number] = entry.path();
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+void Checkpoint::put(const std::string& name, std::vector<std::byte> bytes) {
+  blobs_[name] = std::move(bytes);
+}
+
+void Checkpoint::put_doubles(const std::string& name, std::span<const double> values) {
+  put(name, bytes_of(values));
+}
+
+void Checkpoint::put_integers(const std::string& name, std::span<const std::int64_t> values) {
+  put(name, bytes_of(values));
+}
+
+void Checkpoint::put_text(const std::string& name, const std::string& text) {
+  put(name, bytes_of(std::span<const char>(text.data(), text.size())));
+}
+
+const std::vector<std::byte>& Checkpoint::get(const std::string& name) const {
+  const auto found = blobs_.find(name);
+  if (found == blobs_.end()) {
+    throw std::runtime_error(fmt::format("checkpoint: has no \"{}\"", name));
+  }
+  return found->second;
+}
+
+std::vector<double> Checkpoint::get_doubles(const std::string& name) const {
+  return values_of<double>(name, get(name));
+}
+
+std::vector<std::int64_t> Checkpoint::get_integers(const std::string& name) const {
+  return values_of<std::int64_t>(name, get(name));
+}
+
+std::string Checkpoint::get_text(const std::string& name) const {
+  const auto& bytes = get(name);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+CheckpointStore::CheckpointStore(std::filesystem::path folder, std::string fingerprint)
+    : folder_(std::move(folder)), fingerprint_(std::move(fingerprint)) {}
+
+void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
+  fs::create_directories(folder_);
+  const auto target = checkpoint_path(folder_, increment);
+  HashedWriter writer(temporary_name(target));
+  writer.text(magic);
+  writer.text(fingerprint_);
+  writer.integer(checkpoint.blobs().size());
+  for (const auto& [name, bytes] : checkpoint.blobs()) {
+    writer.text(name);
+    writer.integer(bytes.size());
+    writer.bytes(bytes);
+  }
+  if (!writer.finish()) {
+    fs::remove(temporary_name(target));
+    throw std::runtime_error(fmt::format("{}: cannot be written (disk full?)", target.string()));
+  }
+  publish(target);
+
+  auto present = list(folder_);
+  // Checkpoints after this one are of a run that was resumed from an earlier state: they are no longer ahead of it.
+  present.erase(present.find(increment));
+  const auto previous = present.lower_bound(increment);
+  for (auto it = present.begin(); it != present.end(); ++it) {
+    if (it->first > increment || previous == present.begin() || it != std::prev(previous)) {
+      fs::remove(it->second);
+    }
+  }
+}
+
+std::optional<CheckpointStore::Loaded> CheckpointStore::load_latest() const {
+  const auto present = list(folder_);
+  Loaded loaded;
+  for (auto it = present.rbegin(); it != present.rend(); ++it) {
+    Content content;
+    try {
+      content = read(it->second);
+    } catch (const std::exception& reason) {
+      loaded.skipped.push_back(fmt::format("{}: {}", it->second.string(), reason.what()));
+      continue;
+    }
+    if (content.fingerprint != fingerprint_) {
+      throw std::runtime_error(fmt::format("{}: belongs to another case (fingerprint {}, this case has {})",
+                                           it->second.string(), content.fingerprint, fingerprint_));
+    }
+    loaded.increment = it->first;
+    loaded.checkpoint = std::move(content.checkpoint);
+    return loaded;
+  }
+  if (!present.empty()) {
+    throw std::runtime_error(
+        fmt::format("{}: no checkpoint is readable; {}", folder_.string(), loaded.skipped.front()));
+  }
+  return std::nullopt;
+}
+
+void CheckpointStore::clear() const {
+  for (const auto& [number, path] : list(folder_)) {
+    fs::remove(path);
+  }
+  if (fs::is_directory(folder_)) {
+    remove_leftovers(folder_);
+  }
+}
+
+}  // namespace voussoir::io

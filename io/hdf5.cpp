@@ -1,0 +1,331 @@
+#include "io/hdf5.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace voussoir::io {
+
+static_assert(sizeof(hid_t) == sizeof(std::int64_t));
+
+namespace {
+
+/// Closes an HDF5 object at the end of its scope.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() {
+    if (id_ >= 0) {
+      close_(id_);
+    }
+  }
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+/// HDF5 prints its error stack by default; here the innermost entry becomes part of an exception instead.
+void be_quiet() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+std::string innermost_reason() {
+  std::string reason;
+  const auto take = [](unsigned, const H5E_error2_t* error, void* out) -> herr_t {
+    *static_cast<std::string*>(out) = error->desc != nullptr ? error->desc : "";
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take, &reason);
+  H5Eclear2(H5E_DEFAULT);
+  return reason;
+}
+
+Handle making_groups() {
+  const hid_t list = H5Pcreate(H5P_LINK_CREATE);
+  H5Pset_create_intermediate_group(list, 1);
+  return {list, H5Pclose};
+}
+
+Handle text_type(std::size_t size) {
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, size);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  return {type, H5Tclose};
+}
+
+herr_t append_name(hid_t, const char* name, void* out) {
+  static_cast<std::vector<std::string>*>(out)->emplace_back(name);
+  return 0;
+}
+
+}  // namespace
+
+Hdf5File::Hdf5File(Id file, std::filesystem::path path) : file_(file), path_(std::move(path)) {}
+
+Hdf5File::Hdf5File(Hdf5File&& other) noexcept : file_(std::exchange(other.file_, -1)), path_(std::move(other.path_)) {}
+
+Hdf5File::~Hdf5File() {
+  if (file_ >= 0) {
+    H5Fclose(file_);
+  }
+}
+
+Hdf5File::Id Hdf5File::checked(Id id, const std::string& what) const {
+  if (id < 0) {
+    throw std::runtime_error(fmt::format("{}: cannot {} ({})", path_.string(), what, innermost_reason()));
+  }
+  return id;
+}
+
+Hdf5File Hdf5File::create(const std::filesystem::path& path) {
+  be_quiet();
+  Hdf5File file(-1, path);
+  file.file_ = file.checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), "create the file");
+  return file;
+}
+
+Hdf5File Hdf5File::open(const std::filesystem::path& path) {
+  be_quiet();
+  Hdf5File file(-1, path);
+  file.file_ = file.checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open the file");
+  return file;
+}
+
+void Hdf5File::close() {
+  const Id file = std::exchange(file_, -1);
+  checked(H5Fclose(file), "finish the file");
+}
+
+void Hdf5File::write_array(const std::string& name, const void* values, std::size_t count,
+                           const std::vector<std::size_t>& shape, Id type, const std::string& unit) {
+  std::size_t expected = 1;
+  std::vector<hsize_t> extents;
+  for (const std::size_t n : shape) {
+    expected *= n;
+    extents.push_back(n);
+  }
+  if (count != expected) {
+    throw std::invalid_argument(fmt::format("{}: {} values for {} places", name, count, expected));
+  }
+  const std::string what = fmt::format("write {}", name);
+  const Handle space(checked(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), what),
+                     H5Sclose);
+  const Handle links = making_groups();
+  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), what),
+                   H5Dclose);
+  if (count > 0) {
+    checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), what);
+  }
+  set_attribute(name, "unit", unit);
+}
+
+void Hdf5File::write(const std::string& name, std::span<const double> values, const std::vector<std::size_t>& shape,
+                     const std::string& unit) {
+  write_array(name, values.data(), values.size(), shape, H5T_NATIVE_DOUBLE, unit);
+}
+
+void Hdf5File::write(const std::string& name, std::span<const std::int64_t> values,
+                     const std::vector<std::size_t>& shape, const std::string& unit) {
+  write_array(name, values.data(), values.size(), shape, H5T_NATIVE_INT64, unit);
+}
+
+void Hdf5File::write_text(const std::string& name, const std::string& text) {
+  const std::string what = fmt::format("write {}", name);
+  const Handle type = text_type(text.size() + 1);
+  const Handle space(checked(H5Screate(H5S_SCALAR), what), H5Sclose);
+  const Handle links = making_groups();
+  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), what),
+                   H5Dclose);
+  checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), what);
+}
+
+void Hdf5File::write_texts(const std::string& name, const std::vector<std::string>& texts) {
+  std::size_t size = 1;
+  for (const auto& text : texts) {
+    size = std::max(size, text.size() + 1);
+  }
+  std::string packed(size * texts.size(), '\0');
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    packed.replace(i * size, texts[i].size(), texts[i]);
+  }
+  const Handle type = text_type(size);
+  write_array(name, packed.data(), texts.size(), {texts.size()}, type, "-");
+}
+
+void Hdf5File::make_group(const std::string& name) {
+  const Handle links = making_groups();
+  const Handle group(checked(H5Gcreate2(file_, name.c_str(), links, H5P_DEFAULT, H5P_DEFAULT), "make group " + name),
+                     H5Gclose);
+}
+
+void Hdf5File::link_external(const std::string& name, const std::string& file, const std::string& object) {
+  const Handle links = making_groups();
+  checked(H5Lcreate_external(file.c_str(), object.c_str(), file_, name.c_str(), links, H5P_DEFAULT), "link " + name);
+}
+
+void Hdf5File::set_scalar(const std::string& object, const std::string& name, Id type, const void* value) {
+  const std::string what = fmt::format("write attribute {} of {}", name, object);
+  const Handle space(checked(H5Screate(H5S_SCALAR), what), H5Sclose);
+  const Handle attribute(checked(H5Acreate_by_name(file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT,
+                                                   H5P_DEFAULT, H5P_DEFAULT),
+                                 what),
+                         H5Aclose);
+  checked(H5Awrite(attribute, type, value), what);
+}
+
+void Hdf5File::set_attribute(const std::string& object, const std::string& name, const std::string& value) {
+  const Handle type = text_type(value.size() + 1);
+  set_scalar(object, name, type, value.c_str());
+}
+
+void Hdf5File::set_attribute(const std::string& object, const std::string& name, double value) {
+  set_scalar(object, name, H5T_NATIVE_DOUBLE, &value);
+}
+
+void Hdf5File::set_attribute(const std::string& object, const std::string& name, std::int64_t value) {
+  set_scalar(object, name, H5T_NATIVE_INT64, &value);
+}
+
+bool Hdf5File::has(const std::string& name) const {
+  // H5Lexists wants every group on the way to exist.
+  for (std::size_t slash = name.find('/', 1); slash != std::string::npos; slash = name.find('/', slash + 1)) {
+    if (H5Lexists(file_, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) {
+      H5Eclear2(H5E_DEFAULT);
+      return false;
+    }
+  }
+  return name == "/" || H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+std::vector<std::string> Hdf5File::members(const std::string& group) const {
+  std::vector<std::string> names;
+  if (has(group)) {
+    const Handle opened(checked(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), "open " + group), H5Gclose);
+    const auto take = [](hid_t id, const char* name, const H5L_info_t*, void* out) {
+      return append_name(id, name, out);
+    };
+    checked(H5Literate(opened, H5_INDEX_NAME, H5_ITER_INC, nullptr, take, &names), "list " + group);
+  }
+  return names;
+}
+
+std::vector<std::string> Hdf5File::attributes(const std::string& object) const {
+  std::vector<std::string> names;
+  const auto take = [](hid_t id, const char* name, const H5A_info_t*, void* out) { return append_name(id, name, out); };
+  checked(H5Aiterate_by_name(file_, object.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, take, &names, H5P_DEFAULT),
+          "list attributes of " + object);
+  return names;
+}
+
+std::vector<std::size_t> Hdf5File::shape(const std::string& name) const {
+  const std::string what = fmt::format("read {}", name);
+  const Handle set(checked(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), what), H5Dclose);
+  const Handle space(checked(H5Dget_space(set), what), H5Sclose);
+  std::vector<hsize_t> extents(static_cast<std::size_t>(checked(H5Sget_simple_extent_ndims(space), what)));
+  checked(H5Sget_simple_extent_dims(space, extents.data(), nullptr), what);
+  return {extents.begin(), extents.end()};
+}
+
+template <class T>
+Array<T> Hdf5File::read_array(const std::string& name, Id type) const {
+  const std::string what = fmt::format("read {}", name);
+  const Handle set(checked(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), what), H5Dclose);
+  Array<T> array{.shape = shape(name), .values = {}};
+  std::size_t count = 1;
+  for (const std::size_t n : array.shape) {
+    count *= n;
+  }
+  array.values.resize(count);
+  if (count > 0) {
+    checked(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()), what);
+  }
+  return array;
+}
+
+Array<double> Hdf5File::read_doubles(const std::string& name) const {
+  return read_array<double>(name, H5T_NATIVE_DOUBLE);
+}
+
+Array<std::int64_t> Hdf5File::read_integers(const std::string& name) const {
+  return read_array<std::int64_t>(name, H5T_NATIVE_INT64);
+}
+
+std::string Hdf5File::read_text(const std::string& name) const {
+  const auto texts = read_texts(name);
+  return texts.empty() ? "" : texts.front();
+}
+
+std::vector<std::string> Hdf5File::read_texts(const std::string& name) const {
+  const std::string what = fmt::format("read {}", name);
+  const Handle set(checked(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), what), H5Dclose);
+  const Handle stored(checked(H5Dget_type(set), what), H5Tclose);
+  const Handle space(checked(H5Dget_space(set), what), H5Sclose);
+  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0) {
+    throw std::runtime_error(fmt::format("{}: {} is no fixed-length text", path_.string(), name));
+  }
+  const std::size_t size = H5Tget_size(stored);
+  const auto count = static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space), what));
+  std::string packed(size * count, '\0');
+  if (count > 0) {
+    checked(H5Dread(set, stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()), what);
+  }
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < count; ++i) {
+    texts.emplace_back(packed.substr(i * size, size).c_str());
+  }
+  return texts;
+}
+
+bool Hdf5File::attribute_is_text(const std::string& object, const std::string& name) const {
+  const std::string what = fmt::format("read attribute {} of {}", name, object);
+  const Handle attribute(checked(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), what),
+                         H5Aclose);
+  const Handle stored(checked(H5Aget_type(attribute), what), H5Tclose);
+  return H5Tget_class(stored) == H5T_STRING;
+}
+
+std::string Hdf5File::text_attribute(const std::string& object, const std::string& name) const {
+  const std::string what = fmt::format("read attribute {} of {}", name, object);
+  const Handle attribute(checked(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), what),
+                         H5Aclose);
+  const Handle stored(checked(H5Aget_type(attribute), what), H5Tclose);
+  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0) {
+    throw std::runtime_error(
+        fmt::format("{}: attribute {} of {} is no fixed-length text", path_.string(), name, object));
+  }
+  std::string text(H5Tget_size(stored), '\0');
+  checked(H5Aread(attribute, stored, text.data()), what);
+  return text.c_str();
+}
+
+void Hdf5File::get_scalar(const std::string& object, const std::string& name, Id type, void* value) const {
+  const std::string what = fmt::format("read attribute {} of {}", name, object);
+  const Handle attribute(checked(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), what),
+                         H5Aclose);
+  const Handle space(checked(H5Aget_space(attribute), what), H5Sclose);
+  if (H5Sget_simple_extent_npoints(space) != 1) {
+    throw std::runtime_error(fmt::format("{}: attribute {} of {} is no single value", path_.string(), name, object));
+  }
+  checked(H5Aread(attribute, type, value), what);
+}
+
+double Hdf5File::number_attribute(const std::string& object, const std::string& name) const {
+  double value = 0;
+  get_scalar(object, name, H5T_NATIVE_DOUBLE, &value);
+  return value;
+}
+
+std::int64_t Hdf5File::integer_attribute(const std::string& object, const std::string& name) const {
+  std::int64_t value = 0;
+  get_scalar(object, name, H5T_NATIVE_INT64, &value);
+  return value;
+}
+
+}  // namespace voussoir::io

@@ -1,0 +1,42 @@
+#pragma once
+/// One increment's HDF5 file, and its XDMF grid. Private to io; FORMAT.md describes the contents.
+
+#include "io/result_file.hpp"
+
+namespace voussoir::io {
+
+class Hdf5File;
+
+/// Calls visit(name, unit, member) for the numbers that every increment has: the one list of attributes and columns.
+template <class Info, class Visit>
+void for_each_number(Info& info, Visit&& visit) {
+  visit("index", "-", info.index);
+  visit("stage_index", "-", info.stage_index);
+  visit("load_parameter", "-", info.load_parameter);
+  visit("volume_loss", "-", info.volume_loss);
+  visit("converged", "-", info.converged);
+  visit("iterations", "-", info.iterations);
+  visit("evaluations", "-", info.evaluations);
+  visit("cuts", "-", info.cuts);
+  visit("residual", "-", info.residual);
+  visit("particle_steps", "-", info.particle_steps);
+  visit("wall_s", "s", info.wall_s);
+}
+
+/// Writes and publishes an increment's file.
+void write_increment_file(const std::filesystem::path& path, const MeshData& mesh, const IncrementInfo& info,
+                          const std::vector<Field>& fields, const std::vector<RveSnapshot>& snapshots,
+                          const std::vector<double>& coordinates);
+
+[[nodiscard]] IncrementInfo read_increment_info(const std::filesystem::path& path);
+
+/// The <Grid> element of one increment; `path` is the increment's file in its folder below the XDMF file.
+[[nodiscard]] std::string xdmf_grid(const std::filesystem::path& path, const MeshData& mesh, const IncrementInfo& info);
+
+/// The whole XDMF file around the grids.
+[[nodiscard]] std::string xdmf_document(const std::vector<std::string>& grids);
+
+/// Numbers of the increments that exist in a result folder, ascending.
+[[nodiscard]] std::vector<int> list_increments(const std::filesystem::path& folder);
+
+}  // namespace voussoir::io

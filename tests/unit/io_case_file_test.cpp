@@ -1,0 +1,184 @@
+/// Case files: what is read, and the one line that each kind of mistake gives.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "io/case_file.hpp"
+
+namespace voussoir::io {
+namespace {
+
+const std::string valid = R"(kind = "tunnel"
+steps = 4
+[soil]
+radius = "5 mm"       # line 4
+weight = "20 kN/m3"
+friction = 0.5
+kept = true
+shape = "disc"
+[[stage]]
+name = "gravity"
+targets = ["5 %", 0.1]
+[[stage]]
+name = "loss"
+seeds = [1, 2]
+)";
+
+std::filesystem::path write(const std::string& text) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "case.toml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+/// Reads every key of `valid`, as a host would.
+void read_all(const CaseFile& file) {
+  const Table root = file.root();
+  static_cast<void>(root.choice("kind", {"tunnel", "pack"}));
+  static_cast<void>(root.integer("steps", {.at_least = 1}));
+  const Table soil = root.table("soil");
+  static_cast<void>(soil.quantity("radius", Dimension::length, {.positive = true}));
+  static_cast<void>(soil.quantity("weight", Dimension::unit_weight, {.at_least = "0 N/m3", .at_most = "30 kN/m3"}));
+  static_cast<void>(soil.number("friction"));
+  static_cast<void>(soil.boolean("kept"));
+  static_cast<void>(soil.text("shape"));
+  static_cast<void>(soil.quantity("thickness", Dimension::length, {.fallback = "0.1 m"}));
+  for (const Table& stage : root.tables("stage")) {
+    static_cast<void>(stage.text("name"));
+    static_cast<void>(
+        stage.quantities("targets", Dimension::none, {.positive = true}, std::vector<std::string>{"1 %"}));
+    static_cast<void>(stage.integers("seeds", {.at_least = 1}, std::vector<std::int64_t>{7}));
+  }
+  file.finish();
+}
+
+/// The error's line with the folder cut off, or "no error".
+std::string message(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    read_all(CaseFile::load(write(text), overrides));
+  } catch (const InputError& error) {
+    const std::string line = error.what();
+    const auto folder = line.find(testing::TempDir());
+    return folder == std::string::npos ? line : std::string(line).erase(folder, testing::TempDir().size());
+  }
+  return "no error";
+}
+
+std::string changed(const std::string& from, const std::string& to) {
+  std::string text = valid;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(CaseFile, ValuesAreSi) {
+  const CaseFile file = CaseFile::load(write(valid));
+  read_all(file);
+  const Table soil = file.root().table("soil");
+  EXPECT_EQ(soil.quantity("radius", Dimension::length), 0.005);
+  EXPECT_EQ(soil.quantity("weight", Dimension::unit_weight), 2e4);
+  EXPECT_EQ(soil.quantity("thickness", Dimension::length, {.fallback = "0.1 m"}), 0.1);
+  EXPECT_EQ(file.root().tables("stage").at(0).quantities("targets", Dimension::none), (std::vector<double>{0.05, 0.1}));
+  EXPECT_EQ(file.root().tables("stage").at(1).integers("seeds"), (std::vector<std::int64_t>{1, 2}));
+  EXPECT_FALSE(soil.has("thickness"));
+  EXPECT_EQ(soil.keys(), (std::vector<std::string>{"radius", "weight", "friction", "kept", "shape"}));
+}
+
+TEST(CaseFile, EachMistakeGivesOneLineWithItsPlace) {
+  EXPECT_EQ(message(valid), "no error");
+  EXPECT_EQ(message(changed("radius", "raduis")), "case.toml:3: soil.radius: is missing");
+  EXPECT_EQ(message(changed("kept = true", "kept = true\nfrictoin = 1")),
+            "case.toml:8: soil.frictoin: unknown key; did you mean \"friction\"?");
+  EXPECT_EQ(message(changed("[soil]", "radius = 1\n[soil]")),
+            "case.toml:3: radius: unknown key; did you mean \"soil.radius\"?");
+  EXPECT_EQ(message(changed("\"5 mm\"", "\"-5 mm\"")), "case.toml:4: soil.radius: must be positive, is -5 mm");
+  EXPECT_EQ(message(changed("\"5 mm\"", "\"5 kPa\"")),
+            "case.toml:4: soil.radius: \"5 kPa\" is a pressure, expected length in m, cm, mm, km");
+  EXPECT_EQ(message(changed("\"5 mm\"", "5")),
+            "case.toml:4: soil.radius: \"5\" has no unit, expected length in m, cm, mm, km");
+  EXPECT_EQ(message(changed("\"5 mm\"", "true")),
+            "case.toml:4: soil.radius: must be a quantity in quotes, such as \"1 m\", is true or false");
+  EXPECT_EQ(message(changed("20 kN", "31 kN")), "case.toml:5: soil.weight: must be at most 30 kN/m3, is 31 kN/m3");
+  EXPECT_EQ(message(changed("20 kN", "-1 kN")), "case.toml:5: soil.weight: must be at least 0 N/m3, is -1 kN/m3");
+  EXPECT_EQ(message(changed("0.5", "nan")), "case.toml:6: soil.friction: \"nan\" is not finite");
+  EXPECT_EQ(message(changed("true", "1")), "case.toml:7: soil.kept: must be true or false, is an integer");
+  EXPECT_EQ(message(changed("4\n", "4.5\n")), "case.toml:2: steps: must be an integer, is a number");
+  EXPECT_EQ(message(changed("4\n", "0\n")), "case.toml:2: steps: must be at least 1, is 0");
+  EXPECT_EQ(message(changed("\"tunnel\"", "\"tunel\"")), "case.toml:1: kind: must be one of tunnel, pack, is tunel");
+  EXPECT_EQ(message(changed("[1, 2]", "[1, -2]")), "case.toml:14: stage[1].seeds[1]: must be at least 1, is -2");
+  EXPECT_EQ(message(changed("[soil]", "[sand]")), "case.toml:1: soil.radius: is missing");
+  EXPECT_EQ(message("stage = 3\n" + valid.substr(0, valid.find("[[stage]]"))), "case.toml:1: stage: must be an array, is an integer");
+}
+
+TEST(CaseFile, BadTomlNamesItsLine) {
+  EXPECT_TRUE(message(changed("weight = \"20 kN/m3\"", "weight = 20 kN/m3")).starts_with("case.toml:5: "))
+      << message(changed("weight = \"20 kN/m3\"", "weight = 20 kN/m3"));
+  EXPECT_EQ(message(changed("radius = \"5 mm\"", "radius = \"5 mm")).find('\n'), std::string::npos);
+}
+
+TEST(CaseFile, MissingFilesAreErrors) {
+  EXPECT_THROW(static_cast<void>(CaseFile::load("no/such/case.toml")), InputError);
+  EXPECT_THROW(static_cast<void>(CaseFile::load(testing::TempDir())), InputError);
+  const auto path = write("packing = \"none.h5\"\nself = \"case.toml\"\n");
+  const CaseFile file = CaseFile::load(path);
+  EXPECT_EQ(file.root().path("self"), path);
+  try {
+    static_cast<void>(file.root().path("packing"));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              path.string() + ":1: packing: " + (path.parent_path() / "none.h5").string() + " does not exist");
+  }
+}
+
+TEST(CaseFile, OverridesReplaceAddAndAreChecked) {
+  const CaseFile file = CaseFile::load(write(valid), {"soil.radius=7 mm", "steps=9", "soil.thickness=0.2 m",
+                                                      "stage[1].name=late", "stage[0].targets=[1, \"2 %\"]"});
+  read_all(file);
+  EXPECT_EQ(file.root().table("soil").quantity("radius", Dimension::length), 0.007);
+  EXPECT_EQ(file.root().integer("steps"), 9);
+  EXPECT_EQ(file.root().table("soil").quantity("thickness", Dimension::length), 0.2);
+  EXPECT_EQ(file.root().tables("stage").at(1).text("name"), "late");
+  EXPECT_EQ(file.root().tables("stage").at(0).quantities("targets", Dimension::none), (std::vector<double>{1, 0.02}));
+
+  EXPECT_EQ(message(valid, {"soil.radius=-7 mm"}), "--set soil.radius: must be positive, is -7 mm");
+  EXPECT_EQ(message(valid, {"soil.radios=7 mm"}), "--set soil.radios: unknown key; did you mean \"radius\"?");
+  EXPECT_EQ(message(valid, {"water.depth=7 m"}), "--set water: unknown key");
+  EXPECT_EQ(message(valid, {"stage[2].name=x"}), "--set stage: has no entry [2]");
+  EXPECT_EQ(message(valid, {"steps"}), "--set: \"steps\" is not of the form table.key=value");
+  EXPECT_EQ(message(valid, {"=3"}), "--set: \"=3\" is not of the form table.key=value");
+  EXPECT_EQ(message(valid, {"soil..radius=3"}), "--set: \"soil..radius=3\" is not of the form table.key=value");
+}
+
+TEST(CaseFile, ResolvedCaseReadsBackAsTheSameCase) {
+  const CaseFile file = CaseFile::load(write(valid), {"soil.radius=7 mm"});
+  read_all(file);
+  const std::string resolved = file.resolved();
+  EXPECT_NE(resolved.find("radius = \"7 mm\"  # --set\n"), std::string::npos) << resolved;
+  EXPECT_NE(resolved.find("thickness = \"0.1 m\"  # default\n"), std::string::npos) << resolved;
+  EXPECT_NE(resolved.find("seeds = [7]  # default\n"), std::string::npos) << resolved;
+
+  const CaseFile again = CaseFile::load(write(resolved));
+  read_all(again);
+  EXPECT_EQ(again.fingerprint(), file.fingerprint());
+}
+
+TEST(CaseFile, FingerprintFollowsTheValuesThatCount) {
+  const std::vector<std::string> without{"steps", "stage"};
+  const auto fingerprint = [&](const std::vector<std::string>& overrides, std::span<const std::string> left_out) {
+    const CaseFile file = CaseFile::load(write(valid), overrides);
+    read_all(file);
+    return file.fingerprint(left_out);
+  };
+  EXPECT_NE(fingerprint({"steps=5"}, {}), fingerprint({}, {}));
+  EXPECT_NE(fingerprint({"soil.friction=0.6"}, without), fingerprint({}, without));
+  EXPECT_EQ(fingerprint({"steps=5", "stage[1].seeds=[3]"}, without), fingerprint({}, without));
+  EXPECT_EQ(fingerprint({"soil.thickness=0.1 m"}, {}), fingerprint({}, {}));  // a default, written out
+}
+
+TEST(CaseFile, ChecksOfTheHostCarryThePlace) {
+  const CaseFile file = CaseFile::load(write(valid));
+  const std::string line = file.root().table("soil").error("weight", "does not fit the radius").what();
+  EXPECT_TRUE(line.ends_with("case.toml:5: soil.weight: does not fit the radius")) << line;
+}
+
+}  // namespace
+}  // namespace voussoir::io
