@@ -105,7 +105,8 @@ TEST(CaseFile, EachMistakeGivesOneLineWithItsPlace) {
   EXPECT_EQ(message(changed("\"tunnel\"", "\"tunel\"")), "case.toml:1: kind: must be one of tunnel, pack, is tunel");
   EXPECT_EQ(message(changed("[1, 2]", "[1, -2]")), "case.toml:14: stage[1].seeds[1]: must be at least 1, is -2");
   EXPECT_EQ(message(changed("[soil]", "[sand]")), "case.toml:1: soil.radius: is missing");
-  EXPECT_EQ(message("stage = 3\n" + valid.substr(0, valid.find("[[stage]]"))), "case.toml:1: stage: must be an array, is an integer");
+  EXPECT_EQ(message("stage = 3\n" + valid.substr(0, valid.find("[[stage]]"))),
+            "case.toml:1: stage: must be an array, is an integer");
 }
 
 TEST(CaseFile, BadTomlNamesItsLine) {

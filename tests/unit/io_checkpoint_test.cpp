@@ -1,0 +1,118 @@
+/// Checkpoints: same bits back, damaged files passed over, only the last two kept.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+
+#include "io/checkpoint.hpp"
+
+namespace voussoir::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CheckpointTest : public testing::Test {
+ protected:
+  CheckpointTest() { fs::remove_all(folder_); }
+
+  static Checkpoint example(double value) {
+    Checkpoint checkpoint;
+    checkpoint.put_doubles("displacement", std::vector{value, 0.1, -0.0, std::numeric_limits<double>::denorm_min()});
+    checkpoint.put_integers("counts", std::vector<std::int64_t>{1, -2});
+    checkpoint.put_text("stage", "gravity");
+    checkpoint.put("empty", {});
+    return checkpoint;
+  }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const auto& entry : fs::directory_iterator(folder_)) all.push_back(entry.path().filename().string());
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+  /// Turns one bit in the middle of a file.
+  void damage(const std::string& name) const {
+    std::fstream file(folder_ / name, std::ios::in | std::ios::out | std::ios::binary);
+    const auto middle = static_cast<std::streamoff>(fs::file_size(folder_ / name) / 2);
+    const auto byte = static_cast<char>(file.seekg(middle).get() ^ 1);
+    file.seekp(middle).put(byte);
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / "checkpoints";
+  CheckpointStore store_{folder_, "case A"};
+};
+
+TEST_F(CheckpointTest, NothingToLoadAtFirst) {
+  EXPECT_FALSE(store_.load_latest().has_value());
+}
+
+TEST_F(CheckpointTest, SameBitsBack) {
+  const Checkpoint saved = example(1.0 / 3);
+  store_.save(4, saved);
+  const auto loaded = store_.load_latest();
+  ASSERT_TRUE(loaded.has_value());
+  EXPECT_EQ(loaded->increment, 4);
+  EXPECT_TRUE(loaded->skipped.empty());
+  EXPECT_EQ(loaded->checkpoint.blobs(), saved.blobs());
+  EXPECT_EQ(std::bit_cast<std::uint64_t>(loaded->checkpoint.get_doubles("displacement")[2]),
+            std::bit_cast<std::uint64_t>(-0.0));
+  EXPECT_EQ(loaded->checkpoint.get_doubles("displacement")[0], 1.0 / 3);
+  EXPECT_EQ(loaded->checkpoint.get_integers("counts"), (std::vector<std::int64_t>{1, -2}));
+  EXPECT_EQ(loaded->checkpoint.get_text("stage"), "gravity");
+  EXPECT_THROW(static_cast<void>(loaded->checkpoint.get("velocity")), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(loaded->checkpoint.get_doubles("stage")), std::runtime_error);
+}
+
+TEST_F(CheckpointTest, TheLastTwoAreKept) {
+  for (int increment = 8; increment <= 11; ++increment) store_.save(increment, example(increment));
+  EXPECT_EQ(names(), (std::vector<std::string>{"checkpoint_0010.bin", "checkpoint_0011.bin"}));
+  store_.save(10, example(10));  // a run resumed from increment 9 comes by here again
+  EXPECT_EQ(names(), (std::vector<std::string>{"checkpoint_0010.bin"}));
+}
+
+TEST_F(CheckpointTest, DamagedOneIsPassedOver) {
+  store_.save(1, example(1));
+  store_.save(2, example(2));
+  damage("checkpoint_0002.bin");
+  const auto loaded = store_.load_latest();
+  ASSERT_TRUE(loaded.has_value());
+  EXPECT_EQ(loaded->increment, 1);
+  EXPECT_EQ(loaded->checkpoint.get_doubles("displacement")[0], 1.0);
+  ASSERT_EQ(loaded->skipped.size(), 1U);
+  EXPECT_NE(loaded->skipped[0].find("checkpoint_0002.bin"), std::string::npos);
+  damage("checkpoint_0001.bin");
+  EXPECT_THROW(static_cast<void>(store_.load_latest()), std::runtime_error);
+}
+
+TEST_F(CheckpointTest, AnyTruncationIsNoticed) {
+  store_.save(1, example(1));
+  store_.save(2, example(2));
+  const auto path = folder_ / "checkpoint_0002.bin";
+  for (auto size = fs::file_size(path); size > 0; size -= std::min<std::uintmax_t>(size, 7)) {
+    fs::resize_file(path, size - 1);
+    EXPECT_EQ(store_.load_latest()->increment, 1) << size;
+  }
+}
+
+TEST_F(CheckpointTest, KilledWriterLeavesTheFormerOne) {
+  store_.save(1, example(1));
+  std::ofstream(folder_ / "checkpoint_0002.bin.tmp") << "half a file";
+  EXPECT_EQ(store_.load_latest()->increment, 1);
+  store_.clear();
+  EXPECT_TRUE(names().empty());
+}
+
+TEST_F(CheckpointTest, AnotherCaseIsRefused) {
+  store_.save(1, example(1));
+  EXPECT_THROW(static_cast<void>(CheckpointStore(folder_, "case B").load_latest()), std::runtime_error);
+}
+
+TEST_F(CheckpointTest, UnwritableFolderIsAnError) {
+  std::ofstream(folder_) << "a file where the folder should be";
+  EXPECT_THROW(store_.save(1, example(1)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace voussoir::io

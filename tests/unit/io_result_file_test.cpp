@@ -1,0 +1,196 @@
+/// Results: round trip, kills at any moment, resume, and fields that do not fit.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "io/hdf5.hpp"
+#include "io/result_file.hpp"
+
+namespace voussoir::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ResultFileTest : public testing::Test {
+ protected:
+  ResultFileTest() { fs::remove_all(folder_); }
+
+  /// Two elements side by side.
+  static MeshData mesh() {
+    return {.coordinates = {0, 0, 1, 0, 2, 0, 0, 1, 1, 1, 2, 1, .5, 0, 1.5, 0, 0, .5, 1, .5, 2, .5, .5, 1, 1.5, 1},
+            .connectivity = {0, 1, 4, 3, 6, 9, 11, 8, 1, 2, 5, 4, 7, 10, 12, 9},
+            .boundaries = {{"top", {3, 11, 4, 12, 5}}, {"base", {0, 6, 1, 7, 2}}},
+            .geometry = {{"diameter", 5.0}}};
+  }
+  static IncrementInfo info(int index) {
+    return {.index = index,
+            .stage = "gravity",
+            .stage_index = index,
+            .load_parameter = 0.1 * index,
+            .converged = true,
+            .iterations = 3,
+            .evaluations = 4,
+            .residual = 1e-4,
+            .particle_steps = 1e9,
+            .wall_s = 2.5,
+            .extra = {{"crown_settlement", 0.25}},
+            .residual_history = {1, 0.1, 1e-4}};
+  }
+  static std::vector<double> counted(std::size_t n) {
+    std::vector<double> values(n);
+    for (std::size_t i = 0; i < n; ++i) values[i] = static_cast<double>(i) / 3;
+    return values;
+  }
+  static std::vector<Field> fields() {
+    return {{"displacement", "m", FieldLocation::node, 2, counted(26)},
+            {"stress", "Pa", FieldLocation::gauss, 3, counted(24)},
+            {"void_ratio", "-", FieldLocation::gauss, 1, counted(8)},
+            {"area", "m2", FieldLocation::element, 1, counted(2)},
+            {"q_over_p", "-", FieldLocation::rve, 1, counted(5)}};
+  }
+  [[nodiscard]] std::string xdmf() const {
+    std::ostringstream text;
+    text << std::ifstream(folder_ / "result.xdmf").rdbuf();
+    return text.str();
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / "result";
+  Provenance provenance_{.case_kind = "tunnel", .input = "kind = \"tunnel\"\n", .fingerprint = "ab", .threads = 2};
+};
+
+TEST_F(ResultFileTest, EverythingReadsBack) {
+  ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
+  const RveSnapshot snapshot{.name = "crown",
+                             .cell = {1, 2, 3, 4},
+                             .thickness = 0.1,
+                             .x = {1, 2},
+                             .y = {3, 4},
+                             .radius = {5, 6},
+                             .rotation = {7, 8},
+                             .contact_i = {0},
+                             .contact_j = {1},
+                             .branch = {0.5, 0.6},
+                             .force = {-1, -2}};
+  writer.write(info(1), fields(), {snapshot});
+
+  EXPECT_EQ(read_provenance(folder_ / "run.h5").input, provenance_.input);
+  EXPECT_EQ(read_provenance(folder_ / "run.h5").threads, 2);
+  EXPECT_EQ(read_mesh(folder_ / "run.h5").coordinates, mesh().coordinates);
+  EXPECT_EQ(read_mesh(folder_ / "run.h5").connectivity, mesh().connectivity);
+  EXPECT_EQ(read_mesh(folder_ / "run.h5").geometry, mesh().geometry);
+  const auto increments = read_increments(folder_ / "run.h5");
+  ASSERT_EQ(increments.size(), 1U);
+  EXPECT_EQ(increments[0].stage, "gravity");
+  EXPECT_TRUE(increments[0].converged);
+  EXPECT_EQ(increments[0].wall_s, 2.5);
+  EXPECT_EQ(increments[0].extra, info(1).extra);
+  EXPECT_EQ(increments[0].residual_history, info(1).residual_history);
+
+  const auto loaded = read_fields(increment_path(folder_, 1));
+  ASSERT_EQ(loaded.size(), fields().size());
+  for (const Field& field : fields()) {
+    const auto same = std::find_if(loaded.begin(), loaded.end(), [&](const Field& f) { return f.name == field.name; });
+    ASSERT_NE(same, loaded.end()) << field.name;
+    EXPECT_EQ(same->values, field.values) << field.name;
+    EXPECT_EQ(same->unit, field.unit) << field.name;
+    EXPECT_EQ(same->components, field.components) << field.name;
+    EXPECT_EQ(same->location, field.location) << field.name;
+  }
+  const auto snapshots = read_snapshots(increment_path(folder_, 1));
+  ASSERT_EQ(snapshots.size(), 1U);
+  EXPECT_EQ(snapshots[0].radius, snapshot.radius);
+  EXPECT_EQ(snapshots[0].force, snapshot.force);
+  EXPECT_EQ(snapshots[0].cell, snapshot.cell);
+}
+
+TEST_F(ResultFileTest, ShapesTableAndLinksAreAsFormatMdSays) {
+  ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
+  writer.write(info(1), fields());
+  writer.write(info(2), fields(), {}, counted(26));
+  const Hdf5File run = Hdf5File::open(folder_ / "run.h5");
+  EXPECT_EQ(run.read_texts("/table/stage"), (std::vector<std::string>{"gravity", "gravity"}));
+  EXPECT_EQ(run.read_integers("/table/index").values, (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(run.read_doubles("/table/crown_settlement").values, (std::vector{0.25, 0.25}));
+  EXPECT_EQ(run.text_attribute("/table/wall_s", "unit"), "s");
+  EXPECT_EQ(run.members("/increments"), (std::vector<std::string>{"0001", "0002"}));
+  EXPECT_EQ(run.shape("/increments/0001/gauss/stress"), (std::vector<std::size_t>{2, 4, 3}));  // through the link
+  const Hdf5File increment = Hdf5File::open(increment_path(folder_, 2));
+  EXPECT_EQ(increment.shape("/gauss/void_ratio"), (std::vector<std::size_t>{2, 4, 1}));
+  EXPECT_EQ(increment.shape("/mesh/coordinates"), (std::vector<std::size_t>{13, 2}));
+  EXPECT_EQ(increment.shape("/xdmf/node/displacement"), (std::vector<std::size_t>{13, 3}));
+  EXPECT_DOUBLE_EQ(increment.read_doubles("/xdmf/cell/stress_yy").values[1], (13 + 16 + 19 + 22) / 12.0);
+  EXPECT_DOUBLE_EQ(increment.read_doubles("/xdmf/cell/void_ratio").values[0], (0 + 1 + 2 + 3) / 12.0);
+}
+
+TEST_F(ResultFileTest, KilledWriterLeavesTheLastIncrementReadable) {
+  ResultWriter::create(folder_, provenance_, mesh()).write(info(1), fields());
+  // Killed while writing the increment, run.h5 and result.xdmf: only temporary names exist.
+  for (const char* name : {"increments/0002.h5.tmp", "run.h5.tmp", "result.xdmf.tmp"}) {
+    std::ofstream(folder_ / name) << "half a file";
+  }
+  EXPECT_EQ(read_increments(folder_ / "run.h5").size(), 1U);
+  EXPECT_EQ(read_fields(increment_path(folder_, 1)).size(), fields().size());
+  EXPECT_EQ(Hdf5File::open(folder_ / "run.h5").read_integers("/table/index").values.size(), 1U);
+
+  ResultWriter writer = ResultWriter::resume(folder_, provenance_, mesh(), 1);
+  EXPECT_FALSE(fs::exists(folder_ / "increments/0002.h5.tmp"));
+  EXPECT_FALSE(fs::exists(folder_ / "run.h5.tmp"));
+  writer.write(info(2), fields());
+  EXPECT_EQ(read_increments(folder_ / "run.h5").size(), 2U);
+}
+
+TEST_F(ResultFileTest, ResumeDropsWhatCameAfterTheCheckpoint) {
+  {
+    ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
+    for (int index = 1; index <= 3; ++index) writer.write(info(index), fields());
+  }
+  const std::string straight = xdmf();
+  ResultWriter writer = ResultWriter::resume(folder_, provenance_, mesh(), 2);
+  EXPECT_EQ(writer.increments().size(), 2U);
+  EXPECT_FALSE(fs::exists(increment_path(folder_, 3)));
+  EXPECT_EQ(Hdf5File::open(folder_ / "run.h5").members("/increments"), (std::vector<std::string>{"0001", "0002"}));
+  writer.write(info(3), fields());
+  EXPECT_EQ(xdmf(), straight);
+}
+
+TEST_F(ResultFileTest, AnewMeansAnew) {
+  ResultWriter::create(folder_, provenance_, mesh()).write(info(1), fields());
+  const ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
+  EXPECT_TRUE(writer.increments().empty());
+  EXPECT_TRUE(read_increments(folder_ / "run.h5").empty());
+  EXPECT_EQ(xdmf().find("increments/0001.h5"), std::string::npos);
+}
+
+TEST_F(ResultFileTest, RunsWithoutAMeshHaveNoXdmf) {
+  ResultWriter writer = ResultWriter::create(folder_, provenance_, {});
+  writer.write(info(0), {{"q_over_p", "-", FieldLocation::rve, 1, {0.5}}});
+  EXPECT_FALSE(fs::exists(folder_ / "result.xdmf"));
+  EXPECT_EQ(read_mesh(folder_ / "run.h5").nodes(), 0U);
+  EXPECT_EQ(read_fields(increment_path(folder_, 0)).at(0).values, std::vector{0.5});
+}
+
+TEST_F(ResultFileTest, WhatDoesNotFitIsRefusedBeforeAnythingIsWritten) {
+  ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
+  const auto refuses = [&](const Field& field) { EXPECT_THROW(writer.write(info(1), {field}), std::invalid_argument); };
+  refuses({"displacement", "m", FieldLocation::node, 2, counted(25)});
+  refuses({"stress", "Pa", FieldLocation::gauss, 3, counted(6)});
+  refuses({"a/b", "m", FieldLocation::element, 1, counted(2)});
+  refuses({"none", "m", FieldLocation::element, 0, {}});
+  EXPECT_THROW(writer.write(info(1), {}, {}, counted(3)), std::invalid_argument);
+  EXPECT_FALSE(fs::exists(increment_path(folder_, 1)));
+  writer.write(info(2), {});
+  EXPECT_THROW(writer.write(info(2), {}), std::invalid_argument);
+}
+
+TEST_F(ResultFileTest, DamagedFilesAreErrors) {
+  ResultWriter::create(folder_, provenance_, mesh()).write(info(1), fields());
+  fs::resize_file(increment_path(folder_, 1), 600);
+  EXPECT_THROW(static_cast<void>(read_fields(increment_path(folder_, 1))), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(read_increments(folder_ / "run.h5")), std::runtime_error);
+  EXPECT_THROW(static_cast<void>(read_provenance(folder_ / "none.h5")), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace voussoir::io
