@@ -30,10 +30,10 @@ Mat2 log_near_identity(const Mat2& a)
 
 }  // namespace
 
-Mat2 increment_of(const Mat2& f, int n)
+Mat2 logarithm(const Mat2& f)
 {
-  if (n < 1 || !(det(f) > 0) || !(f.xx + f.yy + 2.0 * std::sqrt(det(f)) > 0)) {
-    throw std::invalid_argument("increment_of: F has no real logarithm, or n < 1");
+  if (!(det(f) > 0) || !(f.xx + f.yy + 2.0 * std::sqrt(det(f)) > 0)) {
+    throw std::invalid_argument("logarithm: F has no real logarithm");
   }
   Mat2 root = f;
   double scale = 2.0;
@@ -41,12 +41,16 @@ Mat2 increment_of(const Mat2& f, int n)
     root = square_root(root);
     scale *= 2.0;
   }
-  const Mat2 l = (0.5 * scale / n) * log_near_identity(root);
-  Mat2 term = l;
+  return (0.5 * scale) * log_near_identity(root);
+}
+
+Mat2 exponential_minus_identity(const Mat2& a)
+{
+  Mat2 term = a;
   Mat2 sum;
   for (int k = 2; k < 60; ++k) {
     sum = sum + term;
-    term = (1.0 / k) * (term * l);
+    term = (1.0 / k) * (term * a);
   }
   return sum;
 }

@@ -41,9 +41,11 @@ inline Mat2 inverse(const Mat2& a) { return (1.0 / det(a)) * Mat2{a.yy, -a.xy, -
 inline Mat2 transpose(const Mat2& a) { return {a.xx, a.yx, a.xy, a.yy}; }
 inline Mat2 symmetric_part(const Mat2& a) { return 0.5 * (a + transpose(a)); }
 
-/// E with (I + E)^n = F, by log F = 2^k log F^(1/2^k) and the power series of exp: slow, and shares nothing with the closed
-/// form of the engine. F must have det > 0 and no eigenvalue on the negative real axis.
-/// @throws std::invalid_argument otherwise
-Mat2 increment_of(const Mat2& f, int n);
+/// log F = 2^k log F^(1/2^k), the latter by its power series: slow, and shares nothing with the closed form of the engine.
+/// @throws std::invalid_argument unless det F > 0 and no eigenvalue lies on the negative real axis
+Mat2 logarithm(const Mat2& f);
+
+/// exp(A) - I by its power series, for |A| of a few units at most.
+Mat2 exponential_minus_identity(const Mat2& a);
 
 }  // namespace voussoir::reference

@@ -108,11 +108,13 @@ void accelerate(Rve& rve, const Forces& sum, double rigid_spin)
   for (std::size_t i = 0; i < rve.positions.size(); ++i) {
     const auto [a, ar] = mobility(rve.material, rve.radii[i]);
     const Vec2 f = sum.force[i];
+    const double torque = sum.torque[i];
     Vec2& w = rve.velocities[i];
     const Vec2 turn = rigid_spin * left_of(w);
     w = w + a * Vec2{damped(f.x, w.x, a, lambda), damped(f.y, w.y, a, lambda)} + turn;
-    rve.spins[i] += ar * damped(sum.torque[i], rve.spins[i], ar, lambda);
-    if (f.x == 0.0 && f.y == 0.0) {
+    rve.spins[i] += ar * damped(torque, rve.spins[i], ar, lambda);
+    // Torque counts: in a symmetric packing forces may cancel to the last bit while the contacts are loaded.
+    if (f.x == 0.0 && f.y == 0.0 && torque == 0.0) {
       w = 0.9 * w;
       rve.spins[i] *= 0.9;
     }
@@ -138,11 +140,14 @@ StepTrace trace_of(const Rve& rve, const Forces& sum)
   return trace;
 }
 
-void move(Rve& rve, const Mat2& increment)
+double spin_of(const Mat2& rate) { return 0.5 * (rate.yx - rate.xy); }
+
+void move(Rve& rve, const Mat2& rate)
 {
+  const Mat2 increment = exponential_minus_identity(rate);
   for (std::size_t i = 0; i < rve.positions.size(); ++i) {
     rve.positions[i] = rve.positions[i] + increment * rve.positions[i] + rve.velocities[i];
-    rve.rotations[i] += rve.spins[i];
+    rve.rotations[i] += spin_of(rate) + rve.spins[i];
   }
   rve.cell = rve.cell + increment * rve.cell;
 }
@@ -242,24 +247,25 @@ double energy(const Rve& rve)
   return sum;
 }
 
-StepTrace step(Rve& rve, const Mat2& increment)
+StepTrace step(Rve& rve, const Mat2& rate, const Mat2& next_rate)
 {
   complete(rve);
-  move(rve, increment);
+  move(rve, rate);
   check_cell(rve);
-  const Forces sum = pass(rve, symmetric_part(increment));
+  const Forces sum = pass(rve, symmetric_part(rate));
   const StepTrace trace = trace_of(rve, sum);
-  accelerate(rve, sum, 0.5 * (increment.yx - increment.xy));
+  accelerate(rve, sum, spin_of(next_rate));
   return trace;
 }
 
 StrainReport strain(Rve& rve, const Mat2& f, const StrainOptions& options)
 {
-  const Mat2 increment = increment_of(f, options.steps);
+  if (options.steps < 1) throw std::invalid_argument("strain: at least one step");
+  const Mat2 rate = (1.0 / options.steps) * logarithm(f);
   StrainReport report;
   for (int k = 0; k < options.steps + options.hold_steps && !report.met_tolerance; ++k) {
     const int held = k - options.steps + 1;
-    const StepTrace trace = step(rve, held > 0 ? Mat2{} : increment);
+    const StepTrace trace = step(rve, held > 0 ? Mat2{} : rate, held >= 0 ? Mat2{} : rate);
     if (options.keep_trace) report.trace.push_back(trace);
     report.unbalanced_ratio = trace.unbalanced_ratio;
     report.met_tolerance = held > 0 && held % options.look_every == 0 && trace.unbalanced_ratio < options.tolerance;

@@ -36,7 +36,7 @@ using Histories = std::map<std::pair<int, int>, History>;
 struct Rve {
   std::vector<Vec2> positions;    ///< centres, wrapped or not [m]
   std::vector<double> radii;      ///< [m]
-  std::vector<double> rotations;  ///< relative to the affine field; may be left empty (zero) [rad]
+  std::vector<double> rotations;  ///< absolute, the sum of W + theta; may be left empty (zero) [rad]
   Mat2 cell;                      ///< columns are the periodic vectors [m]
   Material material;
   Histories histories;
@@ -93,11 +93,12 @@ struct StepTrace {
   int contact_count;
 };
 
-/// One time step. The cell and the grains move by `increment` (E) and by the velocities, the law acts, grains are accelerated.
-/// @throws std::invalid_argument when sizes do not match or a grain would touch two images of another
-StepTrace step(Rve& rve, const Mat2& increment);
+/// One time step. Cell and grains move by E = exp(rate) - I and by the velocities, the law acts with D = sym(rate), grains are
+/// accelerated, and their velocities turned for the coming motion, W = skew(next_rate). Rates are velocity gradients per step.
+/// @throws std::invalid_argument when sizes do not match or a grain could touch two images of another
+StepTrace step(Rve& rve, const Mat2& rate, const Mat2& next_rate);
 
-/// How an evaluation runs: n strain steps with exp(n log(I+E)) = F, then at most `hold_steps` steps of rest, left when the
+/// How an evaluation runs: n strain steps with exp(n rate) = F, then at most `hold_steps` steps of rest, left when the
 /// unbalanced ratio, looked at in every `look_every`-th of them, is below `tolerance` (0: never).
 struct StrainOptions {
   int steps = 1000;

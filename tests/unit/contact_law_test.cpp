@@ -1,0 +1,250 @@
+// The contact law along paths with a closed form, before any packing exists; and the same numbers in every lane type.
+#include "kernels/contact_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace voussoir::kernels {
+namespace {
+
+using V = SingleLane<double>;
+using Law = LinearContactLaw<V, true>;
+
+constexpr double kn = 5e6, kt = 2.5e6, kr = 8.0, mu = 0.5, arm = 6e-4;
+constexpr double delta = 2e-6;
+constexpr double fn = kn * delta;            // 10 N
+constexpr double cap = mu * fn;              // 5 N
+constexpr double yield = cap / kt;           // 2 um: slip begins
+constexpr double moment_cap = arm * fn;      // 6e-3 N m
+constexpr double roll_yield = moment_cap / kr;
+
+Law law() { return {V(kn), V(kt), V(kr), V(mu), V(arm)}; }
+ContactMotion<V> motion(double overlap, double sliding, double rolling) { return {V(overlap), V(sliding), V(rolling)}; }
+
+/// Sums increments of 1/1000 of the path, as the engine would.
+ContactForce<V> slide_by(Law::History& history, double total)
+{
+  ContactForce<V> force{};
+  for (int k = 0; k < 1000; ++k) force = law()(motion(delta, total / 1000, 0), history);
+  return force;
+}
+
+ContactForce<V> roll_by(Law::History& history, double total)
+{
+  ContactForce<V> force{};
+  for (int k = 0; k < 1000; ++k) force = law()(motion(delta, 0, total / 1000), history);
+  return force;
+}
+
+constexpr double rounding = 1e-11;  // 1000 sums in double
+
+TEST(ContactLaw, NormalForceIsLinearAndNeverPulls)
+{
+  Law::History history{V(0), V(0)};
+  EXPECT_EQ(law()(motion(delta, 0, 0), history).normal[0], fn);
+  EXPECT_EQ(law()(motion(3 * delta, 0, 0), history).normal[0], kn * (3 * delta));
+  EXPECT_EQ(law()(motion(0, 0, 0), history).normal[0], 0.0);
+  EXPECT_EQ(law()(motion(-delta, 0, 0), history).normal[0], 0.0);
+}
+
+TEST(ContactLaw, LoadSlideUnloadReverse)
+{
+  Law::History history{V(0), V(0)};
+  EXPECT_NEAR(slide_by(history, 0.6 * yield).tangential[0], 0.6 * cap, rounding);  // elastic
+  EXPECT_NEAR(slide_by(history, 2.0 * yield).tangential[0], cap, rounding);        // slides at the cap
+  EXPECT_NEAR(slide_by(history, -0.5 * yield).tangential[0], 0.5 * cap, rounding); // unloads at once, elastically
+  EXPECT_NEAR(slide_by(history, -1.0 * yield).tangential[0], -0.5 * cap, rounding);
+  EXPECT_NEAR(slide_by(history, -3.0 * yield).tangential[0], -cap, rounding);      // slides the other way
+  EXPECT_NEAR(slide_by(history, 0.5 * yield).tangential[0], -0.5 * cap, rounding);
+  EXPECT_NEAR(history.tangential[0], -0.5 * cap, rounding);
+  EXPECT_EQ(history.moment[0], 0.0);
+}
+
+TEST(ContactLaw, SlidingDissipatesItsClosedFormWork)
+{
+  // One full cycle of amplitude A > yield encloses 4 cap (A - yield).
+  Law::History history{V(0), V(0)};
+  const double amplitude = 3 * yield;
+  slide_by(history, amplitude);
+  double work = 0;
+  const int n = 20000;
+  for (const double sign : {-1.0, 1.0}) {
+    for (int k = 0; k < n; ++k) {
+      const double before = history.tangential[0];
+      const double increment = sign * 2 * amplitude / n;
+      law()(motion(delta, increment, 0), history);
+      work += 0.5 * (before + history.tangential[0]) * increment;
+    }
+  }
+  const double closed = 4 * cap * (amplitude - yield);
+  EXPECT_NEAR(work, closed, 1e-3 * closed);  // the trapezoid over the kink: O(1/n)
+}
+
+TEST(ContactLaw, CoulombCapFollowsTheNormalForce)
+{
+  Law::History history{V(0), V(0)};
+  slide_by(history, 0.9 * yield);
+  EXPECT_NEAR(law()(motion(delta / 2, 0, 0), history).tangential[0], 0.5 * cap, rounding);  // unloading cuts it
+  EXPECT_NEAR(law()(motion(delta, 0, 0), history).tangential[0], 0.5 * cap, rounding);      // and nothing restores it
+  EXPECT_NEAR(law()(motion(10 * delta, 3 * yield, 0), history).tangential[0], 3.5 * cap, rounding);
+}
+
+TEST(ContactLaw, SeparationForgets)
+{
+  for (const double gap : {0.0, -1e-12, -delta}) {
+    Law::History history{V(0), V(0)};
+    slide_by(history, 0.9 * yield);
+    roll_by(history, 0.9 * roll_yield);
+    const ContactForce<V> open = law()(motion(gap, yield, roll_yield), history);
+    EXPECT_EQ(open.normal[0], 0.0);
+    EXPECT_EQ(open.tangential[0], 0.0);
+    EXPECT_EQ(open.moment[0], 0.0);
+    EXPECT_EQ(history.tangential[0], 0.0);
+    EXPECT_EQ(history.moment[0], 0.0);
+    EXPECT_EQ(law()(motion(delta, 0, 0), history).tangential[0], 0.0);  // a new contact starts from nothing
+  }
+}
+
+TEST(ContactLaw, RollingSpringWithPlasticCap)
+{
+  Law::History history{V(0), V(0)};
+  EXPECT_NEAR(roll_by(history, 0.7 * roll_yield).moment[0], 0.7 * moment_cap, rounding * moment_cap);
+  EXPECT_NEAR(roll_by(history, 5.0 * roll_yield).moment[0], moment_cap, rounding * moment_cap);
+  EXPECT_NEAR(roll_by(history, -1.5 * roll_yield).moment[0], -0.5 * moment_cap, rounding * moment_cap);
+  EXPECT_NEAR(roll_by(history, -5.0 * roll_yield).moment[0], -moment_cap, rounding * moment_cap);
+  EXPECT_NEAR(law()(motion(delta / 4, 0, 0), history).moment[0], -0.25 * moment_cap, rounding * moment_cap);
+  EXPECT_EQ(history.tangential[0], 0.0);
+}
+
+TEST(ContactLaw, WithoutRollingNoMomentAndTheSameShear)
+{
+  const LinearContactLaw<V, false> plain{V(kn), V(kt), V(kr), V(mu), V(arm)};
+  LinearContactLaw<V, false>::History plain_history{V(1), V(7e-3)};
+  Law::History history{V(1), V(0)};
+  const ContactForce<V> f = plain(motion(delta, 0.3 * yield, 0.5 * roll_yield), plain_history);
+  EXPECT_EQ(f.moment[0], 0.0);
+  EXPECT_EQ(plain_history.moment[0], 7e-3);
+  EXPECT_EQ(f.tangential[0], law()(motion(delta, 0.3 * yield, 0.5 * roll_yield), history).tangential[0]);
+}
+
+TEST(ContactLaw, ARepeatedCallWithoutMotionChangesNothing)
+{
+  Law::History history{V(0), V(0)};
+  slide_by(history, 0.7 * yield);
+  roll_by(history, 3 * roll_yield);
+  const Law::History before = history;
+  law()(motion(delta, 0, 0), history);
+  EXPECT_EQ(history.tangential[0], before.tangential[0]);
+  EXPECT_EQ(history.moment[0], before.moment[0]);
+}
+
+TEST(Combination, EqualGrains)
+{
+  const GrainMaterial sand;
+  const PairConstants c = combine(sand, 1e-3, sand, 1e-3);
+  EXPECT_NEAR(c.normal_stiffness, 3e6, 1e-6);      // E r
+  EXPECT_NEAR(c.tangential_stiffness, 1.5e6, 1e-6);
+  EXPECT_NEAR(c.rolling_stiffness, 1.5, 1e-12);    // beta k_t r^2
+  EXPECT_EQ(c.friction, sand.friction);
+  EXPECT_NEAR(c.rolling_arm, 6e-4, 1e-18);
+}
+
+TEST(Combination, TwoClassesByHand)
+{
+  // Table 1: coarse gravel (r = 10 mm) on coarse sand (r = 1 mm).
+  const GrainMaterial gravel{.modulus = 5e9, .stiffness_ratio = 0.8, .friction = std::tan(50 * 3.141592653589793 / 180),
+                             .rolling_stiffness = 1, .rolling_limit = 0.8};
+  const GrainMaterial sand;
+  const PairConstants c = combine(gravel, 1e-2, sand, 1e-3);
+  EXPECT_NEAR(c.normal_stiffness, 2 * 50e6 * 3e6 / 53e6, 1e-6);
+  EXPECT_NEAR(c.tangential_stiffness, 2 * 40e6 * 1.5e6 / 41.5e6, 1e-6);  // its own series, not 0.65 k_n
+  EXPECT_NEAR(c.rolling_stiffness, c.tangential_stiffness * 1e-5, 1e-9);
+  EXPECT_EQ(c.friction, sand.friction);
+  EXPECT_NEAR(c.rolling_arm, 6e-4, 1e-18);  // min(0.8 * 10, 0.6 * 1) mm
+  const PairConstants swapped = combine(sand, 1e-3, gravel, 1e-2);
+  EXPECT_EQ(c.normal_stiffness, swapped.normal_stiffness);
+  EXPECT_EQ(c.tangential_stiffness, swapped.tangential_stiffness);
+  EXPECT_EQ(c.rolling_arm, swapped.rolling_arm);
+  EXPECT_EQ(c.friction, swapped.friction);
+}
+
+TEST(Combination, TheSmallestArmIsNotAlwaysTheSmallestGrain)
+{
+  const GrainMaterial slick{.rolling_limit = 0.1};
+  EXPECT_NEAR(combine(slick, 2e-3, GrainMaterial{}, 1e-3).rolling_arm, 2e-4, 1e-18);
+}
+
+/// Drives one contact through a jagged path of overlaps (open at times), slides and rolls; lane l sees it scaled by 1 + l/7.
+template <class Lane>
+std::vector<std::array<real_of<Lane>, 3>> jagged_path(int lane_offset)
+{
+  using real = real_of<Lane>;
+  const LinearContactLaw<Lane, true> rule{Lane(real(kn)), Lane(real(kt)), Lane(real(kr)), Lane(real(mu)), Lane(real(arm))};
+  typename LinearContactLaw<Lane, true>::History history{Lane(real(0)), Lane(real(0))};
+  std::vector<std::array<real, 3>> out;
+  for (int k = 0; k < 400; ++k) {
+    ContactMotion<Lane> m{Lane(real(0)), Lane(real(0)), Lane(real(0))};
+    for (std::size_t l = 0; l < Lane::size(); ++l) {
+      const double scale = 1 + (lane_offset + static_cast<double>(l)) / 7;
+      m.overlap[l] = static_cast<real>(delta * (0.7 + std::sin(0.05 * k * scale)));
+      m.sliding[l] = static_cast<real>(0.4 * yield * std::cos(0.3 * k) * scale);
+      m.rolling[l] = static_cast<real>(0.4 * roll_yield * std::sin(0.21 * k) * scale);
+    }
+    const ContactForce<Lane> f = rule(m, history);
+    for (std::size_t l = 0; l < Lane::size(); ++l) out.push_back({f.normal[l], f.tangential[l], f.moment[l]});
+  }
+  return out;
+}
+
+template <class real>
+void check_lanes_against_scalar()
+{
+  constexpr int width = lane_count<WideLane<real>>;
+  const auto wide = jagged_path<WideLane<real>>(0);
+  int slid = 0, open = 0;
+  for (int l = 0; l < width; ++l) {
+    const auto single = jagged_path<SingleLane<real>>(l);
+    for (std::size_t k = 0; k < single.size(); ++k) {
+      ASSERT_EQ(wide[k * width + l], single[k]) << "lane " << l << " call " << k;
+      slid += std::abs(std::abs(single[k][1]) - real(mu) * single[k][0]) == 0 && single[k][0] > 0;
+      open += single[k][0] == 0;
+    }
+  }
+  EXPECT_GT(slid, 10);  // the path visits sliding and open contacts
+  EXPECT_GT(open, 10);
+}
+
+TEST(ContactLawLanes, WideDoubleIsBitIdenticalToScalar) { check_lanes_against_scalar<double>(); }
+TEST(ContactLawLanes, WideFloatIsBitIdenticalToScalar) { check_lanes_against_scalar<float>(); }
+
+TEST(ContactLawLanes, FloatFollowsDouble)
+{
+  const auto single = jagged_path<SingleLane<float>>(0);
+  const auto reference = jagged_path<SingleLane<double>>(0);
+  for (std::size_t k = 0; k < single.size(); ++k) {
+    EXPECT_NEAR(static_cast<double>(single[k][1]), reference[k][1], 1e-5 * cap);  // some 100 sums of 6e-8 each
+    EXPECT_NEAR(static_cast<double>(single[k][2]), reference[k][2], 1e-5 * moment_cap);
+  }
+}
+
+TEST(ContactLawLanes, ANotANumberStaysInItsLane)
+{
+  using Lane = WideLane<double>;
+  const LinearContactLaw<Lane, true> rule{Lane(kn), Lane(kt), Lane(kr), Lane(mu), Lane(arm)};
+  typename LinearContactLaw<Lane, true>::History history{Lane(0.0), Lane(0.0)};
+  ContactMotion<Lane> m{Lane(delta), Lane(0.5 * yield), Lane(0.5 * roll_yield)};
+  m.sliding[0] = std::numeric_limits<double>::quiet_NaN();
+  const ContactForce<Lane> f = rule(m, history);
+  for (std::size_t l = 1; l < Lane::size(); ++l) {
+    EXPECT_EQ(f.tangential[l], kt * (0.5 * yield));
+    EXPECT_NEAR(f.moment[l], 0.5 * moment_cap, 1e-12 * moment_cap);
+  }
+}
+
+}  // namespace
+}  // namespace voussoir::kernels
