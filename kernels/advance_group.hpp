@@ -79,11 +79,14 @@ class GroupAdvance {
     skin_ = settings_.skin * packing_->mean_diameter();
     group_.n_grains = packing_->size();
     group_.local_damping = packing_->local_damping;
-    group_.reserve_grains(group_.n_grains);
-    for (int i = 0; i < group_.n_grains; ++i) {
-      group_.grains(i) = GrainLanes<V>{V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0)};
-      const double r = packing_->radii[static_cast<std::size_t>(i)];
-      group_.shapes(i) = {static_cast<real>(r), static_cast<real>(mobility_of(packing_->material, r)),
+    const auto n = static_cast<std::size_t>(group_.n_grains);
+    group_.grains.resize(n);
+    group_.shapes.resize(n);
+    group_.row.resize(n + 1);
+    for (std::size_t i = 0; i < n; ++i) {
+      group_.grains[i] = GrainLanes<V>{V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0)};
+      const double r = packing_->radii[i];
+      group_.shapes[i] = {static_cast<real>(r), static_cast<real>(mobility_of(packing_->material, r)),
                           static_cast<real>(rotational_mobility_of(packing_->material, r))};
     }
     for (std::size_t l = 0; l < width; ++l) {
@@ -192,7 +195,7 @@ class GroupAdvance {
       const double v = volume(l);
       Measurement m{sums.stress_xx[l] / v, sums.stress_yy[l] / v, 0};
       const double p = std::max(-0.5 * (m.stress_xx + m.stress_yy), settings_.pressure_floor);
-      m.unbalanced = std::sqrt(sums.force_squared[l] / group_.n_grains) /
+      m.unbalanced = std::sqrt(static_cast<double>(sums.force_squared[l]) / group_.n_grains) /
                      (p * packing_->thickness * packing_->mean_diameter());
       lane.unbalanced = m.unbalanced;
       const Verdict verdict = lane.drive.judge(step, m);
@@ -205,8 +208,7 @@ class GroupAdvance {
   void freeze(std::size_t l, RveStatus status) {
     lanes_[l].running = false;
     lanes_[l].status = status;
-    for (int i = 0; i < group_.n_grains; ++i) {
-      GrainLanes<V>& g = group_.grains(i);
+    for (GrainLanes<V>& g : group_.grains) {
       g.w_x[l] = g.w_y[l] = g.spin[l] = real(0);
     }
   }
@@ -214,8 +216,7 @@ class GroupAdvance {
   /// The lane is given up: its numbers leave the group.
   void discard(std::size_t l, RveStatus status) {
     freeze(l, status);
-    for (int i = 0; i < group_.n_grains; ++i) {
-      GrainLanes<V>& g = group_.grains(i);
+    for (GrainLanes<V>& g : group_.grains) {
       g.u_x[l] = g.u_y[l] = g.force_x[l] = g.force_y[l] = g.torque[l] = real(0);
     }
     lanes_[l].f_minus_i = Mat2{};
@@ -227,8 +228,7 @@ class GroupAdvance {
   /// Rebases the lanes whose grains may have met someone they do not list: 2 max|u| + |F - I| (R + skin) >= 0.9 skin.
   void check_lists() {
     V largest(0), finite(0);
-    for (int i = 0; i < group_.n_grains; ++i) {
-      const GrainLanes<V>& g = group_.grains(i);
+    for (const GrainLanes<V>& g : group_.grains) {
       const V squared = fused(g.u_x, g.u_x, g.u_y * g.u_y);
       largest = larger(largest, squared);
       finite = fused(squared, V(0), finite);  // 0, or NaN once any term is not finite
@@ -268,7 +268,7 @@ class GroupAdvance {
     const Mat2 f = identity2 + lanes_[l].f_minus_i;
     list.cell = f * list.cell;
     lanes_[l].f_minus_i = Mat2{};
-    for (int i = 0; i < group_.n_grains; ++i) group_.grains(i).u_x[l] = group_.grains(i).u_y[l] = real(0);
+    for (GrainLanes<V>& g : group_.grains) g.u_x[l] = g.u_y[l] = real(0);
     find_candidates(list.position, packing_->radii, Cell(list.cell), skin_, keys_);
     list_pairs(list, packing_->radii, keys_, kept_);
   }
@@ -279,8 +279,8 @@ class GroupAdvance {
     const Cell cell(f * lists_[l].cell);
     for (std::size_t i = 0; i < static_cast<std::size_t>(group_.n_grains); ++i) {
       const double px = position[2 * i], py = position[2 * i + 1];
-      double x = f.xx * px + f.xy * py + static_cast<double>(group_.grains(i).u_x[l]);
-      double y = f.yx * px + f.yy * py + static_cast<double>(group_.grains(i).u_y[l]);
+      double x = f.xx * px + f.xy * py + static_cast<double>(group_.grains[i].u_x[l]);
+      double y = f.yx * px + f.yy * py + static_cast<double>(group_.grains[i].u_y[l]);
       cell.wrap(x, y);
       position[2 * i] = x;
       position[2 * i + 1] = y;
@@ -338,7 +338,7 @@ class GroupAdvance {
     std::copy(lists_[l].position.begin(), lists_[l].position.end(), &to.position(rve, 0, 0));
     for (std::size_t i = 0; i < static_cast<std::size_t>(group_.n_grains); ++i) {
       to.rotation(rve, i) = batch_->committed.rotation(rve, i) + lanes_[l].rotation +
-                            static_cast<double>(group_.grains(i).rotation[l]);
+                            static_cast<double>(group_.grains[i].rotation[l]);
     }
     store_contacts(l, rve);
   }
@@ -346,16 +346,17 @@ class GroupAdvance {
   void store_contacts(std::size_t l, std::size_t rve) {
     RveStates& to = batch_->trial;
     int count = 0;
-    for (int i = 0; i < group_.n_grains; ++i) {
-      const GrainLanes<V>& gi = group_.grains(i);
-      for (int p = group_.row(i); p < group_.row(i + 1); ++p) {
-        const int j = group_.pair_shapes(p).other;
-        const GrainLanes<V>& gj = group_.grains(j);
-        const auto at = geometry_of(group_.pairs(p), group_.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
+    for (std::size_t i = 0; i < group_.grains.size(); ++i) {
+      const GrainLanes<V>& gi = group_.grains[i];
+      for (auto p = static_cast<std::size_t>(group_.row[i]); p < static_cast<std::size_t>(group_.row[i + 1]); ++p) {
+        const int j = group_.pair_shapes[p].other;
+        const GrainLanes<V>& gj = group_.grains[static_cast<std::size_t>(j)];
+        const PairLanes<V>& pair = group_.pairs[p];
+        const auto at = geometry_of(pair, group_.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
         if (!(at.gap[l] < real(0))) continue;
-        to.contact_key(rve, count) = pair_key(i, j);
-        to.contact_history(rve, count, 0) = group_.pairs(p).tangential[l];
-        to.contact_history(rve, count, 1) = group_.pairs(p).moment[l];
+        to.contact_key(rve, count) = pair_key(static_cast<int>(i), j);
+        to.contact_history(rve, count, 0) = pair.tangential[l];
+        to.contact_history(rve, count, 1) = pair.moment[l];
         ++count;
       }
     }

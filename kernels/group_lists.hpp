@@ -92,21 +92,15 @@ class UnionBuilder {
 
   void build(GroupState<V>& group, const Lanes& lanes, const Packing& packing) {
     const int n = group.n_grains;
-    std::size_t total = 0, longest = 0;
-    for (const auto& lane : lanes) {
-      total += lane.pairs.size();
-      longest = std::max(longest, lane.pairs.size());
-    }
-    group.reserve_pairs(static_cast<int>(std::min(total, 2 * longest + 64)));
     cursor_.fill(0);
     listed_.assign((static_cast<std::size_t>(n) + 63) / 64, 0);
     int count = 0;
     for (int i = 0; i < n; ++i) {
-      group.row(i) = count;
+      group.row[static_cast<std::size_t>(i)] = count;
       collect_row(lanes, i);
       count = append_row(group, lanes, packing, i, count);
     }
-    group.row(n) = count;
+    group.row[static_cast<std::size_t>(n)] = count;
     group.n_pairs = count;
   }
 
@@ -129,21 +123,17 @@ class UnionBuilder {
       while (listed_[w] != 0) {
         const int j = static_cast<int>(w * 64) + std::countr_zero(listed_[w]);
         listed_[w] &= listed_[w] - 1;
-        if (count == static_cast<int>(group.pairs.extent(0))) grow(group, count);
-        group.pair_shapes(count) = shape_of<V>(packing, i, j);
-        fill(group.pairs(count), lanes, pair_key(i, j), packing);
+        const auto at = static_cast<std::size_t>(count);
+        if (at == group.pairs.size()) {
+          group.pairs.resize(2 * at + 64);
+          group.pair_shapes.resize(2 * at + 64);
+        }
+        group.pair_shapes[at] = shape_of<V>(packing, i, j);
+        fill(group.pairs[at], lanes, pair_key(i, j), packing);
         ++count;
       }
     }
     return count;
-  }
-
-  static void grow(GroupState<V>& group, int count) {
-    const auto pairs = group.pairs;
-    const auto shapes = group.pair_shapes;
-    group.reserve_pairs(2 * count + 64);
-    std::copy_n(pairs.data(), count, group.pairs.data());
-    std::copy_n(shapes.data(), count, group.pair_shapes.data());
   }
 
   void fill(PairLanes<V>& to, const Lanes& lanes, std::uint32_t key, const Packing& packing) {
@@ -168,10 +158,11 @@ template <class V>
 void gather_lane(const GroupState<V>& group, std::size_t lane, std::vector<ListedPair<real_of<V>>>& pairs) {
   pairs.clear();
   for (int i = 0; i < group.n_grains; ++i) {
-    for (int p = group.row(i); p < group.row(i + 1); ++p) {
-      const PairLanes<V>& from = group.pairs(p);
+    const auto si = static_cast<std::size_t>(i);
+    for (auto p = static_cast<std::size_t>(group.row[si]); p < static_cast<std::size_t>(group.row[si + 1]); ++p) {
+      const PairLanes<V>& from = group.pairs[p];
       if (from.branch_x[lane] == 0 && from.branch_y[lane] == 0) continue;
-      pairs.push_back({pair_key(i, group.pair_shapes(p).other), from.branch_x[lane], from.branch_y[lane], from.gap[lane],
+      pairs.push_back({pair_key(i, group.pair_shapes[p].other), from.branch_x[lane], from.branch_y[lane], from.gap[lane],
                        from.tangential[lane], from.moment[lane]});
     }
   }

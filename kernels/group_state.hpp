@@ -5,7 +5,7 @@
 /// thread owns a group for a whole increment, so it stays in L1/L2.
 
 #include <cstdint>
-#include <string>
+#include <vector>
 
 #include "kernels/contact_law.hpp"
 #include "kernels/kinematics.hpp"
@@ -67,40 +67,18 @@ struct SweepSums {
   V force_squared = V(0);  ///< sum |f|^2 over grains [N^2]
 };
 
+/// Plain vectors, not views: a group grows its arrays inside the parallel region, where a view may not be made.
 template <class V>
 struct GroupState {
-  template <class T>
-  using Array = Kokkos::View<T*, Kokkos::HostSpace>;
-
   int n_grains = 0;
   int n_pairs = 0;
   double local_damping = 0.3;
-  Array<GrainLanes<V>> grains;
-  Array<GrainShape<real_of<V>>> shapes;
-  Array<int> row;  ///< pairs of grain i: row(i) .. row(i+1)
-  Array<PairLanes<V>> pairs;
-  Array<PairShape<real_of<V>>> pair_shapes;
+  std::vector<GrainLanes<V>> grains;
+  std::vector<GrainShape<real_of<V>>> shapes;
+  std::vector<int> row;  ///< pairs of grain i: row[i] .. row[i + 1]
+  std::vector<PairLanes<V>> pairs;  ///< the first n_pairs are in use
+  std::vector<PairShape<real_of<V>>> pair_shapes;
   CellMotion<V> motion;
-
-  void reserve_grains(int n) {
-    if (n <= static_cast<int>(grains.extent(0))) return;
-    grains = allocate<GrainLanes<V>>("grains", n);
-    shapes = allocate<GrainShape<real_of<V>>>("shapes", n);
-    row = allocate<int>("row", n + 1);
-  }
-
-  void reserve_pairs(int n) {
-    if (n <= static_cast<int>(pairs.extent(0))) return;
-    pairs = allocate<PairLanes<V>>("pairs", n);
-    pair_shapes = allocate<PairShape<real_of<V>>>("pair_shapes", n);
-  }
-
- private:
-  template <class T>
-  static Array<T> allocate(const char* what, int n) {
-    const std::string label = std::string("voussoir::group_state::") + what;
-    return Array<T>(Kokkos::view_alloc(label, Kokkos::WithoutInitializing), static_cast<std::size_t>(n));
-  }
 };
 
 }  // namespace voussoir::kernels

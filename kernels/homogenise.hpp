@@ -56,14 +56,14 @@ template <class Law, class V>
 Homogenised<V> homogenise(GroupState<V>& group) {
   Homogenised<V> out;
   const GrainLanes<V>* const grains = group.grains.data();
-  for (int i = 0; i < group.n_grains; ++i) {
-    const V radius(group.shapes(i).radius);
-    for (int p = group.row(i); p < group.row(i + 1); ++p) {
-      PairShape<real_of<V>>& shape = group.pair_shapes(p);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(group.n_grains); ++i) {
+    const V radius(group.shapes[i].radius);
+    for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
+      PairShape<real_of<V>>& shape = group.pair_shapes[p];
       const GrainLanes<V>& gj = grains[shape.other];
       const PairGeometry<V> at =
-          geometry_of(group.pairs(p), group.motion, gj.u_x - grains[i].u_x, gj.u_y - grains[i].u_y);
-      homogenise_pair<Law>(out, group.pairs(p), shape, at, group.motion, radius);
+          geometry_of(group.pairs[p], group.motion, gj.u_x - grains[i].u_x, gj.u_y - grains[i].u_y);
+      homogenise_pair<Law>(out, group.pairs[p], shape, at, group.motion, radius);
     }
   }
   return out;
