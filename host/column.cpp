@@ -1,0 +1,108 @@
+// Stage "column": a rectangle of the same RVEs under gravity. Every point follows the same oedometric path, so that all
+// rows at all load factors are samples of one K0 (sigma_yy).
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "fem/boundary.hpp"
+#include "host/material_factory.hpp"
+#include "host/stages.hpp"
+#include "io/atomic_file.hpp"
+
+namespace voussoir::host {
+namespace {
+
+struct ColumnRow {
+  K0Sample sample;
+  double deflection = 0;  ///< of the principal axis from the vertical [rad], signed
+};
+
+/// Rows of Gauss points of a column one element wide: the points 0, 1 of an element are its lower row, 2, 3 its upper one.
+std::vector<ColumnRow> averaged_rows(const std::vector<fem::Stress>& stress) {
+  std::vector<ColumnRow> rows;
+  for (std::size_t p = 0; p + 1 < stress.size(); p += 2) {
+    const PlaneTensor mean = 0.5 * (stress[p] + stress[p + 1]);
+    rows.push_back({{-mean[1], mean[0] / mean[1]}, major_axis_from_vertical(mean)});
+  }
+  return rows;
+}
+
+std::vector<ColumnRow> rows_from(const io::Checkpoint& checkpoint) {
+  const std::vector<double> flat = checkpoint.get_doubles("column_rows");
+  std::vector<ColumnRow> rows;
+  for (std::size_t k = 0; k + 2 < flat.size(); k += 3) rows.push_back({{flat[k], flat[k + 1]}, flat[k + 2]});
+  return rows;
+}
+
+void put_rows(io::Checkpoint& checkpoint, const std::vector<ColumnRow>& rows) {
+  std::vector<double> flat;
+  for (const ColumnRow& row : rows) flat.insert(flat.end(), {row.sample.vertical, row.sample.ratio, row.deflection});
+  checkpoint.put_doubles("column_rows", flat);
+}
+
+K0Table fit(const std::vector<ColumnRow>& rows, double initial_stress) {
+  std::vector<K0Sample> samples;
+  for (const ColumnRow& row : rows) samples.push_back(row.sample);
+  return K0Table::fit(std::move(samples), initial_stress);
+}
+
+/// The fitted table, and the rows of the last load factor as they were measured.
+void write_k0(const std::filesystem::path& folder, const K0Table& k0, const std::vector<ColumnRow>& rows,
+              std::size_t last_rows) {
+  std::string fitted = "vertical_stress_Pa,k0\n";
+  for (std::size_t k = 0; k < k0.stress().size(); ++k) {
+    fitted += fmt::format("{:.9g},{:.9g}\n", k0.stress()[k], k0.ratio()[k]);
+  }
+  io::write_text(folder / "k0.csv", fitted);
+  std::string measured = "vertical_stress_Pa,k0,deflection_rad\n";
+  for (std::size_t k = rows.size() - std::min(last_rows, rows.size()); k < rows.size(); ++k) {
+    measured += fmt::format("{:.9g},{:.9g},{:.9g}\n", rows[k].sample.vertical, rows[k].sample.ratio, rows[k].deflection);
+  }
+  io::write_text(folder / "column_rows.csv", measured);
+}
+
+Stage column_stage(const fem::Mesh& mesh, const Case& input, std::vector<ColumnRow>& rows) {
+  Stage stage;
+  stage.name = "column";
+  stage.kinematics = fem::Kinematics::fixed_mesh;
+  stage.path.external_force = [&](double lambda) { return ground_weight(mesh, input.ground, lambda); };
+  stage.path.prescribed_increment = [supports = ground_supports(mesh)](double, double) { return supports; };
+  stage.path.reference_force = stage.path.external_force(1.0).norm();
+  stage.targets = gravity_targets(input);
+  stage.last = true;
+  stage.on_step = [&rows](const fem::ConvergedStep& step) {
+    for (const ColumnRow& row : averaged_rows(step.increment.stress)) rows.push_back(row);
+  };
+  stage.on_checkpoint = [&rows](io::Checkpoint& checkpoint) { put_rows(checkpoint, rows); };
+  return stage;
+}
+
+}  // namespace
+
+ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& log) {
+  const fem::Mesh mesh = fem::make_rectangle(input.column.width, input.ground.height, 1, input.column.elements);
+  RunRecorder recorder(options, input, "column", mesh_data(mesh, input), log);
+  std::vector<ColumnRow> rows;
+  if (const io::Checkpoint* checkpoint = recorder.resumed()) rows = rows_from(*checkpoint);
+  if (!recorder.finished()) {
+    const auto material = make_material(input, static_cast<std::size_t>(mesh.n_points()));
+    Ground ground{input, mesh, *material, {}, {}};
+    if (const io::Checkpoint* checkpoint = recorder.resumed()) {
+      restore(ground, *checkpoint);
+    } else {
+      begin_stage(ground);
+    }
+    const RunStatus status = advance_stage(ground, column_stage(mesh, input, rows), recorder);
+    if (status != RunStatus::finished) return {status, {}};
+  }
+  const K0Table k0 = fit(rows, input.ground.surcharge);
+  write_k0(options.folder, k0, rows, static_cast<std::size_t>(2 * mesh.n_elements()));
+  log.line(fmt::format("column: K0 falls from 1 at {:.3g} Pa to {:.3f} at {:.3g} Pa", input.ground.surcharge,
+                       k0.ratio().back(), k0.stress().back()));
+  return {RunStatus::finished, k0};
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,124 @@
+#include "host/run_recorder.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Kokkos_Core.hpp>
+#include <array>
+#include <cstdint>
+#include <ctime>
+#include <utility>
+
+#include "host/build_info.hpp"
+
+namespace voussoir::host {
+namespace {
+
+std::string kokkos_description() {
+  return fmt::format("Kokkos {}.{}.{}, {}", KOKKOS_VERSION / 10000, KOKKOS_VERSION / 100 % 100, KOKKOS_VERSION % 100,
+                     Kokkos::DefaultExecutionSpace::name());
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+io::Provenance provenance(const RunOptions& options, const Case& input, const std::string& kind) {
+  io::Provenance p;
+  p.case_kind = kind;
+  p.input = input.resolved;
+  p.fingerprint = input.fingerprint;
+  p.version = build_version;
+  p.git_hash = build_revision;
+  p.kokkos = kokkos_description();
+  p.command = options.command;
+  p.date = utc_now();
+  p.threads = options.threads;
+  return p;
+}
+
+std::string duration(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(const RunOptions& options, const Case& input, const std::string& kind, io::MeshData mesh,
+                         RunLog& log)
+    : folder_(options.folder), log_(log), store_(options.folder / "checkpoints", input.fingerprint) {
+  if (options.resume) loaded_ = store_.load_latest();
+  if (!loaded_) {
+    store_.clear();
+    writer_ = io::ResultWriter::create(folder_, provenance(options, input, kind), std::move(mesh));
+    return;
+  }
+  for (const std::string& skipped : loaded_->skipped) log_.warning(skipped);
+  const io::Checkpoint& checkpoint = loaded_->checkpoint;
+  const std::vector<std::int64_t> record = checkpoint.get_integers("record");
+  resumed_stage_ = checkpoint.get_text("stage");
+  resumed_stage_index_ = static_cast<int>(record.at(0));
+  result_index_ = static_cast<int>(record.at(1));
+  finished_ = record.at(2) != 0;
+  sequence_ = loaded_->increment;
+  writer_ = io::ResultWriter::resume(folder_, provenance(options, input, kind), std::move(mesh), result_index_);
+}
+
+const io::Checkpoint* RunRecorder::resumed() const { return loaded_ ? &loaded_->checkpoint : nullptr; }
+
+void RunRecorder::begin_stage(const std::string& name, int done, int planned) {
+  stage_ = name;
+  stage_done_ = done;
+  stage_current_ = done;
+  stage_planned_ = planned;
+  stage_start_ = std::chrono::steady_clock::now();
+}
+
+std::string RunRecorder::time_left(int done) const {
+  const int here = done - stage_done_;
+  if (here <= 0) return "?";
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - stage_start_;
+  return duration(spent.count() / here * (stage_planned_ - done));
+}
+
+void RunRecorder::show_iterate(double load_parameter, const fem::Iterate& iterate) {
+  log_.live(fmt::format("{} {}/{}  at {:.4g}  iteration {}  residual {:.2e} of {:.2e} N/m  stage ends in {}", stage_,
+                        stage_current_ + 1, stage_planned_, load_parameter, iterate.iteration, iterate.residual,
+                        iterate.bound, time_left(stage_current_)));
+}
+
+void RunRecorder::report(const io::IncrementInfo& info) {
+  stage_current_ = info.stage_index;
+  std::string text =
+      fmt::format("{} {}/{}: at {:.5g}, {} iterations, residual {:.1e}, {:.2g} s", info.stage, info.stage_index,
+                  stage_planned_, info.load_parameter, info.iterations, info.residual, info.wall_s);
+  if (info.cuts > 0) text += fmt::format(", cut {} times", info.cuts);
+  const auto column = [&](const char* name) { return info.extra.contains(name) ? info.extra.at(name) : 0.0; };
+  if (column("open_points") > 0) text += fmt::format(", {} points open", column("open_points"));
+  if (column("step_limit_points") > 0) text += fmt::format(", {} points at the step limit", column("step_limit_points"));
+  if (column("slowest_steps") > 0) {
+    text += fmt::format(", slowest RVE {} with {} steps", column("slowest_point"), column("slowest_steps"));
+  }
+  if (stage_current_ < stage_planned_) text += fmt::format("; stage ends in {}", time_left(stage_current_));
+  log_.line(text);
+}
+
+void RunRecorder::write(io::IncrementInfo info, const std::vector<io::Field>& fields,
+                        const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates) {
+  info.index = ++result_index_;
+  writer_->write(info, fields, snapshots, coordinates);
+}
+
+void RunRecorder::save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished) {
+  checkpoint.put_text("stage", stage);
+  const std::array<std::int64_t, 3> record{stage_index, result_index_, finished ? 1 : 0};
+  checkpoint.put_integers("record", record);
+  store_.save(++sequence_, checkpoint);
+}
+
+}  // namespace voussoir::host

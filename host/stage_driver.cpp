@@ -1,0 +1,158 @@
+#include "host/stage_driver.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "host/interrupt.hpp"
+#include "host/snapshot_source.hpp"
+
+namespace voussoir::host {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The residual's norm over the reference that the tolerance is relative to.
+double relative(double residual, const fem::NewtonReport& report, double tolerance) {
+  const double reference = (report.residual_bound - report.noise_floor) / tolerance;
+  return reference > 0 ? residual / reference : residual;
+}
+
+/// Columns that say how hard the points were to bring to equilibrium.
+void add_material_columns(const Ground& ground, const fem::NewtonReport& report, io::IncrementInfo& info) {
+  info.extra["largest_nodal_ratio"] = report.largest_nodal_ratio;
+  info.extra["noise_floor"] = report.noise_floor;
+  info.extra["open_points"] = static_cast<double>(report.material.open);
+  info.extra["step_limit_points"] = static_cast<double>(report.material.step_limit);
+  for (const fem::PointField& field : ground.material.fields()) {
+    if (field.name != "steps" || field.values.empty()) continue;
+    const auto slowest = std::max_element(field.values.begin(), field.values.end());
+    info.extra["slowest_point"] = static_cast<double>(slowest - field.values.begin());
+    info.extra["slowest_steps"] = *slowest;
+  }
+}
+
+/// One stage as it runs. Iterations, evaluations and cuts are summed from target to target.
+class StageRun {
+ public:
+  StageRun(Ground& ground, const Stage& stage, RunRecorder& recorder)
+      : ground_(ground), stage_(stage), recorder_(recorder), since_(Clock::now()) {
+    info_.stage = stage.name;
+    done_ = static_cast<int>(std::count_if(stage.targets.begin(), stage.targets.end(),
+                                           [&](double target) { return target <= ground.state.parameter; }));
+  }
+
+  [[nodiscard]] int done() const { return done_; }
+
+  /// False: stop here.
+  bool converged(const fem::ConvergedStep& step) {
+    tally(step.report);
+    for (std::size_t p = 0; p < ground_.strain.size(); ++p) {
+      const fem::Gradient& h = step.increment.gradients[p];
+      ground_.strain[p] += PlaneTensor(h(0, 0), h(1, 1), 0.5 * (h(0, 1) + h(1, 0)));
+    }
+    if (stage_.on_step) stage_.on_step(step);
+    if (!step.target) return true;
+    finish_increment(step);
+    return !interrupted();
+  }
+
+  void failed(const fem::FailedStep& step) {
+    tally(step.report);
+    ++info_.cuts;
+    recorder_.log().line(fmt::format("{}: step {:.6g} to {:.6g} cut: {} {}", stage_.name, step.from, step.to,
+                                     fem::to_string(step.report.status), step.report.material.message));
+  }
+
+ private:
+  void tally(const fem::NewtonReport& report) {
+    info_.iterations += report.iterations;
+    info_.evaluations += report.evaluations;
+    info_.particle_steps += static_cast<double>(report.work);
+  }
+
+  void finish_increment(const fem::ConvergedStep& step) {
+    const double tolerance = ground_.input.newton.tolerance;
+    info_.stage_index = ++done_;
+    info_.load_parameter = step.to;
+    info_.volume_loss = stage_.loses_volume ? step.to : 0.0;
+    info_.converged = true;
+    info_.residual = relative(step.report.residual, step.report, tolerance);
+    for (const double r : step.report.residual_history) {
+      info_.residual_history.push_back(relative(r, step.report, tolerance));
+    }
+    add_material_columns(ground_, step.report, info_);
+    if (stage_.on_record) stage_.on_record(info_);
+    info_.wall_s = std::chrono::duration<double>(Clock::now() - since_).count();
+    const bool last_target = done_ == static_cast<int>(stage_.targets.size());
+    if (last_target || done_ % ground_.input.output.every == 0) {
+      record_ground(ground_, info_, step.increment.reactions, recorder_);
+    }
+    checkpoint(stage_.last && last_target);
+    recorder_.report(info_);
+    info_ = {};
+    info_.stage = stage_.name;
+    since_ = Clock::now();
+  }
+
+  void checkpoint(bool finished) {
+    io::Checkpoint checkpoint;
+    save(ground_, checkpoint);
+    if (stage_.on_checkpoint) stage_.on_checkpoint(checkpoint);
+    recorder_.save(std::move(checkpoint), stage_.name, done_, finished);
+  }
+
+  Ground& ground_;
+  const Stage& stage_;
+  RunRecorder& recorder_;
+  io::IncrementInfo info_;
+  Clock::time_point since_;
+  int done_ = 0;
+};
+
+}  // namespace
+
+fem::NewtonOptions newton_options(const NewtonCase& newton) {
+  fem::NewtonOptions options;
+  options.tolerance = newton.tolerance;
+  options.displacement_tolerance = newton.displacement_tolerance;
+  options.max_iterations = newton.maximum_iterations;
+  options.anderson_depth = newton.anderson_depth;
+  options.initial_tangent_share = newton.initial_tangent_fraction;
+  return options;
+}
+
+void record_ground(const Ground& ground, const io::IncrementInfo& info, const Eigen::VectorXd& reactions,
+                   RunRecorder& recorder) {
+  std::vector<io::RveSnapshot> snapshots;
+  if (const auto* source = dynamic_cast<const SnapshotSource*>(&ground.material)) {
+    if (!ground.input.output.rves.empty()) snapshots = source->snapshots(ground.input.output.rves);
+  }
+  recorder.write(info, result_fields(ground, reactions), snapshots, moved_coordinates(ground));
+}
+
+RunStatus advance_stage(Ground& ground, const Stage& stage, RunRecorder& recorder) {
+  StageRun run(ground, stage, recorder);
+  if (run.done() == static_cast<int>(stage.targets.size())) return RunStatus::finished;
+  if (interrupted()) return RunStatus::interrupted;
+
+  fem::NewtonSolver solver(ground.mesh, ground.material, stage.kinematics, newton_options(ground.input.newton));
+  solver.on_iterate = [&](const fem::Iterate& iterate) { recorder.show_iterate(ground.state.parameter, iterate); };
+  recorder.begin_stage(stage.name, run.done(), static_cast<int>(stage.targets.size()));
+
+  fem::StepOptions options;
+  options.smallest = ground.input.newton.smallest_cut;
+  const fem::StepReport report =
+      fem::advance_load(solver, ground.state, stage.path, stage.targets, options,
+                        {.on_converged = [&](const fem::ConvergedStep& step) { return run.converged(step); },
+                         .on_failed = [&](const fem::FailedStep& step) { run.failed(step); }});
+  if (report.status == fem::StepStatus::gave_up) {
+    recorder.log().line(fmt::format("{} failed: {}", stage.name, report.message));
+    return RunStatus::failed;
+  }
+  const bool complete = ground.state.parameter == stage.targets.back();
+  return complete ? RunStatus::finished : RunStatus::interrupted;
+}
+
+}  // namespace voussoir::host

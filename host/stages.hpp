@@ -1,0 +1,62 @@
+#pragma once
+/// The stages of the ground (method.md, section 4), each a function that goes on where the ground stands.
+
+#include <string>
+#include <vector>
+
+#include "host/ground.hpp"
+#include "host/k0_table.hpp"
+#include "host/stage_driver.hpp"
+
+namespace voussoir::host {
+
+/// K0 (sigma_yy) of the case's material, measured on a column under its own weight (stages: "column").
+struct ColumnResult {
+  RunStatus status = RunStatus::finished;
+  K0Table k0;
+};
+/// Runs, or goes on with, the column in options.folder, with its own results and checkpoints, and k0.csv (vertical stress
+/// [Pa], K0 [-], deflection of the principal axis [rad]).
+[[nodiscard]] ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& log);
+
+/// From the isotropic initial state to geostatic equilibrium on the fixed mesh (stage "gravity"); the opening is held by
+/// the tractions of eqs. (15), (16). `last`: the run ends here.
+[[nodiscard]] RunStatus settle_under_gravity(Ground& ground, const K0Table& k0, RunRecorder& recorder, bool last);
+
+/// Eccentric volume loss, eqs. (17)-(19), from V_l = 0 (stage "volume_loss"). Starts a new stage of the ground unless
+/// `resumed`; the opening is fixed where it stands.
+[[nodiscard]] RunStatus lose_volume(Ground& ground, const K0Table& k0, RunRecorder& recorder, bool resumed);
+
+/// Load factors of the increments of column and gravity.
+[[nodiscard]] std::vector<double> gravity_targets(const Case& input);
+
+/// Nodal forces of weight and surcharge at load factor lambda [N/m].
+[[nodiscard]] Eigen::VectorXd ground_weight(const fem::Mesh& mesh, const GroundCase& ground, double load_factor);
+
+/// Tractions that hold the opening at load factor lambda, eqs. (15), (16) [N/m].
+[[nodiscard]] Eigen::VectorXd opening_tractions(const fem::Mesh& mesh, const GroundCase& ground, const K0Table& k0,
+                                                double load_factor);
+
+/// Base fixed, sides and symmetry axis on rollers.
+[[nodiscard]] fem::Constraints ground_supports(const fem::Mesh& mesh);
+
+/// How near the ground after gravity is to the state at rest; Gauss points farther than D/2 from the opening.
+struct GeostaticCheck {
+  double vertical_error = 0;    ///< largest |sigma_yy - (unit weight * depth + surcharge)| [Pa]
+  double vertical_ratio = 0;    ///< the same, over (5 % of the expected stress + 1 kPa) [-]; at most 1 is wanted
+  double k0_minimum = 1;        ///< least horizontal over vertical stress [-]
+  double k0_maximum = 0;        ///< largest [-]
+  double deflection_mean = 0;   ///< of the principal axis from the vertical [rad]
+  double deflection_max = 0;    ///< [rad]
+};
+[[nodiscard]] GeostaticCheck check_geostatic(const Ground& ground);
+
+/// Reactions of the opening, fixed where it stands, against the tractions that held it.
+struct OpeningCheck {
+  double difference = 0;         ///< |reactions - tractions| over the opening's free directions [N/m]
+  double relative = 0;           ///< the same, over |tractions| [-]
+  Eigen::VectorXd reactions;     ///< of all supports on the ground, n_dofs [N/m]
+};
+[[nodiscard]] OpeningCheck check_opening(const Ground& ground, const K0Table& k0);
+
+}  // namespace voussoir::host

@@ -1,0 +1,51 @@
+#include "host/tunnel.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "host/material_factory.hpp"
+
+namespace voussoir::host {
+
+fem::Mesh tunnel_mesh(const GroundCase& ground) {
+  return fem::make_half_tunnel({.width = ground.width,
+                                .height = ground.height,
+                                .diameter = ground.diameter,
+                                .cover = ground.cover(),
+                                .size_near = ground.mesh_size_opening,
+                                .size_far = ground.mesh_size_far});
+}
+
+RunStatus run_tunnel(const Case& input, const RunOptions& options) {
+  const fem::Mesh mesh = tunnel_mesh(input.ground);
+  std::filesystem::create_directories(options.folder);
+  RunLog log(options.folder / "run.log", options.resume);
+  RunRecorder recorder(options, input, "tunnel", mesh_data(mesh, input), log);
+  if (recorder.finished()) {
+    log.line(fmt::format("{}: finished already, nothing to do", options.folder.string()));
+    return RunStatus::finished;
+  }
+  log.line(fmt::format("{}: {} elements, {} points of {}", input.name, mesh.n_elements(), mesh.n_points(),
+                       to_string(input.material)));
+
+  RunOptions column_options = options;
+  column_options.folder /= "column";
+  const ColumnResult column = run_column(input, column_options, log);
+  if (column.status != RunStatus::finished) return column.status;
+
+  const auto material = make_material(input, static_cast<std::size_t>(mesh.n_points()));
+  Ground ground{input, mesh, *material, {}, {}};
+  if (const io::Checkpoint* checkpoint = recorder.resumed()) {
+    restore(ground, *checkpoint);
+    log.line(fmt::format("resumed behind increment {} of {}", recorder.resumed_stage_index(), recorder.resumed_stage()));
+  } else {
+    begin_stage(ground);
+  }
+  const bool losing = recorder.resumed_stage() == "volume_loss";
+  if (!losing) {
+    const RunStatus gravity = settle_under_gravity(ground, column.k0, recorder, false);
+    if (gravity != RunStatus::finished) return gravity;
+  }
+  return lose_volume(ground, column.k0, recorder, losing);
+}
+
+}  // namespace voussoir::host
