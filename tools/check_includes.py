@@ -16,8 +16,8 @@ from pathlib import Path
 
 OURS = ("kernels", "fem", "io", "host", "tests")
 
-# folder -> (our folders, third-party libraries) that it may include. Standard headers are free to all, and fmt stands in
-# for std::format (not in g++ 12) everywhere but in kernels, which write no text.
+# folder -> (our folders, third-party libraries) that it may include. Standard headers are free to all, and fmt stands
+# in for std::format (not in g++ 12) everywhere but in kernels, which write no text.
 FOLDERS = {
     "kernels": ({"kernels"}, {"Kokkos", "intrinsics"}),
     "fem": ({"fem"}, {"Eigen", "SuiteSparse", "Gmsh", "OpenMP", "fmt"}),
@@ -51,7 +51,7 @@ LIBRARIES = {
     "Google Benchmark": r"benchmark/.*",
     "CUDA": r"cuda\w*\.h",
     "intrinsics": r"immintrin\.h",
-    "POSIX": r"(sys/\w+|unistd|fcntl|signal|termios)\.h",
+    "POSIX": r"(sys/\w+|unistd|fcntl|poll|signal|spawn|termios)\.h",
     "standard": r"[a-z_0-9]+",
 }
 
