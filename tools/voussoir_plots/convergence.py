@@ -1,0 +1,44 @@
+"""How the increments converged, and what they cost."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from .style import save
+
+
+def draw(result, path):
+    increments = result.increments
+    index = np.array([i["index"] for i in increments])
+    column = {name: np.array([float(i[name]) for i in increments])
+              for name in ("residual", "evaluations", "iterations", "converged", "wall_s")}
+    figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(8.4, 7.8), sharex=True)
+    # A residual of exactly zero (a stage's first state) has no place on a logarithmic axis.
+    shown = column["residual"] > 0
+    good = column["converged"] > 0
+    top.semilogy(index[shown & good], column["residual"][shown & good], "o", markersize=3.5, color="C0", label="converged")
+    if not good.all():
+        top.semilogy(index[shown & ~good], column["residual"][shown & ~good], "X", color="C3", label="not converged")
+        top.legend()
+    top.set_ylabel("relative residual  [-]")
+    middle.bar(index, column["evaluations"], width=0.85, color="0.75", label="evaluations, cut tries included")
+    middle.bar(index, column["iterations"], width=0.5, color="C0", label="iterations")
+    middle.set_ylabel("number  [-]")
+    middle.legend()
+    bottom.plot(index, np.cumsum(column["wall_s"]) / 60, color="C0")
+    bottom.set_ylabel("wall time so far  [min]")
+    bottom.set_xlabel("increment")
+    _mark_stages(top, (middle, bottom), increments)
+    figure.suptitle(f"Convergence: {int(good.sum())} of {len(increments)} increments converged", fontsize=12)
+    figure.tight_layout()
+    save(figure, path)
+
+
+def _mark_stages(named, others, increments):
+    previous = None
+    for increment in increments:
+        if increment["stage"] != previous:
+            previous = increment["stage"]
+            for axis in (named, *others):
+                axis.axvline(increment["index"] - 0.5, color="0.4", linewidth=0.8, linestyle="--")
+            named.text(increment["index"] - 0.3, 1.03, previous.replace("_", " "), transform=named.get_xaxis_transform(),
+                       fontsize=10)

@@ -1,0 +1,109 @@
+"""Fields over the deformed mesh at the end of the run."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+
+from . import q8
+from .result import Missing
+from .style import percent, save
+
+
+def last_increment(result):
+    if not result.has_mesh:
+        raise Missing("the run has no mesh")
+    return result.increments[-1]
+
+
+def state(increment):
+    """What the picture shows, for its title."""
+    if increment["volume_loss"] > 0:
+        return f"$V_l$ = {percent(increment['volume_loss'])}"
+    return f"stage {increment['stage']}, load parameter {increment['load_parameter']:.3g}"
+
+
+def magnification(result, displacement):
+    """1 where the deformation can be seen, else a round factor that brings it to about 2 % of the width."""
+    largest, width = np.max(np.linalg.norm(displacement, axis=1)), np.ptp(result.coordinates[:, 0])
+    if largest == 0 or largest > 0.005 * width:
+        return 1
+    factor = 0.02 * width / largest
+    power = 10.0**np.floor(np.log10(factor))
+    return float(max(m * power for m in (1, 2, 5) if m * power <= factor))
+
+
+def canvas(result, increment):
+    """Figure with deformed element edges; returns (figure, axis, deformed coordinates, note on magnification)."""
+    displacement = increment.field("node/displacement")
+    factor = magnification(result, displacement)
+    deformed = result.coordinates + factor * displacement
+    figure, axis = plt.subplots(figsize=(7.4, 6.6))
+    edges = LineCollection(q8.outlines(deformed, result.connectivity), colors="black", linewidths=0.25, alpha=0.45, zorder=2)
+    axis.add_collection(edges)
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.autoscale_view()
+    axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
+    axis.set_ylabel("height above the base  $y$  [m]")
+    note = "" if factor == 1 else f", deformation × {factor:g}"
+    return figure, axis, deformed, note
+
+
+def draw_displacement(result, path):
+    increment = last_increment(result)
+    figure, axis, deformed, note = canvas(result, increment)
+    displacement = increment.field("node/displacement")
+    size = np.linalg.norm(displacement, axis=1)
+    filled = axis.tricontourf(deformed[:, 0], deformed[:, 1], q8.triangles(result.connectivity), size, levels=21,
+                              cmap="viridis", zorder=1)
+    figure.colorbar(filled, ax=axis, label="displacement  $|u|$  [m]", shrink=0.85)
+    _add_arrows(axis, result, deformed, displacement)
+    axis.set_title(f"Displacement, {state(increment)}{note}")
+    save(figure, path)
+
+
+def _add_arrows(axis, result, deformed, displacement):
+    """Arrows at about one node per square of a coarse grid, so that fine parts of the mesh stay readable."""
+    spacing = np.ptp(result.coordinates[:, 0]) / 22
+    cells = np.floor(result.coordinates / spacing).astype(int)
+    _, chosen = np.unique(cells, axis=0, return_index=True)
+    size = np.linalg.norm(displacement, axis=1)
+    chosen = chosen[size[chosen] > 0.01 * size.max()]
+    if len(chosen) == 0:
+        return
+    arrows = axis.quiver(*deformed[chosen].T, *displacement[chosen].T, angles="xy", scale_units="xy",
+                         scale=size.max() / (2.2 * spacing), width=0.0028, color="white", edgecolor="black", linewidth=0.35,
+                         zorder=3)
+    axis.quiverkey(arrows, 0.87, 1.03, size.max(), f"{size.max():.2g} m", labelpos="E", color="black")
+
+
+def _draw_points(result, path, name, label, title, colour_map, symmetric=False, factor=1.0):
+    """A Gauss-point field, one patch per point."""
+    increment = last_increment(result)
+    values = factor * increment.field(name)
+    figure, axis, deformed, note = canvas(result, increment)
+    patches = q8.gauss_patches(deformed, result.connectivity)
+    finite = values[np.isfinite(values)]
+    limit = np.max(np.abs(finite)) if finite.size else 1.0
+    limits = (-limit, limit) if symmetric else (finite.min(), finite.max()) if finite.size else (0, 1)
+    collection = PolyCollection(patches.reshape(-1, 4, 2), array=values.ravel(), cmap=colour_map, edgecolors="face",
+                                linewidths=0.1, zorder=1)
+    collection.set_clim(*limits)
+    axis.add_collection(collection)
+    figure.colorbar(collection, ax=axis, label=label, shrink=0.85)
+    axis.set_title(f"{title}, {state(increment)}{note}")
+    save(figure, path)
+
+
+def draw_deviatoric_strain(result, path):
+    _draw_points(result, path, "gauss/deviatoric_strain", r"deviatoric strain  $\varepsilon_q$  [%]", "Deviatoric strain",
+                 "magma_r", factor=100)
+
+
+def draw_void_ratio(result, path):
+    _draw_points(result, path, "gauss/void_ratio", "void ratio  $e$  [-]", "Void ratio", "viridis")
+
+
+def draw_grain_rotation(result, path):
+    _draw_points(result, path, "gauss/grain_rotation", "mean grain rotation, counter-clockwise positive  [deg]",
+                 "Grain rotation", "coolwarm", symmetric=True, factor=180 / np.pi)

@@ -1,0 +1,67 @@
+"""Stresses after gravity: against the weight of the ground above, and the ratio of horizontal to vertical stress."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from . import q8
+from .result import Missing
+from .style import save
+
+
+def after_gravity(result):
+    return result.stage("gravity", "column")[-1]
+
+
+def far_from_opening(result, points):
+    """True farther than D/2 from the opening; everywhere where there is none."""
+    if "diameter" not in result.geometry:
+        return np.ones(points.shape[:-1], dtype=bool)
+    axis_depth, diameter, surface_y = result.need("axis_depth", "diameter", "surface_y")
+    return np.hypot(points[..., 0], points[..., 1] - (surface_y - axis_depth)) > diameter
+
+
+def draw(result, path):
+    unit_weight, surcharge, surface_y = result.need("unit_weight", "surcharge", "surface_y")
+    increment = after_gravity(result)
+    stress = -increment.field("gauss/stress") / 1e3  # [kPa], compression positive
+    points = q8.gauss_coordinates(result.coordinates, result.connectivity)
+    depth = surface_y - points[..., 1]
+    far = far_from_opening(result, points)
+    weight = (unit_weight * depth + surcharge) / 1e3
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 5.2))
+    _draw_vertical(left, depth, stress[..., 1], far, weight)
+    _draw_ratio(right, stress, far)
+    worst = np.max(np.abs(stress[..., 1] - weight)[far] / (0.05 * weight[far] + 1))
+    figure.suptitle(f"After gravity: $\\gamma$ = {unit_weight / 1e3:g} kN/m³, surcharge {surcharge / 1e3:g} kPa; "
+                    f"largest departure {worst:.2f} of the allowed 5 % + 1 kPa", fontsize=12)
+    figure.tight_layout()
+    save(figure, path)
+
+
+def _draw_vertical(axis, depth, vertical, far, weight):
+    order = np.argsort(depth, axis=None)
+    line_depth, line = depth.ravel()[order], weight.ravel()[order]
+    axis.fill_betweenx(line_depth, 0.95 * line - 1, 1.05 * line + 1, color="0.85", label="± (5 % + 1 kPa)")
+    axis.plot(line, line_depth, color="black", linewidth=1.2, label=r"$\gamma z$ + surcharge")
+    axis.plot(vertical[far], depth[far], ".", color="C0", markersize=4, label="Gauss points")
+    if not far.all():
+        axis.plot(vertical[~far], depth[~far], ".", color="C1", markersize=4, label="within $D/2$ of the opening")
+    axis.invert_yaxis()
+    axis.set_xlim(left=0)
+    axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
+    axis.set_ylabel("depth  $z$  [m]")
+    axis.legend()
+
+
+def _draw_ratio(axis, stress, far):
+    vertical, horizontal = stress[..., 1], stress[..., 0]
+    good = far & (vertical > 0)
+    if not good.any():
+        raise Missing("no point is compressed vertically")
+    axis.semilogx(vertical[good], horizontal[good] / vertical[good], ".", color="C0", markersize=4)
+    low, high = axis.get_ylim()
+    axis.set_ylim(min(0.2, low), max(1.1, high))
+    axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
+    axis.set_ylabel(r"$K_0 = \sigma_{xx} / \sigma_{yy}$  [-]")
+    axis.set_title("away from the opening")
+    axis.grid(True, which="both", alpha=0.3)

@@ -1,0 +1,61 @@
+"""The modified Gauss curve of settlement troughs (Vorster et al.), method.md eqs. (20), (21)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# alpha = 0.5 is the Gauss curve itself; larger is flatter at the bottom, with steeper flanks.
+ALPHA_RANGE = (0.02, 20.0)
+
+
+def shape_number(alpha):
+    """n of eq. (21), chosen so that x = i is the inflection point."""
+    return np.exp(alpha) * (2 * alpha - 1) / (2 * alpha + 1) + 1
+
+
+def modified_gauss(x, largest, inflection, alpha):
+    """Settlement of eq. (20) at distance x from the axis, same unit as `largest`."""
+    n = shape_number(alpha)
+    exponent = np.minimum(alpha * (np.asarray(x) / inflection)**2, 700)
+    return largest * n / ((n - 1) + np.exp(exponent))
+
+
+@dataclass
+class TroughFit:
+    largest: float      # S_max [m]
+    inflection: float   # i [m]
+    alpha: float        # [-]
+    misfit: float       # rms of the residual relative to S_max [-]
+
+    @property
+    def n(self):
+        return shape_number(self.alpha)
+
+    def __call__(self, x):
+        return modified_gauss(x, self.largest, self.inflection, self.alpha)
+
+
+def fit(x, settlement):
+    """Least squares weighted by length, so that a finer mesh at the axis does not count more.
+
+    S_max is linear and solved for; (ln i, ln alpha) are found on a grid that is refined around its best point: no start
+    value to guess and no local minimum to fall into.
+    """
+    order = np.argsort(x)
+    x, settlement = np.asarray(x)[order], np.asarray(settlement)[order]
+    weight = np.gradient(x)
+    low = np.log([0.02 * x[-1], ALPHA_RANGE[0]])
+    high = np.log([2.0 * x[-1], ALPHA_RANGE[1]])
+    centre, half = (low + high) / 2, (high - low) / 2
+    best = None
+    for _ in range(25):
+        axes = [np.clip(np.linspace(c - h, c + h, 15), a, b) for c, h, a, b in zip(centre, half, low, high)]
+        inflection, alpha = (np.exp(g).reshape(-1, 1) for g in np.meshgrid(*axes))
+        unit = modified_gauss(x, 1.0, inflection, alpha)
+        largest = (unit * weight) @ settlement / np.maximum((unit**2) @ weight, 1e-300)
+        misfit = ((settlement - largest[:, None] * unit)**2) @ weight
+        k = int(np.argmin(misfit))
+        best = largest[k], inflection[k, 0], alpha[k, 0], misfit[k]
+        centre, half = np.log(best[1:3]), half * 0.5
+    scale = abs(best[0]) if best[0] else 1.0
+    return TroughFit(*best[:3], misfit=float(np.sqrt(best[3] / weight.sum())) / scale)
