@@ -1,0 +1,39 @@
+#pragma once
+/// Packings of a case: made once, kept in the case's packing folder, chosen by least bias; and the case kinds that show them.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "host/recipe.hpp"
+#include "host/run_folder.hpp"
+
+namespace voussoir::host {
+
+/// A line for the log while packings are made or found; may be empty.
+using PackingNote = std::function<void(const std::string&)>;
+
+/// The packing of one seed: from the folder, or made, tested for its bias and stored there.
+[[nodiscard]] PackedRve obtain_packing(const Case& input, std::int64_t seed, const PackingNote& note = {});
+
+/// Of the case's candidate seeds the packing with the least bias: one packing cloned everywhere biases tau_xy everywhere
+/// (method.md §4).
+[[nodiscard]] PackedRve choose_packing(const Case& input, const PackingNote& note = {});
+
+/// One increment of the oedometric test.
+struct OedometricPoint {
+  double strain, stress_yy, stress_xx, stress_xy;  ///< axial log strain [-], compression-positive stresses [Pa]
+};
+
+/// The packing compressed along y without lateral strain from its own pressure until sigma_yy reaches `stress` [Pa].
+/// Throws std::runtime_error when an increment fails.
+[[nodiscard]] std::vector<OedometricPoint> oedometric_test(const PackedRve& rve, double stress);
+
+/// `kind = "pack"`: makes the packings and prints their table. Returns an exit code.
+[[nodiscard]] int run_pack(const Case& input, const RunOptions& options);
+
+/// `kind = "probe"`: small displacement gradients on the packing, each from its own state; stress changes and tangents to
+/// standard output and to probe.csv in the run's folder. Returns an exit code.
+[[nodiscard]] int run_probe(const Case& input, const RunOptions& options);
+
+}  // namespace voussoir::host

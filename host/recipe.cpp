@@ -1,0 +1,154 @@
+#include "host/recipe.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+namespace voussoir::host {
+
+namespace {
+
+constexpr int recipe_version = 1;  ///< raise when a change here changes packings
+constexpr double loose_solid_fraction = 0.45;
+constexpr int placement_tries = 20000;
+
+/// Uniform in [0, 1): the standard's distributions differ between libraries, the engine's bits do not.
+class Uniform {
+ public:
+  explicit Uniform(std::int64_t seed) : engine_(static_cast<std::uint64_t>(seed)) {}
+  double operator()() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+bool overlaps(const PackedRve& rve, std::size_t placed, double x, double y, double side) {
+  for (std::size_t j = 0; j < placed; ++j) {
+    double dx = x - rve.position[2 * j], dy = y - rve.position[2 * j + 1];
+    dx -= side * std::nearbyint(dx / side);
+    dy -= side * std::nearbyint(dy / side);
+    const double reach = rve.packing.radii[placed] + rve.packing.radii[j];
+    if (dx * dx + dy * dy < reach * reach) return true;
+  }
+  return false;
+}
+
+/// Random sequential placement in a square cell, largest first.
+void place_loose(PackedRve& rve, Uniform& uniform) {
+  const double side = std::sqrt(rve.packing.solid_area() / loose_solid_fraction);
+  rve.cell = {side, 0, 0, side};
+  const std::size_t n = rve.packing.radii.size();
+  rve.position.assign(2 * n, 0.0);
+  rve.rotation.assign(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    int tries = 0;
+    double x = 0, y = 0;
+    do {
+      x = side * uniform();
+      y = side * uniform();
+    } while (overlaps(rve, i, x, y, side) && ++tries < placement_tries);
+    if (tries == placement_tries) throw std::runtime_error("no room to place the grains at random");
+    rve.position[2 * i] = x;
+    rve.position[2 * i + 1] = y;
+  }
+}
+
+kernels::RveReport consolidate(kernels::RveBatch& batch, double pressure, double max_rate) {
+  const kernels::ServoAxis axis{.stress_controlled = true, .target = -pressure};
+  const std::vector<kernels::ServoRequest> request{{.x = axis, .y = axis, .max_rate = max_rate, .max_steps = 2000000}};
+  std::vector<kernels::RveReport> report(1);
+  const kernels::EngineSettings settings{.precision = kernels::Precision::float64, .hold_tolerance = 1e-4};
+  kernels::advance(batch, std::span<const kernels::ServoRequest>(request), settings, report);
+  if (report[0].status != kernels::RveStatus::converged) {
+    throw std::runtime_error(fmt::format("consolidation at {} Pa ended as {} after {} steps", pressure,
+                                         kernels::name_of(report[0].status), report[0].steps));
+  }
+  kernels::commit(batch);
+  return report[0];
+}
+
+/// Largest strain per step so that the inertial number stays at 1e-3 once the pressure has been reached.
+double consolidation_rate(const kernels::Packing& packing, double pressure) {
+  return std::clamp(1e-3 * std::sqrt(packing.mean_mobility() * pressure * packing.thickness), 2e-6, 2e-5);
+}
+
+}  // namespace
+
+kernels::GrainMaterial grain_material(const SoilCase& soil) {
+  return {.modulus = soil.modulus,
+          .stiffness_ratio = soil.stiffness_ratio,
+          .friction = std::tan(soil.friction),
+          .rolling_stiffness = soil.rolling_stiffness,
+          .rolling_limit = soil.rolling_limit};
+}
+
+double void_ratio(double cell_area, double solid_area) { return cell_area / solid_area - 1.0; }
+
+std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t seed) {
+  Uniform uniform(seed);
+  std::vector<double> radii(static_cast<std::size_t>(grains));
+  const double smallest = 0.5 * soil.size_minimum, range = 0.5 * (soil.size_maximum - soil.size_minimum);
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    radii[k] = smallest + range * (static_cast<double>(k) + uniform()) / grains;
+  }
+  std::sort(radii.rbegin(), radii.rend());
+  return radii;
+}
+
+PackedRve make_packing(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
+  PackedRve rve;
+  rve.seed = seed;
+  rve.packing.radii = sample_radii(soil, recipe.grains, seed);
+  rve.packing.material = grain_material(soil);
+  rve.packing.thickness = soil.thickness;
+  rve.packing.local_damping = soil.damping;
+  Uniform uniform(seed + 1000003);
+  place_loose(rve, uniform);
+
+  kernels::RveBatch batch = kernels::make_batch({rve.packing}, {0});
+  store_rve(rve, batch.committed, 0);
+  const double rate = consolidation_rate(rve.packing, recipe.pressure);
+  batch.packings[0].material.friction = recipe.consolidation_friction;
+  consolidate(batch, recipe.pressure, rate);
+  batch.packings[0].material.friction = rve.packing.material.friction;
+  const kernels::RveReport report = consolidate(batch, recipe.pressure, 0.1 * rate);
+
+  load_rve(batch.committed, 0, rve);
+  rve.void_ratio = void_ratio(rve.cell.det(), rve.packing.solid_area());
+  rve.pressure = report.pressure();
+  rve.coordination = 2.0 * report.contacts / rve.packing.size();
+  rve.unbalanced = report.unbalanced;
+  return rve;
+}
+
+std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
+  return fmt::format("recipe {} d {} {} E {} kt/kn {} phi {} beta {} eta {} damping {} t {} grains {} mu_t {} p {} seed {}",
+                     recipe_version, soil.size_minimum, soil.size_maximum, soil.modulus, soil.stiffness_ratio, soil.friction,
+                     soil.rolling_stiffness, soil.rolling_limit, soil.damping, soil.thickness, recipe.grains,
+                     recipe.consolidation_friction, recipe.pressure, seed);
+}
+
+void store_rve(const PackedRve& from, kernels::RveStates& to, std::size_t rve) {
+  std::copy(from.position.begin(), from.position.end(), &to.position(rve, 0, 0));
+  std::copy(from.rotation.begin(), from.rotation.end(), &to.rotation(rve, 0));
+  const double h[4] = {from.cell.xx, from.cell.xy, from.cell.yx, from.cell.yy};
+  for (std::size_t k = 0; k < 4; ++k) to.cell(rve, k) = h[k];
+  to.contact_count(rve) = static_cast<int>(from.contact_key.size());
+  std::copy(from.contact_key.begin(), from.contact_key.end(), &to.contact_key(rve, 0));
+  std::copy(from.contact_history.begin(), from.contact_history.end(), &to.contact_history(rve, 0, 0));
+}
+
+void load_rve(const kernels::RveStates& from, std::size_t rve, PackedRve& to) {
+  const std::size_t n = to.packing.radii.size();
+  const auto contacts = static_cast<std::size_t>(from.contact_count(rve));
+  to.position.assign(&from.position(rve, 0, 0), &from.position(rve, 0, 0) + 2 * n);
+  to.rotation.assign(&from.rotation(rve, 0), &from.rotation(rve, 0) + n);
+  to.cell = {from.cell(rve, 0), from.cell(rve, 1), from.cell(rve, 2), from.cell(rve, 3)};
+  to.contact_key.assign(&from.contact_key(rve, 0), &from.contact_key(rve, 0) + contacts);
+  to.contact_history.assign(&from.contact_history(rve, 0, 0), &from.contact_history(rve, 0, 0) + 2 * contacts);
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,200 @@
+#include "host/rve_pool.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace voussoir::host {
+
+namespace {
+
+/// Share of unbalanced ratio x pressure that shows as an error of the stress: the moment sum of random residual forces at
+/// positions uniform in the cell, 1/sqrt(12).
+constexpr double noise_share = 0.29;
+
+/// An evaluation asking for this many times the frozen steps gets more after all: the predictor was far off.
+constexpr int step_regret = 2;
+
+fem::Stress stress_of(const kernels::RveReport& r) { return {r.stress[0], r.stress[3], 0.5 * (r.stress[1] + r.stress[2])}; }
+
+fem::Tangent tangent_of(const kernels::RveReport& r) {
+  const double* d = r.tangent;
+  fem::Tangent out;
+  out << d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5];
+  return out;
+}
+
+void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
+                  std::span<fem::Tangent> tangent) {
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    stress[k] = stress_of(reports[k]);
+    tangent[k] = tangent_of(reports[k]);
+  }
+}
+
+kernels::Mat2 relative_gradient(const fem::Gradient& h) { return {1.0 + h(0, 0), h(0, 1), h(1, 0), 1.0 + h(1, 1)}; }
+
+/// Next number of the series 1.25^k: counts on a coarse grid, so that a predictor's rounding does not change them.
+int round_up(double steps) { return static_cast<int>(std::ceil(std::pow(1.25, std::ceil(std::log(steps) / std::log(1.25) - 1e-9)))); }
+
+}  // namespace
+
+RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n)
+    : engine_(engine),
+      settings_{.precision = engine.precision == Precision::single_precision ? kernels::Precision::float32
+                                                                             : kernels::Precision::float64,
+                .skin = engine.skin,
+                .hold_tolerance = engine.hold_tolerance},
+      batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
+      requests_(n),
+      trial_reports_(n),
+      committed_reports_(n) {
+  for (std::size_t k = 0; k < n; ++k) store_rve(rve, batch_.committed, k);
+  kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
+  for (auto& report : committed_reports_) report.status = kernels::RveStatus::converged;  // at rest: no motion was asked
+}
+
+void RvePool::begin_increment() { steps_are_fixed_ = false; }
+
+/// n = |D| / I * sqrt(m / (p t)): the inertial number of the scaled masses at the RVE's committed pressure. A rotation
+/// costs no steps, the path is rigid all the way.
+int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
+  const kernels::Mat2 log = kernels::log_of(f_rel);
+  const double shear = 0.5 * (log.xy + log.yx);
+  const double strain = std::sqrt(log.xx * log.xx + log.yy * log.yy + 2.0 * shear * shear);
+  const kernels::Packing& packing = batch_.packing(rve);
+  const double p = std::max(committed_reports_[rve].pressure(), settings_.pressure_floor);
+  const double steps = strain / engine_.inertial_number / std::sqrt(packing.mean_mobility() * p * packing.thickness);
+  if (!std::isfinite(steps)) return engine_.minimum_steps;
+  return std::clamp(round_up(std::max(steps, 1.0)), engine_.minimum_steps, engine_.maximum_steps);
+}
+
+void RvePool::choose_steps(std::span<const fem::Gradient> gradients) {
+  for (std::size_t k = 0; k < size(); ++k) {
+    kernels::StrainRequest& request = requests_[k];
+    request.f_rel = relative_gradient(gradients[k]);
+    const int steps = steps_for(k, request.f_rel);
+    if (!steps_are_fixed_ || steps > step_regret * request.strain_steps) request.strain_steps = steps;
+    request.hold_cap = engine_.hold_cap;
+  }
+  steps_are_fixed_ = true;
+}
+
+fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
+                                   std::span<fem::Tangent> tangent) {
+  choose_steps(gradients);
+  const kernels::Work work =
+      kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, trial_reports_);
+  copy_answers(trial_reports_, stress, tangent);
+  fem::BatchReport report = summarise();
+  report.work = work.particle_steps;
+  return report;
+}
+
+fem::BatchReport RvePool::summarise() const {
+  fem::BatchReport out;
+  double noise = 0;
+  std::size_t failures = 0;
+  for (std::size_t k = 0; k < size(); ++k) {
+    const kernels::RveReport& r = trial_reports_[k];
+    if (kernels::is_failure(r.status) && failures++ == 0) {
+      out.message = fmt::format("RVE {}: {} (overlap {:.3f})", k, kernels::name_of(r.status), r.largest_overlap);
+    }
+    if (r.status == kernels::RveStatus::open) ++out.open;
+    if (r.status == kernels::RveStatus::step_limit) ++out.step_limit;
+    const double s = noise_share * r.unbalanced * std::max(r.pressure(), settings_.pressure_floor);
+    noise += s * s;
+  }
+  if (failures > 1) out.message += fmt::format(" and {} more", failures - 1);
+  out.usable = failures == 0;
+  out.stress_noise = std::sqrt(noise / static_cast<double>(size()));
+  return out;
+}
+
+void RvePool::commit() {
+  kernels::commit(batch_);
+  committed_reports_ = trial_reports_;
+}
+
+void RvePool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const {
+  copy_answers(committed_reports_, stress, tangent);
+}
+
+std::vector<fem::PointField> RvePool::fields() const {
+  std::vector<fem::PointField> out;
+  const auto add = [&](const char* name, const char* unit, auto&& value) {
+    fem::PointField field{name, unit, 1, std::vector<double>(size())};
+    for (std::size_t k = 0; k < size(); ++k) field.values[k] = value(k);
+    out.push_back(std::move(field));
+  };
+  const auto& reports = committed_reports_;
+  const kernels::RveStates& s = batch_.committed;
+  add("void_ratio", "-", [&](std::size_t k) {
+    return void_ratio(s.cell(k, 0) * s.cell(k, 3) - s.cell(k, 1) * s.cell(k, 2), batch_.packing(k).solid_area());
+  });
+  add("grain_rotation", "rad", [&](std::size_t k) {
+    double sum = 0;
+    for (int i = 0; i < batch_.packing(k).size(); ++i) sum += s.rotation(k, static_cast<std::size_t>(i));
+    return sum / batch_.packing(k).size();
+  });
+  add("coordination", "-", [&](std::size_t k) { return 2.0 * reports[k].contacts / batch_.packing(k).size(); });
+  add("rve_status", "-", [&](std::size_t k) { return static_cast<double>(reports[k].status); });
+  add("unbalanced_ratio", "-", [&](std::size_t k) { return reports[k].unbalanced; });
+  add("inertial_number", "-", [&](std::size_t k) { return reports[k].inertial_number; });
+  add("steps", "-", [&](std::size_t k) { return static_cast<double>(reports[k].steps); });
+  return out;
+}
+
+/// Branches and forces again from positions and histories, through the contact law itself.
+io::RveSnapshot RvePool::snapshot(std::size_t rve) const {
+  using V = kernels::SingleLane<double>;
+  using Law = kernels::LinearContactLaw<V, true>;
+  const kernels::Packing& packing = batch_.packing(rve);
+  PackedRve grains;
+  grains.packing = packing;
+  load_rve(batch_.committed, rve, grains);
+  io::RveSnapshot out;
+  out.name = fmt::format("point_{:05d}", rve);
+  out.cell = {grains.cell.xx, grains.cell.xy, grains.cell.yx, grains.cell.yy};
+  out.thickness = packing.thickness;
+  out.radius = packing.radii;
+  out.rotation = grains.rotation;
+  for (std::size_t i = 0; i < packing.radii.size(); ++i) {
+    out.x.push_back(grains.position[2 * i]);
+    out.y.push_back(grains.position[2 * i + 1]);
+  }
+  const kernels::Cell cell(grains.cell);
+  for (std::size_t c = 0; c < grains.contact_key.size(); ++c) {
+    const auto i = static_cast<std::size_t>(kernels::first_of(grains.contact_key[c]));
+    const auto j = static_cast<std::size_t>(kernels::second_of(grains.contact_key[c]));
+    double bx = out.x[j] - out.x[i], by = out.y[j] - out.y[i];
+    cell.nearest(bx, by);
+    const double length = std::hypot(bx, by);
+    const kernels::PairConstants k = kernels::combine(packing.material, packing.radii[i], packing.material, packing.radii[j]);
+    const Law law{V(k.normal_stiffness), V(k.tangential_stiffness), V(k.rolling_stiffness), V(k.friction), V(k.rolling_arm)};
+    Law::History history{V(grains.contact_history[2 * c]), V(grains.contact_history[2 * c + 1])};
+    const auto f = law({V(packing.radii[i] + packing.radii[j] - length), V(0.0), V(0.0)}, history);
+    const double nx = bx / length, ny = by / length;
+    out.contact_i.push_back(static_cast<std::int64_t>(i));
+    out.contact_j.push_back(static_cast<std::int64_t>(j));
+    out.branch.insert(out.branch.end(), {bx, by});
+    out.force.insert(out.force.end(), {-f.normal[0] * nx - f.tangential[0] * ny, -f.normal[0] * ny + f.tangential[0] * nx});
+  }
+  return out;
+}
+
+std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> points) const {
+  std::vector<io::RveSnapshot> out;
+  for (const std::int64_t point : points) {
+    if (point < 0 || point >= static_cast<std::int64_t>(size())) throw std::out_of_range("no such Gauss point");
+    out.push_back(snapshot(static_cast<std::size_t>(point)));
+  }
+  return out;
+}
+
+std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points, const PackingNote& note) {
+  return std::make_unique<RvePool>(choose_packing(input, note), input.engine, n_points);
+}
+
+}  // namespace voussoir::host

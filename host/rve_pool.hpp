@@ -1,0 +1,47 @@
+#pragma once
+/// One RVE per Gauss point behind fem's one door: chooses step counts, runs the engine, answers with stress and tangent.
+
+#include <memory>
+
+#include "fem/material_batch.hpp"
+#include "host/packing.hpp"
+#include "host/snapshot_source.hpp"
+
+namespace voussoir::host {
+
+class RvePool final : public fem::MaterialBatch, public SnapshotSource {
+ public:
+  /// `n` clones of `rve`.
+  RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n);
+
+  [[nodiscard]] std::size_t size() const override { return batch_.size(); }
+  void begin_increment() override;
+  fem::BatchReport evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
+                            std::span<fem::Tangent> tangent) override;
+  void commit() override;
+  void committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const override;
+  [[nodiscard]] std::vector<fem::PointField> fields() const override;
+  [[nodiscard]] std::vector<std::byte> state() const override;
+  void set_state(std::span<const std::byte> bytes) override;
+  [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
+
+ private:
+  EngineCase engine_;
+  kernels::EngineSettings settings_;
+  kernels::RveBatch batch_;
+  std::vector<kernels::StrainRequest> requests_;
+  std::vector<kernels::RveReport> trial_reports_;
+  std::vector<kernels::RveReport> committed_reports_;
+  bool steps_are_fixed_ = false;
+
+  [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
+  void choose_steps(std::span<const fem::Gradient> gradients);
+  [[nodiscard]] fem::BatchReport summarise() const;
+  [[nodiscard]] io::RveSnapshot snapshot(std::size_t rve) const;
+};
+
+/// The case's chosen packing at `n_points` Gauss points.
+[[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points,
+                                                                const PackingNote& note = {});
+
+}  // namespace voussoir::host

@@ -1,0 +1,82 @@
+// The committed state of a pool as bytes: what an evaluation starts from, nothing derived.
+
+#include <cstring>
+#include <stdexcept>
+
+#include "host/rve_pool.hpp"
+
+namespace voussoir::host {
+
+namespace {
+
+class Writer {
+ public:
+  explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+  template <class T>
+  void operator()(const T* from, std::size_t n) {
+    const auto* begin = reinterpret_cast<const std::byte*>(from);
+    bytes_.insert(bytes_.end(), begin, begin + n * sizeof(T));
+  }
+
+ private:
+  std::vector<std::byte>& bytes_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  template <class T>
+  void operator()(T* to, std::size_t n) {
+    const std::size_t length = n * sizeof(T);
+    if (length > bytes_.size()) throw std::runtime_error("the checkpoint's RVEs are not those of this case");
+    std::memcpy(to, bytes_.data(), length);
+    bytes_ = bytes_.subspan(length);
+  }
+  [[nodiscard]] bool at_end() const { return bytes_.empty(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+/// One order of the numbers for both directions; `count` comes first so that only used contacts are kept.
+template <class Transfer, class States>
+void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t grains) {
+  transfer(&s.position(rve, 0, 0), 2 * grains);
+  transfer(&s.rotation(rve, 0), grains);
+  transfer(&s.cell(rve, 0), 4);
+  transfer(&s.contact_count(rve), 1);
+  const int count = s.contact_count(rve);
+  if (count < 0 || count > s.contact_capacity()) throw std::runtime_error("the checkpoint's contact count is impossible");
+  transfer(&s.contact_key(rve, 0), static_cast<std::size_t>(count));
+  transfer(&s.contact_history(rve, 0, 0), 2 * static_cast<std::size_t>(count));
+}
+
+}  // namespace
+
+std::vector<std::byte> RvePool::state() const {
+  std::vector<std::byte> bytes;
+  Writer write(bytes);
+  const std::uint64_t n = size();
+  write(&n, 1);
+  write(committed_reports_.data(), size());
+  for (std::size_t k = 0; k < size(); ++k) {
+    transfer_rve(write, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
+  }
+  return bytes;
+}
+
+void RvePool::set_state(std::span<const std::byte> bytes) {
+  Reader read(bytes);
+  std::uint64_t n = 0;
+  read(&n, 1);
+  if (n != size()) throw std::runtime_error("the checkpoint has another number of RVEs");
+  read(committed_reports_.data(), size());
+  for (std::size_t k = 0; k < size(); ++k) {
+    transfer_rve(read, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
+  }
+  if (!read.at_end()) throw std::runtime_error("the checkpoint's RVEs are not those of this case");
+  std::fill(batch_.candidates.valid.begin(), batch_.candidates.valid.end(), char{0});
+  steps_are_fixed_ = false;
+}
+
+}  // namespace voussoir::host
