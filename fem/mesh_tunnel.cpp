@@ -42,7 +42,7 @@ void check(const HalfTunnelOptions& o) {
 /// Fine at the opening, half as fine again in the column of soil between crown and surface (there the ground slides),
 /// growing away from both.
 double target_size(const HalfTunnelOptions& o, const Circle& opening, double x, double y) {
-  constexpr double growth = 0.14;  // edge length gained per metre of distance: about 850 elements with the defaults
+  constexpr double growth = 0.085;  // edge length gained per metre of distance: 800 to 890 elements with the defaults
   const double from_opening = std::max(0.0, (Point(x, y) - opening.centre).norm() - opening.radius);
   const double beside = std::max(0.0, x - opening.radius);
   const double below = std::max(0.0, opening.centre.y() + opening.radius - y);

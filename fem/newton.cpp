@@ -30,16 +30,23 @@ void check(const NewtonOptions& o) {
 
 /// One call of solve_increment: its iterate, its residual and its report.
 struct NewtonSolver::Workspace {
+  Workspace(NewtonSolver& owner, const MeshState& from, const IncrementLoad& asked, Increment& result)
+      : solver(owner),
+        state(from),
+        load(asked),
+        increment(result),
+        history(owner.options_.anderson_depth, owner.options_.anderson_condition) {}
+
   NewtonSolver& solver;
   const MeshState& state;
   const IncrementLoad& load;
   Increment& increment;
-  NewtonReport report{};
-  std::vector<char> constrained{};
-  std::vector<Gradient> displacement_gradient{};
-  Eigen::VectorXd residual{};  ///< zero at constrained dofs
-  AndersonHistory history{solver.options_.anderson_depth, solver.options_.anderson_condition};
-  Eigen::VectorXd step{};
+  NewtonReport report;
+  std::vector<char> constrained;
+  std::vector<Gradient> displacement_gradient;
+  Eigen::VectorXd residual;  ///< zero at constrained dofs
+  AndersonHistory history;
+  Eigen::VectorXd step;
 
   Failure prepare();
   Failure predict();
@@ -53,7 +60,7 @@ struct NewtonSolver::Workspace {
 };
 
 NewtonReport NewtonSolver::solve_increment(const MeshState& state, const IncrementLoad& load, Increment& increment) {
-  Workspace work{.solver = *this, .state = state, .load = load, .increment = increment};
+  Workspace work(*this, state, load, increment);
   if (const Failure failure = work.prepare()) return work.stop(*failure);  // geometry, constraints
   material_.begin_increment();
   if (const Failure failure = work.predict()) return work.stop(*failure);  // first step

@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem/gauss_points.hpp"
+#include "fem/mesh.hpp"
+
+namespace voussoir::fem {
+namespace {
+
+void expect_closed_outline(const Mesh& mesh) {
+  // Every corner where one chain's edge ends, another edge starts; the area inside is the elements' area.
+  std::vector<int> balance(mesh.n_nodes(), 0);
+  double area = 0;
+  for (const auto& [name, chain] : mesh.edges) {
+    for (const Edge& edge : chain) ++balance[edge[0]], --balance[edge[2]];
+    area += area_left_of(mesh.coordinates, chain);
+  }
+  for (const int b : balance) EXPECT_EQ(b, 0);
+  double volume = 0;
+  for (const double v : gauss_points(mesh, mesh.coordinates).volumes) volume += v;
+  EXPECT_NEAR(area, volume, 1e-10 * volume);
+}
+
+void check_tunnel(const HalfTunnelOptions& o) {
+  SCOPED_TRACE(testing::Message() << "C/D " << o.cover / o.diameter << " size " << o.size_near);
+  const Mesh mesh = make_half_tunnel(o);
+  expect_closed_outline(mesh);
+  const GaussPoints points = gauss_points(mesh, mesh.coordinates);
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    const auto first = points.volumes.begin() + 4 * e;
+    EXPECT_GT(*std::min_element(first, first + 4), 0.15 * *std::max_element(first, first + 4));
+  }
+  const Point centre(0, o.height - o.cover - o.diameter / 2);
+  for (const int node : mesh.node_set("opening"))
+    EXPECT_NEAR((mesh.coordinates.col(node) - centre).norm(), o.diameter / 2, 1e-13 * o.height);
+  for (const int node : mesh.node_set("axis")) EXPECT_EQ(mesh.coordinates(0, node), 0);
+  EXPECT_EQ(mesh.coordinates(0, mesh.node_set("crown")[0]), 0);
+  EXPECT_EQ(mesh.coordinates(0, mesh.node_set("invert")[0]), 0);
+  EXPECT_NEAR(mesh.coordinates(1, mesh.node_set("crown")[0]), o.height - o.cover, 1e-12);
+  EXPECT_NEAR(mesh.coordinates(1, mesh.node_set("invert")[0]), o.height - o.cover - o.diameter, 1e-12);
+  double previous = 1e300;
+  for (const int node : mesh.node_set("opening")) {  // from crown to invert
+    EXPECT_LT(mesh.coordinates(1, node), previous);
+    previous = mesh.coordinates(1, node);
+  }
+  // The Q8 edges' area against the half circle's: the arc of angle a is missed by about a^5.
+  EXPECT_NEAR(-area_left_of(mesh.coordinates, mesh.edge_set("opening")), M_PI * o.diameter * o.diameter / 8,
+              1e-4 * o.diameter * o.diameter);
+}
+
+TEST(TunnelMesh, IsSoundForAnyCoverAndFineness) {
+  for (const double ratio : {0.5, 1.0, 2.0, 3.0, 4.0, 5.5})
+    for (const double size : {0.25, 0.5, 1.1, 2.2})
+      check_tunnel({.cover = 5 * ratio, .size_near = size, .size_far = std::max(2.5, size)});
+  check_tunnel({.width = 60, .height = 80, .diameter = 8, .cover = 30, .size_near = 0.7, .size_far = 6});
+}
+
+TEST(TunnelMesh, RepeatsItsBits) {
+  for (const double cover : {10.0, 15.0, 20.0}) {
+    const Mesh a = make_half_tunnel({.cover = cover});
+    static_cast<void>(make_half_tunnel({.cover = 7.5, .size_near = 0.8}));  // leaves nothing behind in Gmsh
+    const Mesh b = make_half_tunnel({.cover = cover});
+    EXPECT_EQ(a.coordinates, b.coordinates);
+    EXPECT_EQ(a.elements, b.elements);
+    EXPECT_EQ(a.edges, b.edges);
+    EXPECT_EQ(a.nodes, b.nodes);
+  }
+}
+
+TEST(TunnelMesh, IsFinerAtTheOpeningAndAboveIt) {
+  const Mesh mesh = make_half_tunnel({});
+  const auto length = [&](const Edge& e) { return (mesh.coordinates.col(e[2]) - mesh.coordinates.col(e[0])).norm(); };
+  const auto& opening = mesh.edge_set("opening");
+  EXPECT_NEAR(length(opening[opening.size() / 2]), 0.5, 0.1);
+  EXPECT_LT(length(mesh.edge_set("top").back()), 0.5 * length(mesh.edge_set("top").front()));  // above the crown, far off
+}
+
+TEST(TunnelMesh, ImpossibleOptionsSaySo) {
+  EXPECT_THROW(static_cast<void>(make_half_tunnel({.diameter = -5})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_half_tunnel({.cover = 30})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_half_tunnel({.width = 2.5})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_half_tunnel({.size_near = 3})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_half_tunnel({.size_near = 1e-4})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_half_tunnel({.height = std::nan("")})), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_rectangle(1, 0, 2, 2)), std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(make_rectangle(1, 1, 0, 2)), std::invalid_argument);
+}
+
+TEST(RectangleMesh, HasItsOutline) {
+  const Mesh mesh = make_rectangle(3, 2, 3, 4);
+  expect_closed_outline(mesh);
+  EXPECT_EQ(mesh.n_elements(), 12);
+  EXPECT_EQ(mesh.n_nodes(), 4 * 5 + 3 * 5 + 4 * 4);
+  EXPECT_EQ(mesh.edge_set("base").size(), 3u);
+  EXPECT_EQ(mesh.node_set("side").size(), 9u);
+  EXPECT_EQ(mesh.coordinates(0, mesh.node_set("base").front()), 0);
+  EXPECT_EQ(mesh.coordinates(0, mesh.node_set("top").front()), 3);
+  EXPECT_THROW(static_cast<void>(mesh.edge_set("opening")), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace voussoir::fem

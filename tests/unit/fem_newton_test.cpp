@@ -1,0 +1,185 @@
+#include <gtest/gtest.h>
+
+#include "fem/newton.hpp"
+#include "tests/fem_support.hpp"
+
+namespace voussoir::fem {
+namespace {
+
+using fem_support::SofteningMaterial;
+using fem_support::SofteningOptions;
+
+/// A block on a rough base, compressed and sheared through its top.
+struct Block {
+  Mesh mesh = fem_support::distorted_rectangle(1, 2, 4, 8, 0.03);
+  SofteningMaterial material;
+  MeshState state;
+  explicit Block(const SofteningOptions& options = {})
+      : material(static_cast<std::size_t>(mesh.n_points()), options),
+        state(begin_stage(mesh, mesh.coordinates, material)) {}
+
+  [[nodiscard]] IncrementLoad load(double compression, double shear) const {
+    IncrementLoad result{Eigen::VectorXd::Zero(mesh.n_dofs()), {}, 0, 0};
+    constrain(result.prescribed, mesh.node_set("base"), 0, 0);
+    constrain(result.prescribed, mesh.node_set("base"), 1, 0);
+    constrain(result.prescribed, mesh.node_set("top"), 0, shear);
+    constrain(result.prescribed, mesh.node_set("top"), 1, -compression);
+    return result;
+  }
+};
+
+/// The residual of an increment, formed apart from the solver.
+double independent_residual(const Block& block, const IncrementLoad& load, const Increment& increment) {
+  Eigen::VectorXd r = load.external_force - internal_force(block.mesh, increment.points, increment.stress).force;
+  for (const auto& [dof, value] : load.prescribed) r[dof] = 0;
+  return r.norm();
+}
+
+TEST(Newton, AndersonConvergesOnATangentThatIsTooStiff) {
+  NewtonReport reports[2];
+  for (const int depth : {0, 5}) {
+    Block block({.strain_scale = 0.1, .too_stiff = 2.5});
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh,
+                        {.tolerance = 1e-6, .displacement_tolerance = 1e-5, .max_iterations = 200, .anderson_depth = depth});
+    Increment increment;
+    const IncrementLoad load = block.load(0.02, 0.03);
+    NewtonReport& report = reports[depth > 0];
+    report = solver.solve_increment(block.state, load, increment);
+    ASSERT_EQ(report.status, NewtonStatus::converged) << "depth " << depth;
+    EXPECT_NEAR(independent_residual(block, load, increment), report.residual, 1e-9 * report.reaction_norm);
+    EXPECT_LE(report.residual, 1e-6 * report.reaction_norm);
+    EXPECT_EQ(report.evaluations, block.material.evaluations);
+    EXPECT_EQ(block.material.increments_begun, 1);
+    for (const auto& [dof, value] : load.prescribed) EXPECT_EQ(increment.displacement[dof], value);
+  }
+  EXPECT_LE(reports[1].iterations, 15);
+  EXPECT_GT(reports[0].iterations, 2 * reports[1].iterations);
+  RecordProperty("plain", reports[0].iterations);
+  RecordProperty("anderson", reports[1].iterations);
+}
+
+TEST(Newton, SofteningConvergesWithAnderson) {
+  // Past the peak (strain_scale) the true tangent is negative in shear while the one given stays elastic.
+  Block block({.strain_scale = 0.012, .power = 1.5, .too_stiff = 2.0});
+  NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.max_iterations = 60});
+  for (int k = 0; k < 10; ++k) {
+    Increment increment;
+    const NewtonReport report = solver.solve_increment(block.state, block.load(0, 0.006), increment);
+    ASSERT_EQ(report.status, NewtonStatus::converged) << "increment " << k;
+    solver.commit(block.state, increment);
+  }
+  EXPECT_NEAR(block.state.displacement[2 * block.mesh.node_set("top")[0]], 0.06, 1e-12);
+}
+
+TEST(Newton, NeverSaysConvergedWhereItIsNot) {
+  for (int limit = 1; limit <= 30; ++limit) {
+    Block block({.too_stiff = 2.5});
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.max_iterations = limit});
+    Increment increment;
+    const IncrementLoad load = block.load(0.02, 0.03);
+    const NewtonReport report = solver.solve_increment(block.state, load, increment);
+    const double residual = independent_residual(block, load, increment);
+    const bool small = residual <= 1e-3 * increment.reactions.norm();
+    const bool still = report.correction_history.back() <= 1e-2 * increment.displacement.norm();
+    EXPECT_EQ(report.status, small && still ? NewtonStatus::converged : NewtonStatus::max_iterations);
+    EXPECT_LE(report.iterations, limit);
+  }
+}
+
+TEST(Newton, RefactoringSeldomGivesTheSameAnswer) {
+  Eigen::VectorXd answers[2];
+  for (const int every : {1, 1000}) {
+    Block block;
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh,
+                        {.tolerance = 1e-9, .displacement_tolerance = 1e-8, .refactor_every = every});
+    Increment increment;
+    const NewtonReport report = solver.solve_increment(block.state, block.load(0.01, 0.01), increment);
+    ASSERT_EQ(report.status, NewtonStatus::converged);
+    EXPECT_EQ(report.factorisations, every > 1 ? 2 : report.iterations + 1);  // one for the first step
+    answers[every > 1] = increment.displacement;
+  }
+  EXPECT_LT((answers[0] - answers[1]).norm(), 1e-7 * answers[0].norm());
+}
+
+TEST(Newton, PredictorOfASteadyPathNeedsNoCorrection) {
+  Block block({.strain_scale = 1e9});  // linear
+  NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.tolerance = 1e-6, .length_tolerance = 0});
+  Increment increment;
+  IncrementLoad load = block.load(1e-8, 0);  // so small that H F_n^-1 is H
+  ASSERT_EQ(solver.solve_increment(block.state, load, increment).status, NewtonStatus::converged);
+  solver.commit(block.state, increment);
+  load = block.load(0.5e-8, 0);
+  load.predictor_ratio = 0.5;
+  const NewtonReport report = solver.solve_increment(block.state, load, increment);
+  EXPECT_EQ(report.status, NewtonStatus::converged);
+  EXPECT_EQ(report.iterations, 1);
+}
+
+TEST(Newton, FailuresHaveNames) {
+  Increment increment;
+  {
+    Block block({.usable_strain = 1e-3});
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {});
+    const NewtonReport report = solver.solve_increment(block.state, block.load(0.1, 0), increment);
+    EXPECT_EQ(report.status, NewtonStatus::material_failed);
+    EXPECT_NE(report.material.message.find("strained too far"), std::string::npos);
+  }
+  {
+    Block block;
+    NewtonSolver solver(block.mesh, block.material, Kinematics::updated_lagrangian, {});
+    EXPECT_EQ(solver.solve_increment(block.state, block.load(3, 0), increment).status, NewtonStatus::inverted_element);
+    EXPECT_EQ(solver.solve_increment(block.state, block.load(std::nan(""), 0), increment).status,
+              NewtonStatus::not_finite);
+    IncrementLoad load = block.load(0.01, 0);
+    load.external_force[30] = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(solver.solve_increment(block.state, load, increment).status, NewtonStatus::not_finite);
+    block.state.coordinates.col(block.mesh.elements[5][0]) += Point(1, 1);
+    EXPECT_EQ(solver.solve_increment(block.state, block.load(0.01, 0), increment).status,
+              NewtonStatus::inverted_element);
+  }
+  {
+    Block block({.too_stiff = -1});  // neither the tangent nor the initial one is positive
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {});
+    EXPECT_EQ(solver.solve_increment(block.state, block.load(0.01, 0), increment).status,
+              NewtonStatus::not_positive_definite);
+  }
+}
+
+TEST(Newton, VanishedTangentIsCarriedByTheInitialOne) {
+  Block block;
+  const MeshState with_stiff_start = block.state;
+  SofteningMaterial open(static_cast<std::size_t>(block.mesh.n_points()), {.too_stiff = 0});  // tangent zero everywhere
+  NewtonSolver solver(block.mesh, open, Kinematics::fixed_mesh,
+                      {.max_iterations = 200, .initial_tangent_share = 1.0});
+  Increment increment;
+  EXPECT_EQ(solver.solve_increment(with_stiff_start, block.load(0.01, 0), increment).status, NewtonStatus::converged);
+}
+
+TEST(Newton, NoiseFloorWidensTheBoundAndCanBeSwitchedOff) {
+  double bounds[2];
+  for (const bool use : {false, true}) {
+    Block block({.noise = 1e3});
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.use_noise_floor = use});
+    Increment increment;
+    const NewtonReport report = solver.solve_increment(block.state, block.load(0.01, 0), increment);
+    ASSERT_EQ(report.status, NewtonStatus::converged);
+    bounds[use] = report.residual_bound - report.noise_floor;
+    EXPECT_EQ(report.noise_floor > 0, use);
+  }
+  EXPECT_GT(bounds[0], 0);
+}
+
+TEST(Newton, ImpossibleOptionsAreRefused) {
+  Block block;
+  const auto make = [&](const NewtonOptions& options) {
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, options);
+  };
+  EXPECT_THROW(make({.tolerance = 0}), std::invalid_argument);
+  EXPECT_THROW(make({.max_iterations = 0}), std::invalid_argument);
+  EXPECT_THROW(make({.anderson_depth = -1}), std::invalid_argument);
+  SofteningMaterial other(7, {});
+  EXPECT_THROW(NewtonSolver(block.mesh, other, Kinematics::fixed_mesh, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace voussoir::fem
