@@ -56,7 +56,7 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
 }
 
 int command_info(const std::filesystem::path& result_file) {
-  try {
+  try {  // a file that cannot be read is wrong input here
     const io::Provenance origin = io::read_provenance(result_file);
     std::printf("kind %s, version %s (%s), %s, %d threads, begun %s\ncommand: %s\nfingerprint: %s\n",
                 origin.case_kind.c_str(), origin.version.c_str(), origin.git_hash.c_str(), origin.kokkos.c_str(),
@@ -65,7 +65,7 @@ int command_info(const std::filesystem::path& result_file) {
     std::printf("%zu nodes, %zu elements\n", mesh.nodes(), mesh.elements());
     print_increments(io::read_increments(result_file));
   } catch (const std::runtime_error& error) {
-    throw io::InputError("info", result_file.string(), error.what());
+    throw std::invalid_argument(error.what());
   }
   return exit_ok;
 }

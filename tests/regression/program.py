@@ -1,0 +1,113 @@
+"""What the regression tests share: running the program, waiting for its files, comparing results.
+
+VOUSSOIR is the program, VOUSSOIR_ROOT the checkout; ctest sets both.
+"""
+
+import csv
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+ROOT = Path(os.environ["VOUSSOIR_ROOT"])
+PROGRAM = os.environ["VOUSSOIR"]
+NOT_COMPARED = {"wall_s"}  # the only thing that two equal runs may differ in
+
+
+def command(case, folder, settings=(), *further):
+    words = [PROGRAM, "run", str(ROOT / "cases" / case / "case.toml"), "-o", str(folder), *further]
+    for setting in settings:
+        words += ["--set", setting]
+    return words
+
+
+def run(words, code=0):
+    """Runs to the end and checks the exit code."""
+    done = subprocess.run(words, capture_output=True, text=True, timeout=280)
+    check(done.returncode == code, f"{' '.join(words)}: exit {done.returncode} instead of {code}\n{done.stdout}{done.stderr}")
+    return done
+
+
+def start_and_signal(words, wait_for, signal):
+    """Starts a run, waits until a file exists, sends a signal; returns the exit code."""
+    process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120
+    while not Path(wait_for).exists():
+        check(process.poll() is None, f"the run ended before {wait_for} appeared")
+        check(time.monotonic() < deadline, f"{wait_for} did not appear within two minutes")
+        time.sleep(0.002)
+    process.send_signal(signal)
+    return process.wait(timeout=120)
+
+
+def fresh(name):
+    """An empty folder name below the test's working folder."""
+    folder = Path(name)
+    shutil.rmtree(folder, ignore_errors=True)
+    return folder
+
+
+def check(holds, sentence):
+    if not holds:
+        print(f"FAILED: {sentence}", file=sys.stderr)
+        sys.exit(1)
+
+
+def content(file):
+    """Every dataset and attribute of a file, as bytes, by path; links to other files are not followed."""
+    found = {}
+
+    def visit(name, item):
+        for key, value in item.attrs.items():
+            if key not in NOT_COMPARED:
+                found[f"{name}@{key}"] = np.asarray(value).tobytes()
+        if isinstance(item, h5py.Dataset) and name.rsplit("/", 1)[-1] not in NOT_COMPARED:
+            found[name] = np.asarray(item[()]).tobytes()
+
+    with h5py.File(file, "r") as opened:
+        visit("", opened)
+        opened.visititems(visit)
+    return found
+
+
+def check_same(first, second):
+    """Two result folders hold the same bits: every increment, and run.h5 but for its provenance."""
+    names = [sorted(p.relative_to(folder).as_posix() for p in Path(folder).rglob("*.h5")) for folder in (first, second)]
+    check(names[0] == names[1], f"{first} and {second} hold different files: {names[0]} and {names[1]}")
+    for name in names[0]:
+        left, right = content(Path(first) / name), content(Path(second) / name)
+        check(left.keys() == right.keys(), f"{name}: other datasets: {left.keys() ^ right.keys()}")
+        different = [key for key in left if left[key] != right[key] and not key.startswith("provenance")]
+        check(not different, f"{name}: {different} differ")
+    print(f"{first} and {second}: {len(names[0])} files with the same bits")
+
+
+def table(folder):
+    """Rows of run.h5:/table as dictionaries."""
+    with h5py.File(Path(folder) / "run.h5", "r") as opened:
+        columns = {name: data[()] for name, data in opened["table"].items()}
+    count = len(columns["index"])
+    rows = [{name: values[k] for name, values in columns.items()} for k in range(count)]
+    for row in rows:
+        row["stage"] = row["stage"].decode() if isinstance(row["stage"], bytes) else row["stage"]
+    return rows
+
+
+def check_expected(folder, expected):
+    """expected.csv: stage, stage_index (-1: the stage's last), column of the table, value, tolerance (absolute)."""
+    rows = table(folder)
+    with open(expected, newline="") as opened:
+        for line in csv.DictReader(row for row in opened if not row.startswith("#")):
+            stage = [row for row in rows if row["stage"] == line["stage"]]
+            wanted = int(line["stage_index"])
+            matches = stage[-1:] if wanted < 0 else [row for row in stage if row["stage_index"] == wanted]
+            check(matches, f"{folder}: no increment {wanted} of {line['stage']}")
+            value = float(matches[0][line["column"]])
+            error = abs(value - float(line["value"]))
+            check(error <= float(line["tolerance"]), f"{folder}: {line} but it is {value}")
+            print(f"{line['stage']} {wanted} {line['column']}: {value:.6g}, expected {line['value']} +- {line['tolerance']}")

@@ -1,0 +1,44 @@
+"""A run that is stopped or killed and resumed gives the bits of a run that was left alone."""
+
+import signal
+
+import h5py
+
+from program import check, check_same, command, fresh, run, start_and_signal
+
+CASE = "tunnel_elastic"
+SETTINGS = ["volume_loss.increments=30", "volume_loss.total=5 %", "output.every=2"]
+
+straight = fresh("straight")
+run(command(CASE, straight, SETTINGS))
+
+# Ctrl-C, once in each stage: the column, gravity, volume loss.
+stopped = fresh("stopped")
+code = start_and_signal(command(CASE, stopped, SETTINGS), stopped / "column/increments/0003.h5", signal.SIGINT)
+check(code == 130, f"a run stopped by SIGINT ended with {code} instead of 130")
+for wait_for in ("increments/0005.h5", "increments/0020.h5"):
+    code = start_and_signal(command(CASE, stopped, SETTINGS, "--resume"), stopped / wait_for, signal.SIGTERM)
+    check(code == 130, f"a run stopped by SIGTERM ended with {code} instead of 130")
+run(command(CASE, stopped, SETTINGS, "--resume"))
+check_same(straight, stopped)
+
+# kill -9 leaves the last increment readable.
+killed = fresh("killed")
+for wait_for, resume in (("increments/0007.h5", []), ("increments/0019.h5", ["--resume"])):
+    code = start_and_signal(command(CASE, killed, SETTINGS, *resume), killed / wait_for, signal.SIGKILL)
+    check(code == -signal.SIGKILL, f"a killed run ended with {code}")
+    with h5py.File(killed / "run.h5", "r") as result:
+        last = sorted(result["increments"])[-1]
+        check(result["increments"][last]["gauss/stress"].shape[1:] == (4, 3), "the last increment is not readable")
+run(command(CASE, killed, SETTINGS, "--resume"))
+check_same(straight, killed)
+
+# A finished run has nothing to do; results are neither overwritten nor continued by another case.
+again = run(command(CASE, straight, SETTINGS, "--resume"))
+check("finished already" in again.stdout, "a finished run does not say so")
+check_same(straight, killed)
+run(command(CASE, straight, SETTINGS), code=2)
+run(command(CASE, straight, [*SETTINGS, "elastic.poisson=0.2"], "--resume"), code=2)
+check_same(straight, killed)
+run(command(CASE, straight, SETTINGS, "--replace"))
+check_same(straight, killed)
