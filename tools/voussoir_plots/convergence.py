@@ -2,6 +2,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from .style import save
 
@@ -19,6 +20,8 @@ def draw(result, path):
     if not good.all():
         top.semilogy(index[shown & ~good], column["residual"][shown & ~good], "X", color="C3", label="not converged")
         top.legend()
+    if shown.any():
+        top.set_ylim(column["residual"][shown].min() / 3, 3 * column["residual"][shown].max())
     top.set_ylabel("relative residual  [-]")
     middle.bar(index, column["evaluations"], width=0.85, color="0.75", label="evaluations, cut tries included")
     middle.bar(index, column["iterations"], width=0.5, color="C0", label="iterations")
@@ -27,6 +30,7 @@ def draw(result, path):
     bottom.plot(index, np.cumsum(column["wall_s"]) / 60, color="C0")
     bottom.set_ylabel("wall time so far  [min]")
     bottom.set_xlabel("increment")
+    bottom.xaxis.set_major_locator(MaxNLocator(integer=True))
     _mark_stages(top, (middle, bottom), increments)
     figure.suptitle(f"Convergence: {int(good.sum())} of {len(increments)} increments converged", fontsize=12)
     figure.tight_layout()

@@ -38,11 +38,14 @@ def canvas(result, increment):
     factor = magnification(result, displacement)
     deformed = result.coordinates + factor * displacement
     figure, axis = plt.subplots(figsize=(7.4, 6.6))
-    edges = LineCollection(q8.outlines(deformed, result.connectivity), colors="black", linewidths=0.25, alpha=0.45, zorder=2)
+    edges = LineCollection(q8.outlines(deformed, result.connectivity), colors="0.5", linewidths=0.35, alpha=0.6, zorder=2)
     axis.add_collection(edges)
     axis.set_aspect("equal")
     axis.grid(False)
-    axis.autoscale_view()
+    low, high = deformed.min(axis=0), deformed.max(axis=0)
+    margin = 0.03 * np.max(high - low)
+    axis.set_xlim(low[0] - margin, high[0] + margin)
+    axis.set_ylim(low[1] - margin, high[1] + margin)
     axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
     axis.set_ylabel("height above the base  $y$  [m]")
     note = "" if factor == 1 else f", deformation × {factor:g}"
@@ -58,7 +61,7 @@ def draw_displacement(result, path):
                               cmap="viridis", zorder=1)
     figure.colorbar(filled, ax=axis, label="displacement  $|u|$  [m]", shrink=0.85)
     _add_arrows(axis, result, deformed, displacement)
-    axis.set_title(f"Displacement, {state(increment)}{note}")
+    axis.set_title(f"Displacement, {state(increment)}{note}", loc="left")
     save(figure, path)
 
 
@@ -74,7 +77,7 @@ def _add_arrows(axis, result, deformed, displacement):
     arrows = axis.quiver(*deformed[chosen].T, *displacement[chosen].T, angles="xy", scale_units="xy",
                          scale=size.max() / (2.2 * spacing), width=0.0028, color="white", edgecolor="black", linewidth=0.35,
                          zorder=3)
-    axis.quiverkey(arrows, 0.87, 1.03, size.max(), f"{size.max():.2g} m", labelpos="E", color="black")
+    axis.quiverkey(arrows, 0.86, 1.03, size.max(), f"{size.max():.2g} m", labelpos="E", color="black")
 
 
 def _draw_points(result, path, name, label, title, colour_map, symmetric=False, factor=1.0):
@@ -87,7 +90,7 @@ def _draw_points(result, path, name, label, title, colour_map, symmetric=False, 
     limit = np.max(np.abs(finite)) if finite.size else 1.0
     limits = (-limit, limit) if symmetric else (finite.min(), finite.max()) if finite.size else (0, 1)
     collection = PolyCollection(patches.reshape(-1, 4, 2), array=values.ravel(), cmap=colour_map, edgecolors="face",
-                                linewidths=0.1, zorder=1)
+                                linewidths=0.6, zorder=1)
     collection.set_clim(*limits)
     axis.add_collection(collection)
     figure.colorbar(collection, ax=axis, label=label, shrink=0.85)

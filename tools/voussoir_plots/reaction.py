@@ -34,6 +34,6 @@ def draw(result, path):
     axis.set_xlabel("volume loss  $V_l$  [%]")
     axis.set_ylabel(r"vertical stress above the crown  $\sigma_v / \sigma_{v,0}$  [-]")
     axis.set_xlim(left=0)
-    axis.set_ylim(bottom=min(0, 1.05 * stress.min() / start))
+    axis.set_ylim(min(0, 1.05 * stress.min() / start), 1.05 * max(1, stress.max() / start))
     axis.set_title(rf"Ground reaction curve,  $\sigma_{{v,0}}$ = {start / 1e3:.4g} kPa")
     save(figure, path)

@@ -59,9 +59,14 @@ def _draw_ratio(axis, stress, far):
     if not good.any():
         raise Missing("no point is compressed vertically")
     axis.semilogx(vertical[good], horizontal[good] / vertical[good], ".", color="C0", markersize=4)
+    ticks = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000])
+    shown = ticks[(ticks >= 0.45 * vertical[good].min()) & (ticks <= 2.2 * vertical[good].max())]
+    if len(shown) > 1:
+        axis.set_xlim(min(shown[0], 0.9 * vertical[good].min()), max(shown[-1], 1.1 * vertical[good].max()))
+    axis.set_xticks(shown, [str(t) for t in shown])
+    axis.minorticks_off()
     low, high = axis.get_ylim()
     axis.set_ylim(min(0.2, low), max(1.1, high))
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
     axis.set_ylabel(r"$K_0 = \sigma_{xx} / \sigma_{yy}$  [-]")
     axis.set_title("away from the opening")
-    axis.grid(True, which="both", alpha=0.3)

@@ -28,7 +28,7 @@ def profile(result, increment, depth):
     if depth == 0:
         return surface_profile(result, increment)
     (surface_y,) = result.need("surface_y")
-    x = np.linspace(0, result.coordinates[:, 0].max(), 121)
+    x = np.linspace(0, result.coordinates[:, 0].max(), 61)
     line = np.column_stack([x, np.full_like(x, surface_y - depth)])
     u = q8.sample(result.coordinates, result.connectivity, increment.field("node/displacement"), line)
     inside = np.isfinite(u[:, 1])
@@ -50,7 +50,9 @@ def draw(result, path):
     last = losses[-1]
     colours = plt.get_cmap("cividis")(np.linspace(0.0, 0.9, len(DEPTHS)))
     for ratio, colour in zip(DEPTHS, colours):
-        rows.append(_add(axes[1], result, last, ratio, colour, f"{ratio:g}"))
+        row = _add(axes[1], result, last, ratio, colour, f"{ratio:g}")
+        if ratio > 0:  # the surface at this volume loss is a row already
+            rows.append(row)
     axes[0].set_title("Settlement of the surface")
     axes[1].set_title(f"Settlement at depth, $V_l$ = {percent(last['volume_loss'])}")
     for axis, title in zip(axes, ("$V_l$", "$z/C$")):
