@@ -2,11 +2,13 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "host/exit_code.hpp"
+#include "host/packing.hpp"
 #include "host/tunnel.hpp"
 
 namespace voussoir::host {
@@ -51,10 +53,10 @@ int run_case(const Case& input, const RunOptions& options) {
   switch (input.kind) {
     case CaseKind::tunnel: return answer(run_tunnel(input, options), options);
     case CaseKind::column: return answer(run_column_case(input, options), options);
-    case CaseKind::pack:
-    case CaseKind::probe: break;
+    case CaseKind::pack: return run_pack(input, options);
+    case CaseKind::probe: return run_probe(input, options);
   }
-  return exit_input;
+  return exit_machine;
 }
 
 CaseSize case_size(const Case& input) {
