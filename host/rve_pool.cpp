@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/neighbours.hpp"
+
 namespace voussoir::host {
 
 namespace {

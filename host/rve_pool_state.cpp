@@ -14,8 +14,10 @@ class Writer {
   explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
   template <class T>
   void operator()(const T* from, std::size_t n) {
-    const auto* begin = reinterpret_cast<const std::byte*>(from);
-    bytes_.insert(bytes_.end(), begin, begin + n * sizeof(T));
+    if (n == 0) return;
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + n * sizeof(T));
+    std::memcpy(bytes_.data() + at, from, n * sizeof(T));
   }
 
  private:
@@ -29,7 +31,7 @@ class Reader {
   void operator()(T* to, std::size_t n) {
     const std::size_t length = n * sizeof(T);
     if (length > bytes_.size()) throw std::runtime_error("the checkpoint's RVEs are not those of this case");
-    std::memcpy(to, bytes_.data(), length);
+    if (length > 0) std::memcpy(to, bytes_.data(), length);
     bytes_ = bytes_.subspan(length);
   }
   [[nodiscard]] bool at_end() const { return bytes_.empty(); }
