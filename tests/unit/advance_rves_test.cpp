@@ -1,0 +1,211 @@
+// The engine against the plain oracle, and the same bits wherever an RVE runs.
+#include "kernels/advance_rves.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/reference/reference_packing.hpp"
+
+namespace voussoir::kernels {
+namespace {
+
+reference::Mat2 plain(const Mat2& m) { return {m.xx, m.xy, m.yx, m.yy}; }
+
+Packing packing_of(const reference::Rve& rve) {
+  const reference::Material& m = rve.material;
+  return {.radii = rve.radii,
+          .material = {.modulus = m.modulus,
+                       .stiffness_ratio = m.stiffness_ratio,
+                       .friction = m.friction,
+                       .rolling_stiffness = m.rolling_stiffness,
+                       .rolling_limit = m.rolling_limit},
+          .thickness = m.thickness,
+          .local_damping = m.damping};
+}
+
+void fill(RveStates& states, std::size_t rve, const reference::Rve& from) {
+  const reference::Mat2 inverse = reference::inverse(from.cell);
+  for (std::size_t i = 0; i < from.radii.size(); ++i) {
+    const reference::Vec2 f = inverse * from.positions[i];
+    const reference::Vec2 x = from.cell * reference::Vec2{f.x - std::floor(f.x), f.y - std::floor(f.y)};
+    states.position(rve, i, 0) = x.x;
+    states.position(rve, i, 1) = x.y;
+    states.rotation(rve, i) = from.rotations[i];
+  }
+  const double cell[4] = {from.cell.xx, from.cell.xy, from.cell.yx, from.cell.yy};
+  for (std::size_t k = 0; k < 4; ++k) states.cell(rve, k) = cell[k];
+  int count = 0;
+  for (const auto& [pair, history] : from.histories) {
+    states.contact_key(rve, count) = pair_key(pair.first, pair.second);
+    states.contact_history(rve, count, 0) = history.tangential;
+    states.contact_history(rve, count, 1) = history.moment;
+    ++count;
+  }
+  states.contact_count(rve) = count;
+}
+
+RveBatch clones(const reference::Rve& rve, std::size_t n) {
+  RveBatch batch = make_batch({packing_of(rve)}, std::vector<int>(n, 0));
+  for (std::size_t k = 0; k < n; ++k) fill(batch.committed, k, rve);
+  return batch;
+}
+
+EngineSettings in_double() { return {.precision = Precision::float64}; }
+
+std::vector<RveReport> run(RveBatch& batch, const std::vector<StrainRequest>& requests, const EngineSettings& settings) {
+  std::vector<RveReport> reports(batch.size());
+  advance(batch, std::span<const StrainRequest>(requests), settings, reports);
+  return reports;
+}
+
+class Engine : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dense_ = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{});
+  }
+  static inline reference::Rve dense_;
+};
+
+/// Runs both on the same motion for the same steps and compares everything that the engine answers.
+void compare(const reference::Rve& start, const StrainRequest& request, const EngineSettings& settings, std::size_t n_clones,
+             double tolerance) {
+  RveBatch batch = clones(start, n_clones);
+  const RveReport report = run(batch, std::vector(n_clones, request), settings).back();
+  ASSERT_FALSE(is_failure(report.status)) << name_of(report.status);
+  reference::Rve expected = start;
+  const reference::StrainReport oracle = strain(
+      expected, plain(request.f_rel), {.steps = request.strain_steps, .hold_steps = report.steps - request.strain_steps});
+  const reference::Mat2 sigma = love_weber(expected, contacts(expected));
+  const double p = reference::pressure(reference::stress(expected));
+  const double stress[4] = {sigma.xx, sigma.xy, sigma.yx, sigma.yy};
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(report.stress[k], stress[k], tolerance * p) << k;
+  const reference::VoigtMatrix d = tangent(expected);
+  const double upper[6] = {d[0][0], d[0][1], d[0][2], d[1][1], d[1][2], d[2][2]};
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(report.tangent[k], upper[k], tolerance * d[0][0]) << k;
+  EXPECT_EQ(report.contacts, static_cast<int>(contacts(expected).size()));
+  EXPECT_NEAR(report.unbalanced, oracle.unbalanced_ratio, 100 * tolerance * oracle.unbalanced_ratio);
+  const std::size_t last = n_clones - 1;
+  EXPECT_NEAR(batch.trial.cell(last, 1), expected.cell.xy, 1e-13);
+  const reference::Mat2 inverse = reference::inverse(expected.cell);
+  for (std::size_t i = 0; i < start.radii.size(); ++i) {
+    const reference::Vec2 x{batch.trial.position(last, i, 0), batch.trial.position(last, i, 1)};
+    const reference::Vec2 f = inverse * (x - expected.positions[i]);
+    const reference::Vec2 off = expected.cell * reference::Vec2{f.x - std::round(f.x), f.y - std::round(f.y)};
+    EXPECT_LT(norm(off), tolerance * 2e-5) << i;  // of ten overlaps: all grains may drift together
+    EXPECT_NEAR(batch.trial.rotation(last, i), expected.rotations[i], tolerance * 1e-3);
+  }
+  ASSERT_EQ(batch.trial.contact_count(last), static_cast<int>(expected.histories.size()));
+  std::size_t c = 0;
+  for (const auto& [pair, history] : expected.histories) {
+    EXPECT_EQ(batch.trial.contact_key(last, c), pair_key(pair.first, pair.second));
+    EXPECT_NEAR(batch.trial.contact_history(last, c, 0), history.tangential, tolerance * 20);
+    EXPECT_NEAR(batch.trial.contact_history(last, c, 1), history.moment, tolerance * 20 * 2e-3);
+    ++c;
+  }
+}
+
+const StrainRequest general{.f_rel = {1.0004, 0.0012, -0.0005, 0.9994}, .strain_steps = 300, .hold_cap = 60};
+
+// Rounding differs, and grows with the path: 1e-15 becomes some 1e-11 in these few hundred steps.
+constexpr double rounding = 1e-8;
+
+TEST_F(Engine, FollowsTheOracle) { compare(dense_, general, in_double(), 2, rounding); }
+TEST_F(Engine, FollowsTheOracleAlone) { compare(dense_, general, in_double(), 1, rounding); }
+
+TEST_F(Engine, FollowsTheOracleThroughManyRebases) {
+  EngineSettings settings = in_double();
+  settings.skin = 0.0005;
+  settings.list_interval = 1;
+  compare(dense_, general, settings, 2, rounding);
+}
+
+TEST_F(Engine, FollowsTheOracleThroughARotation) {
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  compare(dense_, {.f_rel = Mat2{c, -s, s, c} * Mat2{1, 0.001, 0, 0.999}, .strain_steps = 400, .hold_cap = 20}, in_double(),
+          2, rounding);
+}
+
+TEST_F(Engine, FollowsTheOracleWithoutRolling) {
+  reference::Rve rve = dense_;
+  rve.material.rolling_stiffness = 0;
+  for (auto& [pair, history] : rve.histories) history.moment = 0;
+  compare(rve, general, in_double(), 2, rounding);
+}
+
+TEST_F(Engine, FloatFollowsTheOracle) {
+  compare(dense_, {.f_rel = {1.0001, 0.0002, 0, 0.9999}, .strain_steps = 200, .hold_cap = 20}, EngineSettings{}, 2, 2e-3);
+}
+
+bool same_bits(const RveReport& a, const RveReport& b) {
+  return a.status == b.status && a.steps == b.steps && a.contacts == b.contacts && std::equal(a.stress, a.stress + 4, b.stress) &&
+         std::equal(a.tangent, a.tangent + 6, b.tangent) && a.unbalanced == b.unbalanced;
+}
+
+TEST_F(Engine, SameBitsAloneInAnyGroupAndBesideANaN) {
+  for (const Precision precision : {Precision::float32, Precision::float64}) {
+    const EngineSettings settings{.precision = precision};
+    RveBatch alone = clones(dense_, 1);
+    const RveReport expected = run(alone, {general}, settings).front();
+    const std::size_t n = 19;
+    for (const std::size_t place : {std::size_t{0}, std::size_t{7}, std::size_t{18}}) {
+      RveBatch batch = clones(dense_, n);
+      std::vector<StrainRequest> requests(n);
+      for (std::size_t k = 0; k < n; ++k) {
+        const double e = 1e-3 * std::cos(1.0 * static_cast<double>(k));
+        requests[k] = {.f_rel = {1 + e, 3 * e, -e, 1 - 2 * e}, .strain_steps = 200 + 10 * static_cast<int>(k), .hold_cap = 64};
+      }
+      requests[place] = general;
+      const std::size_t broken = (place + 1) % n;
+      batch.committed.position(broken, 3, 0) = std::numeric_limits<double>::quiet_NaN();
+      const auto reports = run(batch, requests, settings);
+      EXPECT_TRUE(same_bits(reports[place], expected)) << "place " << place << " precision " << static_cast<int>(precision);
+      EXPECT_EQ(reports[broken].status, RveStatus::not_finite);
+      for (std::size_t i = 0; i < dense_.radii.size(); ++i) {
+        ASSERT_EQ(batch.trial.position(place, i, 0), alone.trial.position(0, i, 0)) << i;
+        ASSERT_EQ(batch.trial.rotation(place, i), alone.trial.rotation(0, i)) << i;
+      }
+    }
+  }
+}
+
+TEST_F(Engine, RigidRotationRotatesStressAndNothingElse) {
+  RveBatch batch = clones(dense_, 2);
+  const auto reports = run(batch, {{.f_rel = {0, -1, 1, 0}, .strain_steps = 400, .hold_cap = 16},
+                                   {.f_rel = identity2, .strain_steps = 400, .hold_cap = 16}}, in_double());
+  const double p = reports[1].pressure();
+  EXPECT_EQ(reports[0].contacts, reports[1].contacts);
+  EXPECT_NEAR(reports[0].stress[0], reports[1].stress[3], 1e-6 * p);
+  EXPECT_NEAR(reports[0].stress[3], reports[1].stress[0], 1e-6 * p);
+  EXPECT_NEAR(reports[0].stress[1], -reports[1].stress[2], 1e-6 * p);
+}
+
+TEST_F(Engine, NoContactIsOpenAndNoFailure) {
+  RveBatch batch = clones(dense_, 2);
+  const auto reports = run(batch, std::vector(2, StrainRequest{.f_rel = {1.2, 0, 0, 1.2}, .strain_steps = 400, .hold_cap = 32}),
+                           in_double());
+  EXPECT_EQ(reports[0].status, RveStatus::open);
+  EXPECT_EQ(reports[0].stress[0], 0.0);
+  EXPECT_EQ(reports[0].contacts, 0);
+}
+
+TEST_F(Engine, ImpossibleMotionsAreReported) {
+  RveBatch batch = clones(dense_, 4);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto reports = run(batch,
+                           {{.f_rel = {nan, 0, 0, 1}, .strain_steps = 10, .hold_cap = 1},
+                            {.f_rel = {1, 0, 0, -1}, .strain_steps = 10, .hold_cap = 1},
+                            {.f_rel = {0.7, 0, 0, 0.7}, .strain_steps = 200, .hold_cap = 1},
+                            {.f_rel = {1.0001, 0, 0, 1}, .strain_steps = 100, .hold_cap = 10}},
+                           in_double());
+  EXPECT_EQ(reports[0].status, RveStatus::not_finite);
+  EXPECT_EQ(reports[1].status, RveStatus::not_finite);
+  EXPECT_EQ(reports[2].status, RveStatus::overlap_limit);
+  EXPECT_FALSE(is_failure(reports[3].status));
+}
+
+}  // namespace
+}  // namespace voussoir::kernels
