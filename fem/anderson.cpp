@@ -18,8 +18,7 @@ Eigen::VectorXd guarded_least_squares(const Eigen::MatrixXd& d, const Eigen::Vec
   Eigen::Index kept = 0;
   while (kept < d.cols() && diagonal[kept] > 1 / condition_limit) ++kept;
   const Eigen::VectorXd rotated = qr.householderQ().transpose() * f;
-  gamma.head(kept) =
-      qr.matrixQR().topLeftCorner(kept, kept).triangularView<Eigen::Upper>().solve(rotated.head(kept));
+  gamma.head(kept) = qr.matrixQR().topLeftCorner(kept, kept).triangularView<Eigen::Upper>().solve(rotated.head(kept));
   return gamma.cwiseQuotient(lengths);
 }
 

@@ -7,7 +7,9 @@ namespace voussoir::fem {
 
 namespace {
 
-int element_dof(const ElementNodes& nodes, int i) { return 2 * nodes[i / 2] + i % 2; }
+int element_dof(const ElementNodes& nodes, int i) {
+  return 2 * nodes[i / 2] + i % 2;
+}
 
 using ElementStiffness = Eigen::Matrix<double, 16, 16>;
 
@@ -55,7 +57,8 @@ int entry_of(const SparsePattern& pattern, int row, int column) {
 
 /// Rows and columns of constrained dofs become the identity times the mean diagonal (the scale keeps the factor's
 /// condition; the value itself cancels since their right-hand side is zero).
-void apply_constraints(const SparsePattern& pattern, const std::vector<char>& constrained, std::vector<double>& values) {
+void apply_constraints(const SparsePattern& pattern, const std::vector<char>& constrained,
+                       std::vector<double>& values) {
   double trace = 0;
   for (int column = 0; column < pattern.n; ++column) trace += values[pattern.column_start[column]];
   const double diagonal = trace > 0 ? trace / pattern.n : 1.0;

@@ -26,11 +26,13 @@ class StiffnessAssembler {
 };
 
 struct InternalForce {
-  Eigen::VectorXd force;      ///< integral B^T sigma, n_dofs [N/m]
-  Eigen::VectorXd magnitude;  ///< sum over elements of |element force| by node, n_nodes [N/m]: the local scale of a residual
+  Eigen::VectorXd force;  ///< integral B^T sigma, n_dofs [N/m]
+  Eigen::VectorXd
+      magnitude;  ///< sum over elements of |element force| by node, n_nodes [N/m]: the local scale of a residual
 };
 
 /// Internal force, eq. (6), of the stresses [Pa] (n_points).
-[[nodiscard]] InternalForce internal_force(const Mesh& mesh, const GaussPoints& points, const std::vector<Stress>& stress);
+[[nodiscard]] InternalForce internal_force(const Mesh& mesh, const GaussPoints& points,
+                                           const std::vector<Stress>& stress);
 
 }  // namespace voussoir::fem

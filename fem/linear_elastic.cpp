@@ -33,7 +33,8 @@ Stress logarithmic_stress(const Tangent& stiffness, const Stress& committed, con
 
 Tangent plane_strain_stiffness(double young, double poisson) {
   if (!(young > 0) || !std::isfinite(young)) throw std::invalid_argument("elastic: Young's modulus must be positive");
-  if (!(poisson > -1 && poisson < 0.5)) throw std::invalid_argument("elastic: Poisson's ratio must be between -1 and 0.5");
+  if (!(poisson > -1 && poisson < 0.5))
+    throw std::invalid_argument("elastic: Poisson's ratio must be between -1 and 0.5");
   const double scale = young / ((1 + poisson) * (1 - 2 * poisson));
   Tangent d = Tangent::Zero();
   d(0, 0) = d(1, 1) = scale * (1 - poisson);

@@ -21,7 +21,8 @@ void check(const MeshState& state, const LoadPath& path, const std::vector<doubl
   require(o.smallest > 0 && o.smallest <= 1, "smallest must be in (0, 1]");
   double previous = state.start;
   for (const double target : targets) {
-    require(std::isfinite(target) && target > previous, "the targets must be finite and increase from the stage's start");
+    require(std::isfinite(target) && target > previous,
+            "the targets must be finite and increase from the stage's start");
     previous = target;
   }
 }
@@ -48,7 +49,8 @@ std::string describe(const NewtonReport& newton, double from, double to) {
   std::ostringstream text;
   text.precision(10);
   text << to_string(newton.status) << " in the increment from " << from << " to " << to << " (residual "
-       << newton.residual << " N/m, allowed " << newton.residual_bound << " N/m, " << newton.iterations << " iterations)";
+       << newton.residual << " N/m, allowed " << newton.residual_bound << " N/m, " << newton.iterations
+       << " iterations)";
   if (!newton.material.message.empty()) text << ": " << newton.material.message;
   return text.str();
 }
@@ -80,8 +82,7 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
     state.last_step = to - from;
     state.step_limit *= options.growth;
     if (state.step_limit >= nominal) state.step_limit = 0;
-    if (callbacks.on_converged &&
-        !callbacks.on_converged({from, to, to == target, report.last, increment, state})) {
+    if (callbacks.on_converged && !callbacks.on_converged({from, to, to == target, report.last, increment, state})) {
       report.status = StepStatus::stopped;
       return false;
     }
@@ -110,7 +111,8 @@ std::vector<double> geometric_targets(double start, double ratio, double largest
   require(largest_step > 1e-6 && largest_step <= 1, "geometric targets: largest_step must be in (1e-6, 1]");
   std::vector<double> targets;
   double reached = 0;
-  for (double carried = start * ratio; carried - start < 1 && carried - start - reached < largest_step; carried *= ratio)
+  for (double carried = start * ratio; carried - start < 1 && carried - start - reached < largest_step;
+       carried *= ratio)
     targets.push_back(reached = carried - start);
   const int uniform = std::max(1, static_cast<int>(std::ceil((1 - reached) / largest_step - 1e-9)));
   for (int k = 1; k <= uniform; ++k) targets.push_back(k == uniform ? 1.0 : reached + (1 - reached) * k / uniform);
@@ -119,9 +121,12 @@ std::vector<double> geometric_targets(double start, double ratio, double largest
 
 const char* to_string(StepStatus status) {
   switch (status) {
-    case StepStatus::finished: return "finished";
-    case StepStatus::stopped: return "stopped";
-    case StepStatus::gave_up: return "gave_up";
+    case StepStatus::finished:
+      return "finished";
+    case StepStatus::stopped:
+      return "stopped";
+    case StepStatus::gave_up:
+      return "gave_up";
   }
   return "unknown";
 }

@@ -11,9 +11,9 @@ namespace voussoir::fem {
 
 /// The load as a function of the parameter, given by the stage.
 struct LoadPath {
-  std::function<Eigen::VectorXd(double parameter)> external_force;             ///< n_dofs [N/m]
-  std::function<Constraints(double from, double to)> prescribed_increment;     ///< [m]; always the same dofs
-  double reference_force = 0;                                                  ///< as IncrementLoad::reference_force
+  std::function<Eigen::VectorXd(double parameter)> external_force;          ///< n_dofs [N/m]
+  std::function<Constraints(double from, double to)> prescribed_increment;  ///< [m]; always the same dofs
+  double reference_force = 0;                                               ///< as IncrementLoad::reference_force
 };
 
 struct StepOptions {
@@ -24,9 +24,9 @@ struct StepOptions {
 };
 
 enum class StepStatus {
-  finished,   ///< the last target is reached
-  stopped,    ///< a callback asked to stop; the state is that of the last converged increment
-  gave_up     ///< a step below the smallest did not converge; the state is that of the last converged increment
+  finished,  ///< the last target is reached
+  stopped,   ///< a callback asked to stop; the state is that of the last converged increment
+  gave_up    ///< a step below the smallest did not converge; the state is that of the last converged increment
 };
 [[nodiscard]] const char* to_string(StepStatus status);
 
@@ -48,11 +48,11 @@ struct FailedStep {
 
 struct StepReport {
   StepStatus status = StepStatus::finished;
-  int increments = 0;          ///< converged
-  int cuts = 0;                ///< attempts that did not converge
-  std::size_t work = 0;        ///< of all attempts
-  NewtonReport last;           ///< of the last attempt
-  std::string message;         ///< why it gave up: status, parameter and step; empty otherwise
+  int increments = 0;    ///< converged
+  int cuts = 0;          ///< attempts that did not converge
+  std::size_t work = 0;  ///< of all attempts
+  NewtonReport last;     ///< of the last attempt
+  std::string message;   ///< why it gave up: status, parameter and step; empty otherwise
 };
 
 struct StepCallbacks {

@@ -18,9 +18,7 @@ constexpr double max_elements = 2e6;  ///< beyond it an element size is taken fo
 struct Circle {
   Point centre;
   double radius;
-  [[nodiscard]] Point project(const Point& x) const {
-    return centre + radius * (x - centre).normalized();
-  }
+  [[nodiscard]] Point project(const Point& x) const { return centre + radius * (x - centre).normalized(); }
 };
 
 void require(bool holds, const char* sentence) {
@@ -30,7 +28,8 @@ void require(bool holds, const char* sentence) {
 void check(const HalfTunnelOptions& o) {
   for (const double value : {o.width, o.height, o.diameter, o.cover, o.size_near, o.size_far})
     require(std::isfinite(value) && value > 0, "every length must be positive and finite");
-  require(o.cover + o.diameter < o.height, "cover + diameter must be less than the height (the invert is above the base)");
+  require(o.cover + o.diameter < o.height,
+          "cover + diameter must be less than the height (the invert is above the base)");
   require(o.diameter / 2 < o.width, "the width must be more than half the diameter");
   require(o.size_near <= o.size_far, "size_near must not exceed size_far");
   require(o.size_near <= o.diameter / 2, "size_near must not exceed half the diameter");
@@ -84,10 +83,13 @@ void add_geometry(const HalfTunnelOptions& o, const Circle& opening) {
   const int springline = geo::addPoint(r, yc, 0);
   const int invert = geo::addPoint(0, yc - r, 0);
   const int centre = geo::addPoint(0, yc, 0);
-  const std::vector<int> loop{geo::addLine(base_axis, base_side), geo::addLine(base_side, top_side),
-                              geo::addLine(top_side, top_axis), geo::addLine(top_axis, crown),
+  const std::vector<int> loop{geo::addLine(base_axis, base_side),
+                              geo::addLine(base_side, top_side),
+                              geo::addLine(top_side, top_axis),
+                              geo::addLine(top_axis, crown),
                               geo::addCircleArc(crown, centre, springline),
-                              geo::addCircleArc(springline, centre, invert), geo::addLine(invert, base_axis)};
+                              geo::addCircleArc(springline, centre, invert),
+                              geo::addLine(invert, base_axis)};
   geo::addPlaneSurface({geo::addCurveLoop(loop)});
   geo::synchronize();
 }
@@ -96,9 +98,10 @@ void generate(const HalfTunnelOptions& o, const Circle& opening) {
   using gmsh::option::setNumber;
   setNumber("Mesh.MeshSizeExtendFromBoundary", 0);
   setNumber("Mesh.MeshSizeFromPoints", 0);
-  setNumber("Mesh.Algorithm", 6);               // frontal Delaunay
+  setNumber("Mesh.Algorithm", 6);  // frontal Delaunay
   setNumber("Mesh.RecombineAll", 1);
-  setNumber("Mesh.RecombinationAlgorithm", 2);  // recombine a mesh twice as coarse, then split: nothing but quadrilaterals
+  setNumber("Mesh.RecombinationAlgorithm",
+            2);  // recombine a mesh twice as coarse, then split: nothing but quadrilaterals
   setNumber("Mesh.RandomSeed", 1);
   gmsh::model::mesh::setSizeCallback(
       [&](int, int, double x, double y, double) { return target_size(o, opening, x, y); });
@@ -115,7 +118,8 @@ LinearMesh extract() {
   std::vector<int> types;
   std::vector<std::vector<std::size_t>> tags, element_nodes;
   gmsh::model::mesh::getElements(types, tags, element_nodes, 2);
-  if (types.size() != 1 || types[0] != 3) throw std::runtime_error("tunnel mesh: Gmsh left other shapes than quadrilaterals");
+  if (types.size() != 1 || types[0] != 3)
+    throw std::runtime_error("tunnel mesh: Gmsh left other shapes than quadrilaterals");
   std::vector<std::size_t> used = element_nodes[0];
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());

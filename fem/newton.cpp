@@ -23,6 +23,7 @@ void check(const NewtonOptions& o) {
   require(o.max_iterations >= 1 && o.refactor_every >= 1, "max_iterations and refactor_every must be at least 1");
   require(o.initial_tangent_share >= 0, "the initial tangent's share must not be negative");
   require(o.anderson_depth >= 0 && o.anderson_condition > 1, "Anderson's depth must be >= 0, its condition > 1");
+  require(o.noise_factor >= 0, "noise_factor must not be negative");
   require(o.growth_limit > 1 && o.max_halvings >= 0, "growth_limit must be > 1, max_halvings >= 0");
 }
 
@@ -45,6 +46,7 @@ struct NewtonSolver::Workspace {
   std::vector<char> constrained;
   std::vector<Gradient> displacement_gradient;
   Eigen::VectorXd residual;  ///< zero at constrained dofs
+  Eigen::VectorXd noise_sample;
   AndersonHistory history;
   Eigen::VectorXd step;
 
@@ -91,6 +93,7 @@ Failure NewtonSolver::Workspace::prepare() {
   increment.displacement = Eigen::VectorXd::Zero(mesh.n_dofs());
   increment.points = gauss_points(mesh, state.coordinates);
   if (!(increment.points.smallest_jacobian > 0)) return NewtonStatus::inverted_element;
+  noise_sample = unit_noise_sample(mesh, increment.points, constrained);
   return {};
 }
 
@@ -176,9 +179,8 @@ void NewtonSolver::Workspace::form_residual() {
   report.residual = residual.norm();
   report.external_norm = load.external_force.norm();
   report.reaction_norm = increment.reactions.norm();
-  report.noise_floor = options.use_noise_floor
-                           ? noise_force(mesh, increment.points, constrained, report.material.stress_noise)
-                           : 0.0;
+  report.noise_floor =
+      options.noise_factor * noise_force(mesh, increment.points, constrained, report.material.stress_noise);
   report.residual_bound =
       options.tolerance * std::max({report.external_norm, report.reaction_norm, load.reference_force}) +
       report.noise_floor;
@@ -211,19 +213,22 @@ Failure NewtonSolver::Workspace::refactor() {
 }
 
 Failure NewtonSolver::Workspace::find_step() {
+  const NewtonOptions& options = solver.options_;
   const AndersonHistory::Step next = history.step(solver.solver_);
   if (!next.accelerated.allFinite()) return NewtonStatus::not_finite;
   report.correction_history.push_back(next.newton.norm());
   report.increment_norm = increment.displacement.norm();
+  report.correction_bound = options.displacement_tolerance * report.increment_norm;
+  if (const double noise = options.noise_factor * report.material.stress_noise; noise > 0)
+    report.correction_bound += noise * solver.solver_.solve(noise_sample).norm();
   step = next.accelerated;
   return {};
 }
 
 bool NewtonSolver::Workspace::converged() const {
-  const NewtonOptions& options = solver.options_;
   const double correction = report.correction_history.back();
   return report.residual <= report.residual_bound &&
-         (correction <= options.displacement_tolerance * report.increment_norm || correction <= options.length_tolerance);
+         (correction <= report.correction_bound || correction <= solver.options_.length_tolerance);
 }
 
 NewtonReport NewtonSolver::Workspace::stop(NewtonStatus status) {
@@ -249,34 +254,27 @@ void NewtonSolver::commit(MeshState& state, const Increment& increment) {
   material_.commit();
   state.displacement += increment.displacement;
   state.last_increment = increment.displacement;
-  if (kinematics_ == Kinematics::updated_lagrangian)
-    state.coordinates.reshaped() += increment.displacement;
+  if (kinematics_ == Kinematics::updated_lagrangian) state.coordinates.reshaped() += increment.displacement;
   for (std::size_t i = 0; i < state.deformation.size(); ++i) {
     const Gradient& h = increment.gradients[i];
     state.deformation[i] += h + h * state.deformation[i];  // F_rel F_n - I without cancellation
   }
 }
 
-double noise_force(const Mesh& mesh, const GaussPoints& points, const std::vector<char>& constrained,
-                   double stress_noise) {
-  double sum = 0;
-  for (int i = 0; i < mesh.n_points(); ++i)
-    for (int a = 0; a < 8; ++a) {
-      const int node = mesh.elements[i / 4][a];
-      const int free_dofs = 2 - (constrained[2 * node] != 0) - (constrained[2 * node + 1] != 0);
-      sum += points.volumes[i] * points.volumes[i] * free_dofs * points.gradients[i].row(a).squaredNorm();
-    }
-  return stress_noise * std::sqrt(sum);
-}
-
 const char* to_string(NewtonStatus status) {
   switch (status) {
-    case NewtonStatus::converged: return "converged";
-    case NewtonStatus::max_iterations: return "max_iterations";
-    case NewtonStatus::material_failed: return "material_failed";
-    case NewtonStatus::not_positive_definite: return "not_positive_definite";
-    case NewtonStatus::inverted_element: return "inverted_element";
-    case NewtonStatus::not_finite: return "not_finite";
+    case NewtonStatus::converged:
+      return "converged";
+    case NewtonStatus::max_iterations:
+      return "max_iterations";
+    case NewtonStatus::material_failed:
+      return "material_failed";
+    case NewtonStatus::not_positive_definite:
+      return "not_positive_definite";
+    case NewtonStatus::inverted_element:
+      return "inverted_element";
+    case NewtonStatus::not_finite:
+      return "not_finite";
   }
   return "unknown";
 }

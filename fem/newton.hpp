@@ -2,9 +2,10 @@
 /// One load increment to equilibrium: Newton with Anderson acceleration on a tangent that is only roughly right.
 ///
 /// Converged means, at the last evaluated iterate, all of
-///   |R_free| <= tolerance * max(|f_ext|, |reactions|, reference_force) + noise floor,
-///   |du| <= displacement_tolerance * |Du|, or |du| <= length_tolerance,
+///   |R_free| <= tolerance * max(|f_ext|, |reactions|, reference_force) + noise floor [N/m],
+///   |du| <= displacement_tolerance * |Du| + noise floor [m], or |du| <= length_tolerance,
 /// with R = f_ext - f_int, 2-norms, du = K^-1 R the correction that would follow (it is not applied), Du the increment.
+/// The floors are noise_factor times what independent stress errors of BatchReport::stress_noise do to R and to K^-1 R.
 
 #include <functional>
 #include <string>
@@ -20,13 +21,14 @@ struct NewtonOptions {
   double displacement_tolerance = 1e-2;  ///< on the correction [-]
   double length_tolerance = 1e-9;        ///< a correction below it counts as none (2-norm over all dofs) [m]
   int max_iterations = 40;
-  double initial_tangent_share = 0.02;  ///< times the stage's initial tangent is added to the tangent; > 0 where it may vanish
-  int refactor_every = 1;               ///< iterates between new tangents; the first iterate always has a new one
-  int anderson_depth = 5;               ///< 0: plain Newton
-  double anderson_condition = 1e6;      ///< limit on the condition of the least squares; older pairs are dropped beyond
-  double growth_limit = 3.0;            ///< a residual grown by more than this halves the step and restarts Anderson
-  int max_halvings = 2;                 ///< of one correction
-  bool use_noise_floor = true;          ///< adds the forces of BatchReport::stress_noise to the residual's bound
+  double initial_tangent_share =
+      0.02;                ///< times the stage's initial tangent is added to the tangent; > 0 where it may vanish
+  int refactor_every = 1;  ///< iterates between new tangents; the first iterate always has a new one
+  int anderson_depth = 5;  ///< 0: plain Newton
+  double anderson_condition = 1e6;  ///< limit on the condition of the least squares; older pairs are dropped beyond
+  double growth_limit = 3.0;        ///< a residual grown by more than this halves the step and restarts Anderson
+  int max_halvings = 2;             ///< of one correction
+  double noise_factor = 1.5;        ///< on both noise floors; 0: none. At 1 only every other iterate would pass by luck
 };
 
 enum class NewtonStatus {
@@ -41,14 +43,15 @@ enum class NewtonStatus {
 
 struct NewtonReport {
   NewtonStatus status = NewtonStatus::max_iterations;
-  int iterations = 0;                      ///< iterates reached (the last is the converged one)
-  int evaluations = 0;                     ///< calls of MaterialBatch::evaluate
+  int iterations = 0;   ///< iterates reached (the last is the converged one)
+  int evaluations = 0;  ///< calls of MaterialBatch::evaluate
   int factorisations = 0;
   std::vector<double> residual_history;    ///< |R_free| of each iterate [N/m]
   std::vector<double> correction_history;  ///< |K^-1 R| of each iterate [m]
   double residual = 0;                     ///< |R_free| at the end [N/m]
   double residual_bound = 0;               ///< what it is compared with [N/m], the noise floor included
   double noise_floor = 0;                  ///< [N/m]
+  double correction_bound = 0;             ///< what the last correction is compared with [m], its noise floor included
   double external_norm = 0;                ///< |f_ext| [N/m]
   double reaction_norm = 0;                ///< |reactions| [N/m]
   double increment_norm = 0;               ///< |Du| [m]
@@ -72,8 +75,8 @@ struct Increment {
   std::vector<Stress> stress;       ///< n_points [Pa]
   std::vector<Tangent> tangent;     ///< n_points [Pa]
   Eigen::VectorXd external_force;   ///< n_dofs [N/m]
-  Eigen::VectorXd reactions;        ///< f_int - f_ext at constrained dofs, zero elsewhere; of the support on the soil [N/m]
-  GaussPoints points;               ///< the geometry of the integration
+  Eigen::VectorXd reactions;  ///< f_int - f_ext at constrained dofs, zero elsewhere; of the support on the soil [N/m]
+  GaussPoints points;         ///< the geometry of the integration
 };
 
 /// An iterate as it happens, for progress; `bound` as NewtonReport::residual_bound.
@@ -115,5 +118,10 @@ class NewtonSolver {
 /// |R|^2 = noise^2 * sum over points of volume^2 * sum over free dofs of |grad N|^2 [N/m].
 [[nodiscard]] double noise_force(const Mesh& mesh, const GaussPoints& points, const std::vector<char>& constrained,
                                  double stress_noise);
+
+/// Nodal forces of one fixed draw of such errors, +-1 Pa each (zero at constrained dofs) [N/m]: |K^-1 f| estimates what the
+/// noise does to a correction, which its expectation would cost one solution for every point to know.
+[[nodiscard]] Eigen::VectorXd unit_noise_sample(const Mesh& mesh, const GaussPoints& points,
+                                                const std::vector<char>& constrained);
 
 }  // namespace voussoir::fem

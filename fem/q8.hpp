@@ -21,9 +21,9 @@ inline constexpr double gauss_coordinate = 0.57735026918962576451;  ///< 1 / sqr
 
 /// Gauss point p lies next to corner p.
 inline constexpr std::array<std::array<double, 2>, 4> gauss_points{{{-gauss_coordinate, -gauss_coordinate},
-                                                                   {gauss_coordinate, -gauss_coordinate},
-                                                                   {gauss_coordinate, gauss_coordinate},
-                                                                   {-gauss_coordinate, gauss_coordinate}}};
+                                                                    {gauss_coordinate, -gauss_coordinate},
+                                                                    {gauss_coordinate, gauss_coordinate},
+                                                                    {-gauss_coordinate, gauss_coordinate}}};
 
 inline Shape shape(double xi, double eta) {
   Shape n;
@@ -60,7 +60,11 @@ inline constexpr std::array<double, 3> edge_points{-0.77459666924148337704, 0.0,
 inline constexpr std::array<double, 3> edge_weights{5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
 
 /// Shape functions of the edge nodes in the order corner, mid, corner.
-inline Eigen::Vector3d edge_shape(double s) { return {0.5 * s * (s - 1), 1 - s * s, 0.5 * s * (s + 1)}; }
-inline Eigen::Vector3d edge_shape_derivative(double s) { return {s - 0.5, -2 * s, s + 0.5}; }
+inline Eigen::Vector3d edge_shape(double s) {
+  return {0.5 * s * (s - 1), 1 - s * s, 0.5 * s * (s + 1)};
+}
+inline Eigen::Vector3d edge_shape_derivative(double s) {
+  return {s - 0.5, -2 * s, s + 0.5};
+}
 
 }  // namespace voussoir::fem::q8

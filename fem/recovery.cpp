@@ -27,8 +27,8 @@ Eigen::MatrixXd nodal_values(const Mesh& mesh, const GaussPoints& points, const 
   Eigen::MatrixXd nodal = Eigen::MatrixXd::Zero(values.rows(), mesh.n_nodes());
   Eigen::VectorXd volumes = Eigen::VectorXd::Zero(mesh.n_nodes());
   for (int e = 0; e < mesh.n_elements(); ++e) {
-    const double volume = points.volumes[4 * e] + points.volumes[4 * e + 1] + points.volumes[4 * e + 2] +
-                          points.volumes[4 * e + 3];
+    const double volume =
+        points.volumes[4 * e] + points.volumes[4 * e + 1] + points.volumes[4 * e + 2] + points.volumes[4 * e + 3];
     const Eigen::MatrixXd at_nodes = values.middleCols(4 * e, 4) * weights.transpose();
     for (int a = 0; a < 8; ++a) {
       nodal.col(mesh.elements[e][a]) += volume * at_nodes.col(a);

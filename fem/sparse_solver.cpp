@@ -63,7 +63,8 @@ FactorStatus SparseSolver::factorise(const std::vector<double>& values) {
 }
 
 Eigen::MatrixXd SparseSolver::solve(const Eigen::MatrixXd& right_hand_sides) {
-  if (right_hand_sides.rows() != cholmod_->pattern.n) throw std::invalid_argument("sparse solver: wrong number of rows");
+  if (right_hand_sides.rows() != cholmod_->pattern.n)
+    throw std::invalid_argument("sparse solver: wrong number of rows");
   cholmod_dense b{};
   b.nrow = static_cast<std::size_t>(right_hand_sides.rows());
   b.ncol = static_cast<std::size_t>(right_hand_sides.cols());

@@ -7,7 +7,9 @@
 namespace voussoir::fem {
 namespace {
 
-Point resultant(const Eigen::VectorXd& f) { return f.reshaped(2, f.size() / 2).rowwise().sum(); }
+Point resultant(const Eigen::VectorXd& f) {
+  return f.reshaped(2, f.size() / 2).rowwise().sum();
+}
 
 TEST(Boundary, FaceStressIsTheTraction) {
   const Stress stress(-3, -7, 2);

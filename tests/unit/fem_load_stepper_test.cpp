@@ -95,9 +95,8 @@ TEST(LoadStepper, GivesUpWithReasonAndLastGoodState) {
   Sheared block(1e-4);
   const std::vector<std::byte> before = block.material.state();
   int failed = 0;
-  const StepReport report =
-      advance_load(block.solver, block.state, block.path, {1}, {.smallest = 0.1},
-                   {.on_converged = nullptr, .on_failed = [&](const FailedStep&) { ++failed; }});
+  const StepReport report = advance_load(block.solver, block.state, block.path, {1}, {.smallest = 0.1},
+                                         {.on_converged = nullptr, .on_failed = [&](const FailedStep&) { ++failed; }});
   EXPECT_EQ(report.status, StepStatus::gave_up);
   EXPECT_EQ(failed, 4);  // 1, 1/2, 1/4, 1/8
   EXPECT_NE(report.message.find("material_failed"), std::string::npos) << report.message;
@@ -109,9 +108,9 @@ TEST(LoadStepper, GivesUpWithReasonAndLastGoodState) {
 
 TEST(LoadStepper, StopsWhenAsked) {
   Sheared block(1e300);
-  const StepReport report = advance_load(
-      block.solver, block.state, block.path, {1, 2, 3}, {},
-      {.on_converged = [](const ConvergedStep& step) { return step.to < 2; }, .on_failed = nullptr});
+  const StepReport report =
+      advance_load(block.solver, block.state, block.path, {1, 2, 3}, {},
+                   {.on_converged = [](const ConvergedStep& step) { return step.to < 2; }, .on_failed = nullptr});
   EXPECT_EQ(report.status, StepStatus::stopped);
   EXPECT_EQ(report.increments, 2);
   EXPECT_EQ(block.state.parameter, 2);
@@ -133,6 +132,31 @@ TEST(LoadStepper, GrowsAgainAfterACut) {
   EXPECT_DOUBLE_EQ(steps.front(), 0.25);
   EXPECT_DOUBLE_EQ(steps.back(), 1);
   EXPECT_EQ(block.state.step_limit, 0);
+}
+
+TEST(LoadStepper, SteadyLoadOnALinearLawNeedsOneIterateAnIncrement) {
+  const Mesh mesh = make_rectangle(1, 2, 2, 3);
+  LinearElastic material(static_cast<std::size_t>(mesh.n_points()), {});
+  NewtonSolver solver(mesh, material, Kinematics::fixed_mesh, {.tolerance = 1e-6, .initial_tangent_share = 0});
+  MeshState state = begin_stage(mesh, mesh.coordinates, material);
+  const LoadPath path{
+      [&](double p) { return pressure_force(mesh.coordinates, mesh.edge_set("top"), p); },  // [Pa], so small that H
+      [&](double, double) {                                                                 // F_n^-1 is H
+        Constraints c;
+        for (const int axis : {0, 1}) constrain(c, mesh.node_set("base"), axis, 0);
+        return c;
+      },
+      0};
+  int iterates = 0;
+  static_cast<void>(advance_load(solver, state, path, {1, 2, 3.5}, {},
+                                 {.on_converged =
+                                      [&](const ConvergedStep& step) {
+                                        iterates += step.report.iterations;
+                                        return true;
+                                      },
+                                  .on_failed = nullptr}));
+  EXPECT_EQ(state.parameter, 3.5);
+  EXPECT_EQ(iterates, 3);
 }
 
 TEST(LoadStepper, ImpossibleInputIsRefused) {

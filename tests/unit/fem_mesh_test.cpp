@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -69,12 +70,19 @@ TEST(TunnelMesh, RepeatsItsBits) {
   }
 }
 
+TEST(TunnelMesh, LeavesTheThreadNumberAlone) {
+  omp_set_num_threads(3);
+  static_cast<void>(make_half_tunnel({.size_near = 1, .size_far = 4}));
+  EXPECT_EQ(omp_get_max_threads(), 3);
+}
+
 TEST(TunnelMesh, IsFinerAtTheOpeningAndAboveIt) {
   const Mesh mesh = make_half_tunnel({});
   const auto length = [&](const Edge& e) { return (mesh.coordinates.col(e[2]) - mesh.coordinates.col(e[0])).norm(); };
   const auto& opening = mesh.edge_set("opening");
   EXPECT_NEAR(length(opening[opening.size() / 2]), 0.5, 0.1);
-  EXPECT_LT(length(mesh.edge_set("top").back()), 0.5 * length(mesh.edge_set("top").front()));  // above the crown, far off
+  EXPECT_LT(length(mesh.edge_set("top").back()),
+            0.5 * length(mesh.edge_set("top").front()));  // above the crown, far off
 }
 
 TEST(TunnelMesh, ImpossibleOptionsSaySo) {

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <random>
+
 #include "fem/newton.hpp"
 #include "tests/fem_support.hpp"
 
@@ -39,8 +42,9 @@ TEST(Newton, AndersonConvergesOnATangentThatIsTooStiff) {
   NewtonReport reports[2];
   for (const int depth : {0, 5}) {
     Block block({.strain_scale = 0.1, .too_stiff = 2.5});
-    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh,
-                        {.tolerance = 1e-6, .displacement_tolerance = 1e-5, .max_iterations = 200, .anderson_depth = depth});
+    NewtonSolver solver(
+        block.mesh, block.material, Kinematics::fixed_mesh,
+        {.tolerance = 1e-6, .displacement_tolerance = 1e-5, .max_iterations = 200, .anderson_depth = depth});
     Increment increment;
     const IncrementLoad load = block.load(0.02, 0.03);
     NewtonReport& report = reports[depth > 0];
@@ -101,18 +105,25 @@ TEST(Newton, RefactoringSeldomGivesTheSameAnswer) {
   EXPECT_LT((answers[0] - answers[1]).norm(), 1e-7 * answers[0].norm());
 }
 
-TEST(Newton, PredictorOfASteadyPathNeedsNoCorrection) {
-  Block block({.strain_scale = 1e9});  // linear
-  NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.tolerance = 1e-6, .length_tolerance = 0});
-  Increment increment;
-  IncrementLoad load = block.load(1e-8, 0);  // so small that H F_n^-1 is H
-  ASSERT_EQ(solver.solve_increment(block.state, load, increment).status, NewtonStatus::converged);
-  solver.commit(block.state, increment);
-  load = block.load(0.5e-8, 0);
-  load.predictor_ratio = 0.5;
-  const NewtonReport report = solver.solve_increment(block.state, load, increment);
-  EXPECT_EQ(report.status, NewtonStatus::converged);
-  EXPECT_EQ(report.iterations, 1);
+TEST(Newton, PredictorOfASteadyPathStartsCloser) {
+  double start[2];  // residual of the first iterate of a third increment
+  for (const double ratio : {0.0, 0.5}) {
+    Block block({.strain_scale = 0.02, .too_stiff = 1.5});
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.tolerance = 1e-6});
+    Increment increment;
+    for (int k = 0; k < 2; ++k) {
+      ASSERT_EQ(solver.solve_increment(block.state, block.load(0.004, 0.004), increment).status,
+                NewtonStatus::converged);
+      solver.commit(block.state, increment);
+    }
+    IncrementLoad load = block.load(0.002, 0.002);
+    load.predictor_ratio = ratio;
+    const NewtonReport report = solver.solve_increment(block.state, load, increment);
+    ASSERT_EQ(report.status, NewtonStatus::converged);
+    for (const auto& [dof, value] : load.prescribed) EXPECT_EQ(increment.displacement[dof], value);
+    start[ratio > 0] = report.residual_history.front();
+  }
+  EXPECT_LT(start[1], 0.5 * start[0]);
 }
 
 TEST(Newton, FailuresHaveNames) {
@@ -149,24 +160,72 @@ TEST(Newton, VanishedTangentIsCarriedByTheInitialOne) {
   Block block;
   const MeshState with_stiff_start = block.state;
   SofteningMaterial open(static_cast<std::size_t>(block.mesh.n_points()), {.too_stiff = 0});  // tangent zero everywhere
-  NewtonSolver solver(block.mesh, open, Kinematics::fixed_mesh,
-                      {.max_iterations = 200, .initial_tangent_share = 1.0});
+  NewtonSolver solver(block.mesh, open, Kinematics::fixed_mesh, {.max_iterations = 200, .initial_tangent_share = 1.0});
   Increment increment;
   EXPECT_EQ(solver.solve_increment(with_stiff_start, block.load(0.01, 0), increment).status, NewtonStatus::converged);
 }
 
-TEST(Newton, NoiseFloorWidensTheBoundAndCanBeSwitchedOff) {
-  double bounds[2];
-  for (const bool use : {false, true}) {
+TEST(Newton, NoiseFloorsWidenTheBoundsAndCanBeSwitchedOff) {
+  NewtonReport quiet, noisy;
+  for (const double factor : {0.0, 1.5}) {
     Block block({.noise = 1e3});
-    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.use_noise_floor = use});
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.noise_factor = factor});
     Increment increment;
-    const NewtonReport report = solver.solve_increment(block.state, block.load(0.01, 0), increment);
+    NewtonReport& report = factor > 0 ? noisy : quiet;
+    report = solver.solve_increment(block.state, block.load(0.01, 0), increment);
     ASSERT_EQ(report.status, NewtonStatus::converged);
-    bounds[use] = report.residual_bound - report.noise_floor;
-    EXPECT_EQ(report.noise_floor > 0, use);
+    EXPECT_NEAR(report.residual_bound - report.noise_floor, 1e-3 * report.reaction_norm, 1e-9 * report.reaction_norm);
   }
-  EXPECT_GT(bounds[0], 0);
+  EXPECT_EQ(quiet.noise_floor, 0);
+  EXPECT_GT(noisy.noise_floor, 0);
+  EXPECT_DOUBLE_EQ(quiet.correction_bound, 1e-2 * quiet.increment_norm);
+  EXPECT_GT(noisy.correction_bound, 1.001e-2 * noisy.increment_norm);
+}
+
+/// A law that is a fixed but rough function of the gradient, as an RVE's is: independent errors at every new gradient.
+class RoughMaterial final : public MaterialBatch {
+ public:
+  RoughMaterial(std::size_t n, double noise) : smooth_(n, {.strain_scale = 0.02, .too_stiff = 1.5}), noise_(noise) {}
+  [[nodiscard]] std::size_t size() const override { return smooth_.size(); }
+  void begin_increment() override {}
+  BatchReport evaluate(std::span<const Gradient> gradients, std::span<Stress> stress,
+                       std::span<Tangent> tangent) override {
+    BatchReport report = smooth_.evaluate(gradients, stress, tangent);
+    report.stress_noise = noise_;
+    for (std::size_t i = 0; i < size(); ++i) {
+      std::seed_seq seed{i,
+                         static_cast<std::size_t>(std::bit_cast<std::uint64_t>(gradients[i](1, 1)) >> 8 & 0xffffffff),
+                         static_cast<std::size_t>(std::bit_cast<std::uint64_t>(gradients[i](0, 1)) >> 8 & 0xffffffff)};
+      std::mt19937 random(seed);
+      std::normal_distribution<double> error(0, noise_);
+      for (double& component : stress[i]) component += error(random);
+    }
+    return report;
+  }
+  void commit() override { smooth_.commit(); }
+  void committed(std::span<Stress> s, std::span<Tangent> t) const override { smooth_.committed(s, t); }
+  [[nodiscard]] std::vector<PointField> fields() const override { return {}; }
+  [[nodiscard]] std::vector<std::byte> state() const override { return smooth_.state(); }
+  void set_state(std::span<const std::byte> bytes) override { smooth_.set_state(bytes); }
+
+ private:
+  SofteningMaterial smooth_;
+  double noise_;
+};
+
+TEST(Newton, NoiseIsNotChased) {
+  for (const double noise : {1e2, 1e3, 5e3}) {  // against about 5e4 Pa of stress
+    Block block;
+    RoughMaterial rough(static_cast<std::size_t>(block.mesh.n_points()), noise);
+    NewtonSolver solver(block.mesh, rough, Kinematics::fixed_mesh, {});
+    for (int k = 0; k < 4; ++k) {
+      Increment increment;
+      const NewtonReport report = solver.solve_increment(block.state, block.load(0.003, 0.004), increment);
+      ASSERT_EQ(report.status, NewtonStatus::converged) << "noise " << noise << " Pa, increment " << k;
+      EXPECT_LE(report.iterations, 8) << "noise " << noise << " Pa, increment " << k;
+      solver.commit(block.state, increment);
+    }
+  }
 }
 
 TEST(Newton, ImpossibleOptionsAreRefused) {

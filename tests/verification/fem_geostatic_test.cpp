@@ -7,9 +7,9 @@
 namespace voussoir::fem {
 namespace {
 
-constexpr double gamma = 2e4;        ///< unit weight [N/m3]
-constexpr double surcharge = 1e3;    ///< [Pa]
-constexpr double young = 3e7;        ///< [Pa]
+constexpr double gamma = 2e4;      ///< unit weight [N/m3]
+constexpr double surcharge = 1e3;  ///< [Pa]
+constexpr double young = 3e7;      ///< [Pa]
 constexpr double poisson = 0.3;
 constexpr double k0 = poisson / (1 - poisson);
 
@@ -39,7 +39,8 @@ TEST(Geostatic, ColumnIsExact) {
   const double modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
   for (int node = 0; node < mesh.n_nodes(); ++node) {
     const double y = mesh.coordinates(1, node);
-    EXPECT_NEAR(increment.displacement[2 * node + 1], -(surcharge * y + gamma * (height * y - y * y / 2)) / modulus, 1e-12);
+    EXPECT_NEAR(increment.displacement[2 * node + 1], -(surcharge * y + gamma * (height * y - y * y / 2)) / modulus,
+                1e-12);
   }
   double base = 0;
   for (const int node : mesh.node_set("base")) base += increment.reactions[2 * node + 1];
@@ -81,10 +82,12 @@ TEST_F(ElasticTunnel, GravityGivesTheGroundAtRest) {
   std::vector<Tangent> tangent(material.size());
   material.committed(stress, tangent);
   const GaussPoints points = gauss_points(mesh, mesh.coordinates);
-  // A linear stress is not integrated exactly in curved elements, and the finite strain of the fixed mesh (settlement
-  // 1.6 % of the height at most) makes the elastic law a little nonlinear: 1 % of the stress at the base.
+  double worst = 0;
   for (int i = 0; i < mesh.n_points(); ++i)
-    EXPECT_LT((stress[i] - at_rest(1)(points.positions.col(i))).norm(), 0.01 * gamma * height);
+    worst = std::max(worst, (stress[i] - at_rest(1)(points.positions.col(i))).norm() / (gamma * height));
+  // 0.10 % was measured: a linear stress is not integrated exactly in curved elements, and the fixed mesh's finite
+  // strain makes the elastic law a little nonlinear.
+  EXPECT_LT(worst, 2e-3);
 }
 
 TEST_F(ElasticTunnel, ReactionsTakeOverTheTractionsAndTheLossRemovesItsArea) {
@@ -115,15 +118,15 @@ TEST_F(ElasticTunnel, ReactionsTakeOverTheTractionsAndTheLossRemovesItsArea) {
   for (int k = 1; k <= 20; ++k) targets.push_back(0.01 * k);
   const double before = area_left_of(mesh.coordinates, mesh.edge_set("opening"));
   double worst = 0;
-  const StepReport report =
-      advance_load(solver, state, path, targets, {},
-                   {.on_converged =
-                        [&](const ConvergedStep& step) {
-                          const double area = area_left_of(step.state.coordinates, mesh.edge_set("opening"));
-                          worst = std::max(worst, std::abs(area / before - (1 - step.to)));
-                          return true;
-                        },
-                    .on_failed = nullptr});
+  const StepReport report = advance_load(solver, state, path, targets, {},
+                                         {.on_converged =
+                                              [&](const ConvergedStep& step) {
+                                                const double area =
+                                                    area_left_of(step.state.coordinates, mesh.edge_set("opening"));
+                                                worst = std::max(worst, std::abs(area / before - (1 - step.to)));
+                                                return true;
+                                              },
+                                          .on_failed = nullptr});
   ASSERT_EQ(report.status, StepStatus::finished) << report.message;
   EXPECT_LT(worst, 1e-12);
   const int crown = mesh.node_set("crown")[0];

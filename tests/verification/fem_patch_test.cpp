@@ -67,9 +67,9 @@ TEST(Patch, RigidRotationTurnsTheStressAndNothingElse) {
   Eigen::Matrix2d start;
   start << -3e4, 1e4, 1e4, -1e5;
   for (const Kinematics kinematics : {Kinematics::updated_lagrangian, Kinematics::fixed_mesh}) {
-    LinearElastic material(static_cast<std::size_t>(mesh.n_points()),
-                           {.initial_stress = Stress(start(0, 0), start(1, 1), start(0, 1)),
-                            .strain = ElasticStrain::logarithmic});
+    LinearElastic material(
+        static_cast<std::size_t>(mesh.n_points()),
+        {.initial_stress = Stress(start(0, 0), start(1, 1), start(0, 1)), .strain = ElasticStrain::logarithmic});
     NewtonSolver solver(mesh, material, kinematics, {.tolerance = 1e-10, .displacement_tolerance = 1e-9});
     MeshState state = begin_stage(mesh, mesh.coordinates, material);
     Increment increment;
@@ -89,8 +89,7 @@ TEST(Patch, RigidRotationTurnsTheStressAndNothingElse) {
     const Eigen::Matrix2d expected = quarter * start * quarter.transpose();
     EXPECT_LT(largest_difference(increment.stress, Stress(expected(0, 0), expected(1, 1), expected(0, 1))),
               1e-7 * start.norm());
-    for (const Gradient& f : state.deformation)
-      EXPECT_LT((f + Eigen::Matrix2d::Identity() - quarter).norm(), 1e-8);
+    for (const Gradient& f : state.deformation) EXPECT_LT((f + Eigen::Matrix2d::Identity() - quarter).norm(), 1e-8);
     if (kinematics == Kinematics::updated_lagrangian) {
       EXPECT_LT((state.coordinates - quarter * mesh.coordinates).norm(), 1e-8);
     }
