@@ -39,6 +39,23 @@ def expected_fields(path):
             if "xdmf" in file else {"node": {}, "cell": {}}
 
 
+def expected_mesh(run_file, increment_file):
+    """Coordinates at an increment and connectivity."""
+    with h5py.File(run_file, "r") as run, h5py.File(increment_file, "r") as increment:
+        moved = increment if "mesh/coordinates" in increment else run
+        return moved["mesh/coordinates"][()], run["mesh/connectivity"][()]
+
+
+def check_mesh(grid, mesh, to_numpy):
+    coordinates, connectivity = mesh
+    wrong = []
+    if not np.allclose(to_numpy(grid.GetPoints().GetData())[:, :2], coordinates, rtol=1e-6):  # VTK keeps float32
+        wrong.append("the points differ from the HDF5 file")
+    if not np.array_equal(to_numpy(grid.GetCells().GetConnectivityArray()), connectivity.ravel()):
+        wrong.append("the connectivity differs from the HDF5 file")
+    return wrong
+
+
 def check_step(grid, expected, to_numpy):
     """Prints the fields of one time step; returns a list of what is wrong."""
     wrong = []
@@ -76,7 +93,9 @@ def main():
         reader.UpdateTimeStep(time)
         grid = first_grid(reader.GetOutputDataObject(0))
         print(f"  time {time:g}: {grid.GetNumberOfPoints()} points, {grid.GetNumberOfCells()} cells")
-        wrong += [f"time {time:g}: {problem}" for problem in check_step(grid, expected_fields(file), to_numpy)]
+        found = check_mesh(grid, expected_mesh(path.parent / "run.h5", file), to_numpy)
+        found += check_step(grid, expected_fields(file), to_numpy)
+        wrong += [f"time {time:g}: {problem}" for problem in found]
     for problem in wrong:
         print(f"{path}: {problem}", file=sys.stderr)
     print(f"{path}: {len(times)} times, {'all fields agree' if not wrong else f'{len(wrong)} problems'}")

@@ -40,7 +40,7 @@ class CheckpointTest : public testing::Test {
     file.seekp(middle).put(byte);
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "checkpoints";
+  fs::path folder_ = fs::current_path() / "checkpoints";
   CheckpointStore store_{folder_, "case A"};
 };
 

@@ -48,7 +48,7 @@ class PackingFileTest : public testing::Test {
     return "no error";
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "packings";
+  fs::path folder_ = fs::current_path() / "packings";
   std::string particles_ = "id,x_m,y_m,r_m,theta_z_rad\n0,0.01,0.02,0.002,0.5\n1,0.03,4e-2,0.001,-1\n";
   std::string meta_ = R"({"tag": "two", "Lz": 0.3, "E": 3e9, "hSize": [[0.1, 0.01, 0], [0, 0.2, 0], [0, 0, 0.1]]})";
 };

@@ -56,7 +56,7 @@ class ResultFileTest : public testing::Test {
     return text.str();
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "result";
+  fs::path folder_ = fs::current_path() / "result";
   Provenance provenance_{.case_kind = "tunnel", .input = "kind = \"tunnel\"\n", .fingerprint = "ab", .threads = 2};
 };
 
@@ -120,6 +120,8 @@ TEST_F(ResultFileTest, ShapesTableAndLinksAreAsFormatMdSays) {
   EXPECT_EQ(increment.shape("/gauss/void_ratio"), (std::vector<std::size_t>{2, 4, 1}));
   EXPECT_EQ(increment.shape("/mesh/coordinates"), (std::vector<std::size_t>{13, 2}));
   EXPECT_EQ(increment.shape("/xdmf/node/displacement"), (std::vector<std::size_t>{13, 3}));
+  const auto padded = increment.read_doubles("/xdmf/node/displacement").values;
+  EXPECT_EQ((std::vector(padded.begin() + 3, padded.begin() + 6)), (std::vector{2 / 3.0, 3 / 3.0, 0.0}));
   EXPECT_DOUBLE_EQ(increment.read_doubles("/xdmf/cell/stress_yy").values[1], (13 + 16 + 19 + 22) / 12.0);
   EXPECT_DOUBLE_EQ(increment.read_doubles("/xdmf/cell/void_ratio").values[0], (0 + 1 + 2 + 3) / 12.0);
 }

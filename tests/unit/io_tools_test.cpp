@@ -169,7 +169,7 @@ class Tools : public testing::Test {
 
   fs::path root_ = fs::absolute(__FILE__).parent_path().parent_path().parent_path();
   fs::path python_ = root_ / ".prefix/venv/bin/python";
-  fs::path folder_ = fs::path(testing::TempDir()) / "io_tools";
+  fs::path folder_ = fs::current_path() / "io_tools";
 };
 
 TEST_F(Tools, VtkReadsEveryTimeAndField) {
