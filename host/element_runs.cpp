@@ -71,9 +71,7 @@ int run_probe(const Case& input, const RunOptions& options) {
 }
 
 int run_pack(const Case& input, const RunOptions&) {
-  std::vector<std::int64_t> seeds = input.packing.seeds;
-  for (int k = 0; input.packing.seeds.empty() && k < input.packing.candidates; ++k) seeds.push_back(input.packing.seed + k);
-  for (const std::int64_t seed : seeds) static_cast<void>(obtain_packing(input, seed, print));
+  static_cast<void>(obtain_packings(input, seeds_of(input.packing), print));
   return exit_ok;
 }
 

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double oedometric_end = 700.0e3;       ///< [Pa], the deepest ground of the study
 constexpr double oedometric_increment = 1.0e-3;  ///< axial strain [-]
+constexpr int most_increments = 200;
 constexpr double bias_floor = 20.0e3;            ///< below it tau_xy is what consolidation left [Pa]
 
 io::Packing to_file(const PackedRve& rve, const std::string& recipe, const std::string& fingerprint) {
@@ -78,51 +80,74 @@ std::string table_line(const PackedRve& rve) {
 
 }  // namespace
 
-std::vector<OedometricPoint> oedometric_test(const PackedRve& rve, double stress) {
-  kernels::RveBatch batch = kernels::make_batch({rve.packing}, {0});
-  store_rve(rve, batch.committed, 0);
+std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const PackedRve> rves, double stress) {
+  kernels::RveBatch batch = batch_of(rves);
   const kernels::EngineSettings settings{.precision = kernels::Precision::float64};
-  std::vector<kernels::RveReport> report(1);
-  std::vector<OedometricPoint> points;
-  while (points.empty() || points.back().stress_yy < stress) {
-    // Half the increment while the packing is soft, so that its small-stress branch has points.
-    const double strain = points.size() < 4 ? 0.25 * oedometric_increment : oedometric_increment;
-    const std::vector<kernels::StrainRequest> request{
-        {.f_rel = {1, 0, 0, std::exp(-strain)}, .strain_steps = 1000, .hold_cap = 2000}};
-    kernels::advance(batch, std::span<const kernels::StrainRequest>(request), settings, report);
-    if (kernels::is_failure(report[0].status) || points.size() > 200) {
-      throw std::runtime_error(fmt::format("oedometric test of seed {} ended as {}", rve.seed, kernels::name_of(report[0].status)));
-    }
+  std::vector<kernels::RveReport> reports(rves.size());
+  std::vector<std::vector<OedometricPoint>> curves(rves.size());
+  const auto reached = [&](const auto& curve) { return !curve.empty() && curve.back().stress_yy >= stress; };
+  double total = 0;
+  for (int increment = 0; !std::all_of(curves.begin(), curves.end(), reached); ++increment) {
+    if (increment == most_increments) throw std::runtime_error("the oedometric test does not reach its stress");
+    const double strain = increment < 4 ? 0.25 * oedometric_increment : oedometric_increment;  // fine while it is soft
+    const std::vector<kernels::StrainRequest> requests(
+        rves.size(), {.f_rel = {1, 0, 0, std::exp(-strain)}, .strain_steps = 1000, .hold_cap = 2000});
+    kernels::advance(batch, std::span<const kernels::StrainRequest>(requests), settings, reports);
     kernels::commit(batch);
-    const double* s = report[0].stress;
-    points.push_back({(points.empty() ? 0.0 : points.back().strain) + strain, -s[3], -s[0], -0.5 * (s[1] + s[2])});
+    total += strain;
+    for (std::size_t k = 0; k < rves.size(); ++k) {
+      if (kernels::is_failure(reports[k].status)) {
+        throw std::runtime_error(fmt::format("oedometric test of seed {} ended as {}", rves[k].seed,
+                                             kernels::name_of(reports[k].status)));
+      }
+      const double* s = reports[k].stress;
+      curves[k].push_back({total, -s[3], -s[0], -0.5 * (s[1] + s[2])});
+    }
   }
-  return points;
+  return curves;
 }
 
-PackedRve obtain_packing(const Case& input, std::int64_t seed, const PackingNote& note) {
-  const std::string recipe = recipe_text(input.soil, input.packing, seed);
-  const std::string fingerprint = io::fingerprint_of(recipe);
-  if (const auto found = io::find_packing(input.packing.folder, fingerprint)) {
-    PackedRve rve = from_file(*found, input.soil);
-    if (note) note("packing found: " + table_line(rve));
-    return rve;
+std::vector<std::int64_t> seeds_of(const PackingCase& packing) {
+  std::vector<std::int64_t> seeds = packing.seeds;
+  for (int k = 0; packing.seeds.empty() && k < packing.candidates; ++k) seeds.push_back(packing.seed + k);
+  return seeds;
+}
+
+std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note) {
+  std::vector<PackedRve> out;
+  std::vector<std::int64_t> missing;
+  for (const std::int64_t seed : seeds) {
+    const auto found = io::find_packing(input.packing.folder, io::fingerprint_of(recipe_text(input.soil, input.packing, seed)));
+    if (!found) {
+      missing.push_back(seed);
+      continue;
+    }
+    out.push_back(from_file(*found, input.soil));
+    if (note) note("packing found: " + table_line(out.back()));
   }
-  PackedRve rve = make_packing(input.soil, input.packing, seed);
-  rve.bias = bias_of(oedometric_test(rve, oedometric_end));
-  std::filesystem::create_directories(input.packing.folder);
-  io::save_packing(io::packing_path(input.packing.folder, fingerprint), to_file(rve, recipe, fingerprint));
-  if (note) note("packing made:  " + table_line(rve));
-  return rve;
+  std::vector<PackedRve> made = make_packings(input.soil, input.packing, missing);
+  const auto curves = oedometric_tests(made, oedometric_end);
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    made[k].bias = bias_of(curves[k]);
+    const std::string recipe = recipe_text(input.soil, input.packing, made[k].seed);
+    const std::string fingerprint = io::fingerprint_of(recipe);
+    std::filesystem::create_directories(input.packing.folder);
+    io::save_packing(io::packing_path(input.packing.folder, fingerprint), to_file(made[k], recipe, fingerprint));
+    if (note) note("packing made:  " + table_line(made[k]));
+    out.push_back(std::move(made[k]));
+  }
+  return out;
 }
 
 PackedRve choose_packing(const Case& input, const PackingNote& note) {
-  PackedRve best = obtain_packing(input, input.packing.seed, note);
-  for (int k = 1; k < input.packing.candidates; ++k) {
-    PackedRve other = obtain_packing(input, input.packing.seed + k, note);
-    if (other.bias < best.bias) best = std::move(other);
+  std::vector<PackedRve> all = obtain_packings(input, seeds_of(input.packing), note);
+  const auto less_biased = [](const PackedRve& a, const PackedRve& b) {
+    return a.bias != b.bias ? a.bias < b.bias : a.seed < b.seed;
+  };
+  PackedRve best = *std::min_element(all.begin(), all.end(), less_biased);
+  if (note) {
+    note(fmt::format("packing of seed {} is used: largest |tau_xy|/sigma_yy in oedometric compression {:.4f}", best.seed, best.bias));
   }
-  if (note) note(fmt::format("packing of seed {} is used: largest |tau_xy|/sigma_yy in oedometric compression {:.4f}", best.seed, best.bias));
   return best;
 }
 

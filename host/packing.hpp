@@ -13,8 +13,12 @@ namespace voussoir::host {
 /// A line for the log while packings are made or found; may be empty.
 using PackingNote = std::function<void(const std::string&)>;
 
-/// The packing of one seed: from the folder, or made, tested for its bias and stored there.
-[[nodiscard]] PackedRve obtain_packing(const Case& input, std::int64_t seed, const PackingNote& note = {});
+/// The packings of these seeds: from the case's folder, or made (side by side), tested for their bias and stored there.
+[[nodiscard]] std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds,
+                                                     const PackingNote& note = {});
+
+/// The seeds that a case names: `seeds`, or `candidates` seeds from `seed` on.
+[[nodiscard]] std::vector<std::int64_t> seeds_of(const PackingCase& packing);
 
 /// Of the case's candidate seeds the packing with the least bias: one packing cloned everywhere biases tau_xy everywhere
 /// (method.md §4).
@@ -25,9 +29,9 @@ struct OedometricPoint {
   double strain, stress_yy, stress_xx, stress_xy;  ///< axial log strain [-], compression-positive stresses [Pa]
 };
 
-/// The packing compressed along y without lateral strain from its own pressure until sigma_yy reaches `stress` [Pa].
-/// Throws std::runtime_error when an increment fails.
-[[nodiscard]] std::vector<OedometricPoint> oedometric_test(const PackedRve& rve, double stress);
+/// Each packing compressed along y without lateral strain from its own pressure until every sigma_yy has reached `stress`
+/// [Pa]; one curve per packing. Throws std::runtime_error when an increment fails.
+[[nodiscard]] std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const PackedRve> rves, double stress);
 
 /// `kind = "pack"`: makes the packings and prints their table. Returns an exit code.
 [[nodiscard]] int run_pack(const Case& input, const RunOptions& options);

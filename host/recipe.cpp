@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
 namespace voussoir::host {
 
@@ -56,23 +57,38 @@ void place_loose(PackedRve& rve, Uniform& uniform) {
   }
 }
 
-kernels::RveReport consolidate(kernels::RveBatch& batch, double pressure, double max_rate) {
+/// All RVEs to rest under their isotropic pressure [Pa].
+std::vector<kernels::RveReport> consolidate(kernels::RveBatch& batch, double pressure, double max_rate) {
   const kernels::ServoAxis axis{.stress_controlled = true, .target = -pressure};
-  const std::vector<kernels::ServoRequest> request{{.x = axis, .y = axis, .max_rate = max_rate, .max_steps = 2000000}};
-  std::vector<kernels::RveReport> report(1);
+  const std::vector<kernels::ServoRequest> requests(batch.size(),
+                                                    {.x = axis, .y = axis, .max_rate = max_rate, .max_steps = 2000000});
+  std::vector<kernels::RveReport> reports(batch.size());
   const kernels::EngineSettings settings{.precision = kernels::Precision::float64, .hold_tolerance = 1e-4};
-  kernels::advance(batch, std::span<const kernels::ServoRequest>(request), settings, report);
-  if (report[0].status != kernels::RveStatus::converged) {
+  kernels::advance(batch, std::span<const kernels::ServoRequest>(requests), settings, reports);
+  for (const kernels::RveReport& report : reports) {
+    if (report.status == kernels::RveStatus::converged) continue;
     throw std::runtime_error(fmt::format("consolidation at {} Pa ended as {} after {} steps", pressure,
-                                         kernels::name_of(report[0].status), report[0].steps));
+                                         kernels::name_of(report.status), report.steps));
   }
   kernels::commit(batch);
-  return report[0];
+  return reports;
 }
 
 /// Largest strain per step so that the inertial number stays at 1e-3 once the pressure has been reached.
 double consolidation_rate(const kernels::Packing& packing, double pressure) {
   return std::clamp(1e-3 * std::sqrt(packing.mean_mobility() * pressure * packing.thickness), 2e-6, 2e-5);
+}
+
+PackedRve loose_packing(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
+  PackedRve rve;
+  rve.seed = seed;
+  rve.packing = {.radii = sample_radii(soil, recipe.grains, seed),
+                 .material = grain_material(soil),
+                 .thickness = soil.thickness,
+                 .local_damping = soil.damping};
+  Uniform uniform(seed + 1000003);
+  place_loose(rve, uniform);
+  return rve;
 }
 
 }  // namespace
@@ -98,30 +114,37 @@ std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t 
   return radii;
 }
 
-PackedRve make_packing(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
-  PackedRve rve;
-  rve.seed = seed;
-  rve.packing.radii = sample_radii(soil, recipe.grains, seed);
-  rve.packing.material = grain_material(soil);
-  rve.packing.thickness = soil.thickness;
-  rve.packing.local_damping = soil.damping;
-  Uniform uniform(seed + 1000003);
-  place_loose(rve, uniform);
-
-  kernels::RveBatch batch = kernels::make_batch({rve.packing}, {0});
-  store_rve(rve, batch.committed, 0);
-  const double rate = consolidation_rate(rve.packing, recipe.pressure);
-  batch.packings[0].material.friction = recipe.consolidation_friction;
+std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe, std::span<const std::int64_t> seeds) {
+  std::vector<PackedRve> rves(seeds.size());
+  for (std::size_t k = 0; k < seeds.size(); ++k) rves[k] = loose_packing(soil, recipe, seeds[k]);
+  if (rves.empty()) return rves;
+  kernels::RveBatch batch = batch_of(rves);
+  const double rate = consolidation_rate(rves[0].packing, recipe.pressure);
+  for (kernels::Packing& packing : batch.packings) packing.material.friction = recipe.consolidation_friction;
   consolidate(batch, recipe.pressure, rate);
-  batch.packings[0].material.friction = rve.packing.material.friction;
-  const kernels::RveReport report = consolidate(batch, recipe.pressure, 0.1 * rate);
+  for (kernels::Packing& packing : batch.packings) packing.material.friction = std::tan(soil.friction);
+  const std::vector<kernels::RveReport> reports = consolidate(batch, recipe.pressure, 0.1 * rate);
+  for (std::size_t k = 0; k < rves.size(); ++k) {
+    PackedRve& rve = rves[k];
+    load_rve(batch.committed, k, rve);
+    rve.void_ratio = void_ratio(rve.cell.det(), rve.packing.solid_area());
+    rve.pressure = reports[k].pressure();
+    rve.coordination = 2.0 * reports[k].contacts / rve.packing.size();
+    rve.unbalanced = reports[k].unbalanced;
+  }
+  return rves;
+}
 
-  load_rve(batch.committed, 0, rve);
-  rve.void_ratio = void_ratio(rve.cell.det(), rve.packing.solid_area());
-  rve.pressure = report.pressure();
-  rve.coordination = 2.0 * report.contacts / rve.packing.size();
-  rve.unbalanced = report.unbalanced;
-  return rve;
+kernels::RveBatch batch_of(std::span<const PackedRve> rves) {
+  std::vector<kernels::Packing> packings;
+  std::vector<int> packing_of;
+  for (const PackedRve& rve : rves) {
+    packing_of.push_back(static_cast<int>(packings.size()));
+    packings.push_back(rve.packing);
+  }
+  kernels::RveBatch batch = kernels::make_batch(std::move(packings), std::move(packing_of));
+  for (std::size_t k = 0; k < rves.size(); ++k) store_rve(rves[k], batch.committed, k);
+  return batch;
 }
 
 std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {

@@ -3,6 +3,7 @@
 /// then the working friction at the same pressure. Same recipe and seed: same packing, bit for bit.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,12 @@ struct PackedRve {
 /// same grading as a large one, in random order of placement.
 [[nodiscard]] std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t seed);
 
-/// Throws std::runtime_error when the packing does not come to rest.
-[[nodiscard]] PackedRve make_packing(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed);
+/// The packings of several seeds, side by side in one batch. Throws std::runtime_error when one does not come to rest.
+[[nodiscard]] std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe,
+                                                   std::span<const std::int64_t> seeds);
+
+/// A batch of one RVE per packing, each in its packing's state.
+[[nodiscard]] kernels::RveBatch batch_of(std::span<const PackedRve> rves);
 
 /// Everything that decides the packing's numbers, as text; equal texts give equal packings.
 [[nodiscard]] std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed);

@@ -33,8 +33,8 @@ class GroupAdvance {
     restore(members, requests, reports);
     int step = 0;
     for (; any_running(); ++step) {
-      if (step % settings_.list_interval == 0) check_lists();
       move_cells(step);
+      if (step % settings_.list_interval == 0) check_lists();
       if (any_looks(step)) {
         SweepSums<V> sums;
         sweep_pairs<Sweep::measure, Law>(group_, sums);
@@ -254,6 +254,7 @@ class GroupAdvance {
       gather_lane(group_, l, lists_[l].pairs);
       if (stale[l]) rebase(l);
     }
+    for (std::size_t l = 0; l < width; ++l) round_motion(l);
     builder_.build(group_, lists_, *packing_);
   }
 

@@ -26,16 +26,16 @@ struct PairConstants {
   double rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
 };
 
-/// Two springs in series, each of stiffness 2*s: 2 s1 s2 / (s1 + s2).
-KOKKOS_INLINE_FUNCTION double in_series(double s1, double s2) { return 2.0 * s1 * s2 / (s1 + s2); }
+/// Harmonic mean 2 a b / (a + b), of two springs in series; 0 if either is 0.
+KOKKOS_INLINE_FUNCTION double harmonic_mean(double a, double b) { return a + b > 0 ? 2.0 * a * b / (a + b) : 0.0; }
 
 /// Combination rules of method.md §3 for grains of radii r1, r2 [m].
 KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2, double r2) {
-  const double kt = in_series(m1.modulus * m1.stiffness_ratio * r1, m2.modulus * m2.stiffness_ratio * r2);
-  const double beta = 0.5 * (m1.rolling_stiffness + m2.rolling_stiffness);
+  const double kt = harmonic_mean(m1.modulus * m1.stiffness_ratio * r1, m2.modulus * m2.stiffness_ratio * r2);
+  const double beta = harmonic_mean(m1.rolling_stiffness, m2.rolling_stiffness);
   const double arm1 = m1.rolling_limit * r1;
   const double arm2 = m2.rolling_limit * r2;
-  return {.normal_stiffness = in_series(m1.modulus * r1, m2.modulus * r2),
+  return {.normal_stiffness = harmonic_mean(m1.modulus * r1, m2.modulus * r2),
           .tangential_stiffness = kt,
           .rolling_stiffness = beta * kt * r1 * r2,
           .friction = m1.friction < m2.friction ? m1.friction : m2.friction,

@@ -27,8 +27,8 @@ class StrainDrive {
 
   StrainDrive() = default;
   StrainDrive(const StrainRequest& request, const Packing&, const EngineSettings& settings)
-      : strain_steps_(request.strain_steps),
-        last_(request.strain_steps + request.hold_cap),
+      : strain_steps_(request.f_rel == identity2 ? request.strain_steps : std::max(request.strain_steps, 1)),
+        last_(strain_steps_ + std::max(request.hold_cap, 1) - 1),
         interval_(settings.look_interval),
         tolerance_(settings.hold_tolerance),
         total_(log_of(request.f_rel)) {

@@ -51,7 +51,12 @@ using real_of = typename V::value_type;
 /// a*b + c in one rounding. Contraction is off in this project, so a fused operation is one that is written.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V fused(const V& a, const V& b, const V& c) {
-  return Kokkos::fma(a, b, c);
+  if constexpr (V::size() == 1) {  // Kokkos 4.5's scalar fma rounds twice
+    using real = real_of<V>;
+    return V(Kokkos::fma(static_cast<real>(a), static_cast<real>(b), static_cast<real>(c)));
+  } else {
+    return Kokkos::fma(a, b, c);
+  }
 }
 
 template <class V>

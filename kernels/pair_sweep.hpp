@@ -117,7 +117,8 @@ KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShap
   const V a = V(shape.mobility) * cell.alive;
   const V ar = V(shape.rotational_mobility) * cell.alive;
   const V zero(0);
-  const V rattles = Kokkos::Experimental::condition((fx == zero) && (fy == zero), V(real(0.9)), V(real(1)));
+  const V rattles =
+      Kokkos::Experimental::condition((fx == zero) && (fy == zero) && (torque == zero), V(real(0.9)), V(real(1)));
   const V wx = grain.w_x;
   const V wy = grain.w_y;
   const V kicked_x = fused(a, damped(fx, wx, a, damping), wx);
