@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -75,6 +76,14 @@ Stage column_stage(const fem::Mesh& mesh, const Case& input, std::vector<ColumnR
   stage.last = true;
   stage.on_step = [&rows](const fem::ConvergedStep& step) {
     for (const ColumnRow& row : averaged_rows(step.increment.stress)) rows.push_back(row);
+  };
+  stage.on_record = [&rows, n = static_cast<std::size_t>(2 * mesh.n_elements())](io::IncrementInfo& info) {
+    const auto now = std::span(rows).last(n);
+    const auto deepest = std::max_element(now.begin(), now.end(), [](const ColumnRow& a, const ColumnRow& b) {
+      return a.sample.vertical < b.sample.vertical;
+    });
+    info.extra["k0_at_base"] = deepest->sample.ratio;
+    info.extra["deflection_at_base"] = deepest->deflection;
   };
   stage.on_checkpoint = [&rows](io::Checkpoint& checkpoint) { put_rows(checkpoint, rows); };
   return stage;

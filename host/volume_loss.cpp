@@ -11,7 +11,7 @@
 namespace voussoir::host {
 namespace {
 
-double settlement(const Ground& ground, int node) { return -ground.state.displacement[2 * node + 1]; }
+double settlement(const Ground& ground, int node) { return 0.0 - ground.state.displacement[2 * node + 1]; }
 
 /// Area lost by the opening over its original area [-].
 double area_loss(const Ground& ground) {

@@ -1,0 +1,94 @@
+// A case file becomes typed SI values, and everything wrong in it is refused.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "host/case.hpp"
+#include "io/case_file.hpp"
+
+namespace voussoir::host {
+namespace {
+
+std::filesystem::path write(const std::string& text) {
+  const std::filesystem::path file = "case_under_test.toml";
+  std::ofstream(file) << text;
+  return file;
+}
+
+std::string complaint(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    (void)load_case(write(text), overrides);
+  } catch (const io::InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Case, DefaultsAreThoseOfTheDeclarations) {
+  const Case input = load_case(write("kind = 'tunnel'\n"));
+  const Case declared;
+  EXPECT_EQ(input.kind, CaseKind::tunnel);
+  EXPECT_EQ(input.material, MaterialKind::grains);
+  EXPECT_EQ(input.soil.size_minimum, declared.soil.size_minimum);
+  EXPECT_NEAR(input.soil.friction, 25 * std::numbers::pi / 180, 1e-15);
+  EXPECT_EQ(input.packing.grains, declared.packing.grains);
+  EXPECT_EQ(input.engine.inertial_number, declared.engine.inertial_number);
+  EXPECT_EQ(input.volume_loss.total, declared.volume_loss.total);
+  EXPECT_EQ(input.newton.smallest_cut, declared.newton.smallest_cut);
+}
+
+TEST(Case, UnitsBecomeSi) {
+  const Case input = load_case(write("kind = 'tunnel'\n[ground]\nunit_weight = '18 kN/m3'\n[volume_loss]\ntotal = '10 %'\n"),
+                               {"soil.friction=30 deg", "engine.precision=double"});
+  EXPECT_DOUBLE_EQ(input.ground.unit_weight, 18e3);
+  EXPECT_DOUBLE_EQ(input.volume_loss.total, 0.1);
+  EXPECT_NEAR(input.soil.friction, std::numbers::pi / 6, 1e-15);
+  EXPECT_EQ(input.engine.precision, Precision::double_precision);
+}
+
+TEST(Case, HeightsFollowFromCoverAndDiameter) {
+  const Case input = load_case(write("kind = 'tunnel'\n"), {"ground.cover_ratio=3"});
+  EXPECT_DOUBLE_EQ(input.ground.crown_height(), 20);
+  EXPECT_DOUBLE_EQ(input.ground.axis_height(), 17.5);
+  EXPECT_DOUBLE_EQ(input.ground.invert_height(), 15);
+}
+
+TEST(Case, FingerprintFollowsWhatDecidesTheNumbers) {
+  const std::string base = load_case(write("kind = 'tunnel'\n")).fingerprint;
+  EXPECT_EQ(base, load_case(write("kind = 'tunnel'\n[output]\nevery = 5\n")).fingerprint);
+  EXPECT_EQ(base, load_case(write("title = 'x'\nkind = 'tunnel'\n[ground]\ndiameter = '5 m'\n")).fingerprint);
+  EXPECT_NE(base, load_case(write("kind = 'tunnel'\n"), {"soil.friction=26 deg"}).fingerprint);
+  EXPECT_NE(base, load_case(write("kind = 'tunnel'\n"), {"newton.tolerance=2e-3"}).fingerprint);
+}
+
+TEST(Case, ResolvedCaseGivesTheSameCase) {
+  const Case input = load_case(write("kind = 'tunnel'\n"), {"ground.cover_ratio=3", "soil.friction=31 deg"});
+  const Case again = load_case(write(input.resolved));
+  EXPECT_EQ(input.soil.friction, again.soil.friction);
+  EXPECT_EQ(input.ground.cover_ratio, again.ground.cover_ratio);
+  EXPECT_EQ(input.engine.inertial_number, again.engine.inertial_number);
+  EXPECT_EQ(input.packing.pressure, again.packing.pressure);
+}
+
+TEST(Case, WrongValuesAreRefused) {
+  EXPECT_NE(complaint("kind = 'tunel'\n"), "");
+  EXPECT_NE(complaint("[soil]\n"), "");  // no kind
+  EXPECT_NE(complaint("kind = 'pack'\n[ground]\ndiameter = '5 m'\n"), "");  // no table of this kind
+  EXPECT_NE(complaint("kind = 'tunnel'\n", {"soil.size_maximum=1 mm"}), "");
+  EXPECT_NE(complaint("kind = 'tunnel'\n", {"soil.damping=1.5"}), "");
+  EXPECT_NE(complaint("kind = 'tunnel'\n", {"engine.maximum_steps=10"}), "");
+  EXPECT_NE(complaint("kind = 'tunnel'\n", {"ground.cover_ratio=10"}), "");
+  EXPECT_NE(complaint("kind = 'tunnel'\n", {"ground.width=6 m"}), "");
+  EXPECT_NE(complaint("kind = 'tunnel'\n", {"ground.mesh_size_far=10 cm"}), "");
+  EXPECT_NE(complaint("kind = 'tunnel'\n", {"packing.pressure=2 kPa"}), "");
+  EXPECT_NE(complaint("kind = 'tunnel'\n", {"newton.tolerance=0"}), "");
+  EXPECT_NE(complaint("kind = 'column'\n", {"volume_loss.total=1 %"}), "");
+  EXPECT_EQ(complaint("kind = 'column'\n"), "");
+}
+
+}  // namespace
+}  // namespace voussoir::host

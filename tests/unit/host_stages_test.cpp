@@ -1,0 +1,150 @@
+// What the stages check and remember, on linear elastic ground: the state at rest, the opening's reactions, checkpoints.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <vector>
+
+#include "fem/linear_elastic.hpp"
+#include "host/tunnel.hpp"
+
+namespace voussoir::host {
+namespace {
+
+Case small_tunnel() {
+  Case input;
+  input.material = MaterialKind::linear_elastic;
+  input.ground.mesh_size_opening = 1.2;
+  input.ground.mesh_size_far = 8.0;
+  input.name = "small_tunnel";
+  input.fingerprint = "host_stages_test";
+  return input;
+}
+
+/// A K0 that is the same at all stresses.
+K0Table constant_k0(double ratio) { return {{1.0, 1.0e7}, {ratio, ratio}}; }
+
+/// A tunnel in ground at rest with K0 = 0.5 everywhere.
+struct GroundAtRest {
+  Case input = small_tunnel();
+  fem::Mesh mesh = tunnel_mesh(input.ground);
+  fem::LinearElastic material{static_cast<std::size_t>(mesh.n_points()), {.young = 5e7, .poisson = 0.3}};
+  Ground ground{input, mesh, material, {}, {}};
+
+  GroundAtRest() {
+    material.set_stress(at_rest());
+    begin_stage(ground);
+  }
+  [[nodiscard]] std::vector<fem::Stress> at_rest() const {
+    const fem::GaussPoints points = fem::gauss_points(mesh, mesh.coordinates);
+    std::vector<fem::Stress> stress;
+    for (Eigen::Index p = 0; p < points.positions.cols(); ++p) {
+      const double vertical = input.ground.unit_weight * (input.ground.height - points.positions(1, p)) + 1e3;
+      stress.emplace_back(-0.5 * vertical, -vertical, 0.0);
+    }
+    return stress;
+  }
+};
+
+TEST(Geostatic, StateAtRestPasses) {
+  GroundAtRest rest;
+  const GeostaticCheck check = check_geostatic(rest.ground);
+  EXPECT_LT(check.vertical_error, 1e-6);
+  EXPECT_NEAR(check.k0_minimum, 0.5, 1e-12);
+  EXPECT_NEAR(check.k0_maximum, 0.5, 1e-12);
+  EXPECT_LT(check.deflection_max, 1e-12);
+}
+
+TEST(Geostatic, FaultsAreSeen) {
+  GroundAtRest rest;
+  std::vector<fem::Stress> stress = rest.at_rest();
+  for (fem::Stress& s : stress) s[1] *= 1.1;
+  rest.material.set_stress(stress);
+  EXPECT_GT(check_geostatic(rest.ground).vertical_ratio, 1.5);
+  stress = rest.at_rest();
+  for (fem::Stress& s : stress) s[2] = 0.1 * s[1];
+  rest.material.set_stress(stress);
+  EXPECT_NEAR(check_geostatic(rest.ground).deflection_max, 0.5 * std::atan2(0.2, 0.5), 1e-12);
+}
+
+TEST(Opening, ReactionsEqualTheTractionsOfGroundAtRest) {
+  GroundAtRest rest;
+  // Curved edges and a stress linear in depth: what is left is the quadrature's.
+  EXPECT_LT(check_opening(rest.ground, constant_k0(0.5)).relative, 1e-3);
+  EXPECT_GT(check_opening(rest.ground, constant_k0(0.6)).relative, 0.02);
+}
+
+TEST(Opening, ReactionsCarryTheGroundBeside) {
+  GroundAtRest rest;
+  const Eigen::VectorXd reactions = check_opening(rest.ground, constant_k0(0.5)).reactions;
+  double base = 0;
+  for (const int node : rest.mesh.node_set("base")) base += reactions[2 * node + 1];
+  double opening = 0;
+  for (const int node : rest.mesh.node_set("opening")) opening += reactions[2 * node + 1];
+  const GroundCase& g = rest.input.ground;
+  const double soil = g.width * g.height - 0.125 * std::numbers::pi * g.diameter * g.diameter;
+  EXPECT_NEAR(base + opening, soil * g.unit_weight + g.width * g.surcharge, 1e-3 * base);
+  EXPECT_GT(base, 0);
+}
+
+TEST(GroundCheckpoint, GivesBackTheSameBits) {
+  GroundAtRest rest;
+  rest.ground.state.displacement = Eigen::VectorXd::Random(rest.mesh.n_dofs());
+  rest.ground.state.last_increment = Eigen::VectorXd::Random(rest.mesh.n_dofs());
+  rest.ground.state.coordinates += 0.01 * fem::Coordinates::Random(2, rest.mesh.n_nodes());
+  rest.ground.state.deformation[3](0, 1) = 0.125;
+  rest.ground.state.last_step = 0.3;
+  rest.ground.state.start = 0.1;
+  rest.ground.state.parameter = 0.7;
+  rest.ground.state.step_limit = 0.01;
+  rest.ground.strain[5] = PlaneTensor(1, 2, 3);
+  io::Checkpoint checkpoint;
+  save(rest.ground, checkpoint);
+
+  GroundAtRest other;
+  other.material.set_stress(std::vector<fem::Stress>(other.material.size(), fem::Stress::Zero()));
+  restore(other.ground, checkpoint);
+  const fem::MeshState& a = rest.ground.state;
+  const fem::MeshState& b = other.ground.state;
+  EXPECT_EQ(a.displacement, b.displacement);
+  EXPECT_EQ(a.last_increment, b.last_increment);
+  EXPECT_EQ(a.coordinates, b.coordinates);
+  EXPECT_EQ(a.deformation, b.deformation);
+  EXPECT_EQ(a.initial_tangent, b.initial_tangent);
+  EXPECT_EQ(a.last_step, b.last_step);
+  EXPECT_EQ(a.start, b.start);
+  EXPECT_EQ(a.parameter, b.parameter);
+  EXPECT_EQ(a.step_limit, b.step_limit);
+  EXPECT_EQ(rest.ground.strain, other.ground.strain);
+  EXPECT_EQ(rest.material.state(), other.material.state());
+}
+
+TEST(GroundCheckpoint, OfAnotherMeshIsRefused) {
+  GroundAtRest rest;
+  io::Checkpoint checkpoint;
+  save(rest.ground, checkpoint);
+  Case input = small_tunnel();
+  input.ground.mesh_size_opening = 0.7;
+  const fem::Mesh mesh = tunnel_mesh(input.ground);
+  fem::LinearElastic material(static_cast<std::size_t>(mesh.n_points()), {});
+  Ground ground{input, mesh, material, {}, {}};
+  EXPECT_THROW(restore(ground, checkpoint), std::runtime_error);
+}
+
+TEST(Column, MeasuresTheElasticK0) {
+  const std::filesystem::path folder = "column";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  Case input = small_tunnel();
+  input.elastic.poisson = 0.25;
+  input.column.elements = 8;
+  RunLog log(folder / "run.log", false);
+  const ColumnResult column = run_column(input, {.folder = folder, .command = "test"}, log);
+  ASSERT_EQ(column.status, RunStatus::finished);
+  const double k = 0.25 / 0.75;
+  for (const double s : {2e3, 1e4, 1e5, 6e5}) EXPECT_NEAR(column.k0.at(s), (1e3 + k * (s - 1e3)) / s, 5e-3) << s;
+}
+
+}  // namespace
+}  // namespace voussoir::host
