@@ -35,6 +35,7 @@ struct PackingCase {
   std::int64_t seed = 1;                ///< first seed; the candidates are seed, seed + 1, ...
   std::vector<std::int64_t> seeds;      ///< the seeds to make (kind = pack); empty: those of seed and candidates
   int candidates = 1;                   ///< seeds tried; the one with the least |tau_xy|/sigma_yy is taken
+  bool mirrored = true;                 ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
   std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
   double consolidation_friction = 0.0;  ///< friction coefficient mu_t during consolidation [-]
   double pressure = 1.0e3;              ///< isotropic pressure of the finished packing [Pa]

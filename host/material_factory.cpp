@@ -1,12 +1,19 @@
 #include "host/material_factory.hpp"
 
+#include <utility>
+
 #include "fem/linear_elastic.hpp"
+#include "host/mirrored_batch.hpp"
 #include "host/rve_pool.hpp"
 
 namespace voussoir::host {
 
 std::unique_ptr<fem::MaterialBatch> make_material(const Case& input, std::size_t n_points, const PackingNote& note) {
-  if (input.material == MaterialKind::grains) return make_rve_pool(input, n_points, note);
+  if (input.material == MaterialKind::grains) {
+    auto pool = make_rve_pool(input, n_points, note);
+    if (!input.packing.mirrored) return pool;
+    return std::make_unique<MirroredBatch>(std::move(pool));
+  }
   const double pressure = input.packing.pressure;
   return std::make_unique<fem::LinearElastic>(
       n_points, fem::ElasticOptions{.young = input.elastic.modulus,
