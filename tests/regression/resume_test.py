@@ -42,3 +42,17 @@ run(command(CASE, straight, [*SETTINGS, "elastic.poisson=0.2"], "--resume"), cod
 check_same(straight, killed)
 run(command(CASE, straight, SETTINGS, "--replace"))
 check_same(straight, killed)
+
+# The same with grains, and on another number of threads.
+GRAINS = ["packing.grains=100", "packing.candidates=1", "packing.folder=packings", "ground.mesh_size_opening=2.5 m",
+          "ground.mesh_size_far=8 m", "gravity.uniform_step=0.1", "volume_loss.total=1 %", "volume_loss.increments=2",
+          "newton.tolerance=0.01", "output.rves=[3, 4]"]
+straight = fresh("straight_grains")
+run(command("tunnel_quick", straight, GRAINS, "--threads", "2"))
+stopped = fresh("stopped_grains")
+for wait_for, resume in (("column/increments/0010.h5", []), ("increments/0006.h5", ["--resume"])):
+    code = start_and_signal(command("tunnel_quick", stopped, GRAINS, *resume, "--threads", "1"), stopped / wait_for,
+                            signal.SIGTERM)
+    check(code == 130, f"a run of grains stopped by SIGTERM ended with {code} instead of 130")
+run(command("tunnel_quick", stopped, GRAINS, "--resume", "--threads", "1"))
+check_same(straight, stopped)
