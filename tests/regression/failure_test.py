@@ -13,8 +13,14 @@ check("failed: max_iterations in the increment from" in log, f"the log does not 
 check(all(row["converged"] == 1 for row in table(failed)), "an increment that did not converge is recorded as one that did")
 run(command("tunnel_elastic", failed, TOO_STRICT, "--resume"), code=3)
 
-# An opening that would be drawn through itself is refused by the finite elements, not computed.
-folded = fresh("folded")
-run(command("tunnel_elastic", folded, ["volume_loss.total=90 %", "volume_loss.increments=1", "newton.smallest_cut=1"]), code=3)
-last = table(folded)[-1]
-check(last["volume_loss"] == 0 and last["converged"] == 1, f"the last record is {last}")
+# A step too large for its iterations, in the middle of a run: what was reached before it stays, and is gone on from.
+large = fresh("large")
+STEP = ["volume_loss.total=90 %", "volume_loss.increments=1", "newton.smallest_cut=1", "newton.maximum_iterations=4"]
+run(command("tunnel_elastic", large, STEP), code=3)
+last = table(large)[-1]
+check(last["stage"] == "volume_loss" and last["volume_loss"] == 0, f"the last record is {last}")
+log = (large / "run.log").read_text()
+check("volume_loss failed: max_iterations in the increment from 0 to 0.9" in log, f"the log: {log[-500:]}")
+gravity = log.count("gravity 29/29")
+run(command("tunnel_elastic", large, STEP, "--resume"), code=3)
+check((large / "run.log").read_text().count("gravity 29/29") == gravity, "resume did the gravity stage again")

@@ -91,7 +91,7 @@ def table(folder):
     """Rows of run.h5:/table as dictionaries."""
     with h5py.File(Path(folder) / "run.h5", "r") as opened:
         columns = {name: data[()] for name, data in opened["table"].items()}
-    count = len(columns["index"])
+    count = len(columns.get("index", []))  # no columns as long as there is no increment
     rows = [{name: values[k] for name, values in columns.items()} for k in range(count)]
     for row in rows:
         row["stage"] = row["stage"].decode() if isinstance(row["stage"], bytes) else row["stage"]
