@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kernels/rve_batch.hpp"
 
@@ -28,28 +29,33 @@ double Cell::height(int axis) const {
 
 namespace {
 
-/// Grains sorted into bins of the fractional cell, by counting sort; within a bin ascending by index.
-struct Bins {
+/// Grains of one size level (radii within a factor 2) sorted into bins of the fractional cell by counting sort. A bin is as
+/// wide as the level's largest grain plus skin, so that whoever meets a member from outside or inside the level, being no
+/// larger, finds it within one bin.
+struct Level {
   int nx = 1, ny = 1;
-  std::vector<int> start, member, bin_of;
+  std::vector<int> start, member;
 
-  Bins(std::span<const double> positions, const Cell& cell, double cutoff) {
-    const auto bins_along = [&](int axis) { return std::max(1, static_cast<int>(cell.height(axis) / cutoff)); };
-    nx = bins_along(0);
-    ny = bins_along(1);
-    const std::size_t n = positions.size() / 2;
-    bin_of.resize(n);
+  Level(std::span<const double> positions, const std::vector<int>& grains, const Cell& cell, double largest, double skin) {
+    const double width = 2.0 * largest + skin;
+    nx = std::max(1, static_cast<int>(cell.height(0) / width));
+    ny = std::max(1, static_cast<int>(cell.height(1) / width));
     start.assign(static_cast<std::size_t>(nx * ny) + 1, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double x = positions[2 * i], y = positions[2 * i + 1];
-      bin_of[i] = slot(cell.inverse.xx * x + cell.inverse.xy * y, nx) +
-                  nx * slot(cell.inverse.yx * x + cell.inverse.yy * y, ny);
-      ++start[static_cast<std::size_t>(bin_of[i]) + 1];
-    }
+    member.resize(grains.size());
+    for (const int i : grains) ++start[bin_of(positions, cell, i) + 1];
     for (std::size_t b = 1; b < start.size(); ++b) start[b] += start[b - 1];
-    member.resize(n);
     std::vector<int> next(start.begin(), start.end() - 1);
-    for (std::size_t i = 0; i < n; ++i) member[static_cast<std::size_t>(next[static_cast<std::size_t>(bin_of[i])]++)] = static_cast<int>(i);
+    for (const int i : grains) member[static_cast<std::size_t>(next[bin_of(positions, cell, i)]++)] = i;
+  }
+
+  [[nodiscard]] std::size_t bin_of(std::span<const double> positions, const Cell& cell, int i) const {
+    const auto [a, b] = slots(positions, cell, i);
+    return static_cast<std::size_t>(a + nx * b);
+  }
+
+  [[nodiscard]] std::pair<int, int> slots(std::span<const double> positions, const Cell& cell, int i) const {
+    const double x = positions[2 * static_cast<std::size_t>(i)], y = positions[2 * static_cast<std::size_t>(i) + 1];
+    return {slot(cell.inverse.xx * x + cell.inverse.xy * y, nx), slot(cell.inverse.yx * x + cell.inverse.yy * y, ny)};
   }
 
   static int slot(double fraction, int n) {
@@ -60,15 +66,38 @@ struct Bins {
 
 /// The bins within one step along an axis, each once, also when there are fewer than three.
 int neighbours_along(int at, int n, int out[3]) {
-  if (n == 1) {
-    out[0] = 0;
-    return 1;
-  }
   out[0] = at;
+  if (n == 1) return 1;
   out[1] = (at + 1) % n;
   if (n == 2) return 2;
   out[2] = (at + n - 1) % n;
   return 3;
+}
+
+/// Levels of radii, the largest first; a grain of radius r belongs to level floor(log2(r_max / r)).
+std::vector<std::vector<int>> sort_by_size(std::span<const double> radii, double largest) {
+  std::vector<std::vector<int>> levels;
+  for (std::size_t i = 0; i < radii.size(); ++i) {
+    const auto level = static_cast<std::size_t>(std::max(0.0, std::floor(std::log2(largest / radii[i]))));
+    if (level >= levels.size()) levels.resize(level + 1);
+    levels[level].push_back(static_cast<int>(i));
+  }
+  return levels;
+}
+
+/// Calls `meet(j)` for every member of the bins around grain i.
+template <class Meet>
+void visit(const Level& level, std::span<const double> positions, const Cell& cell, int i, const Meet& meet) {
+  const auto [a, b] = level.slots(positions, cell, i);
+  int across[3], up[3];
+  const int n_across = neighbours_along(a, level.nx, across);
+  const int n_up = neighbours_along(b, level.ny, up);
+  for (int u = 0; u < n_up; ++u) {
+    for (int v = 0; v < n_across; ++v) {
+      const auto bin = static_cast<std::size_t>(across[v] + level.nx * up[u]);
+      for (int m = level.start[bin]; m < level.start[bin + 1]; ++m) meet(level.member[static_cast<std::size_t>(m)]);
+    }
+  }
 }
 
 }  // namespace
@@ -76,32 +105,28 @@ int neighbours_along(int at, int n, int out[3]) {
 void find_candidates(std::span<const double> positions, std::span<const double> radii, const Cell& cell, double skin,
                      std::vector<std::uint32_t>& keys) {
   keys.clear();
-  const int n = static_cast<int>(radii.size());
   const double largest = *std::max_element(radii.begin(), radii.end());
-  const Bins bins(positions, cell, 2.0 * largest + skin);
-  for (int i = 0; i < n; ++i) {
-    const std::size_t row_begin = keys.size();
-    const auto si = static_cast<std::size_t>(i);
-    int across[3], up[3];
-    const int n_across = neighbours_along(bins.bin_of[si] % bins.nx, bins.nx, across);
-    const int n_up = neighbours_along(bins.bin_of[si] / bins.nx, bins.ny, up);
-    for (int b = 0; b < n_up; ++b) {
-      for (int a = 0; a < n_across; ++a) {
-        const auto bin = static_cast<std::size_t>(across[a] + bins.nx * up[b]);
-        for (int m = bins.start[bin]; m < bins.start[bin + 1]; ++m) {
-          const int j = bins.member[static_cast<std::size_t>(m)];
-          if (j <= i) continue;
-          const auto sj = static_cast<std::size_t>(j);
-          double dx = positions[2 * sj] - positions[2 * si];
-          double dy = positions[2 * sj + 1] - positions[2 * si + 1];
-          cell.nearest(dx, dy);
-          const double reach = radii[si] + radii[sj] + skin;
-          if (dx * dx + dy * dy < reach * reach) keys.push_back(pair_key(i, j));
-        }
+  const std::vector<std::vector<int>> sorted = sort_by_size(radii, largest);
+  std::vector<Level> levels;
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
+    levels.emplace_back(positions, sorted[k], cell, std::ldexp(largest, -static_cast<int>(k)), skin);
+    for (const int i : sorted[k]) {
+      const auto si = static_cast<std::size_t>(i);
+      const auto meet = [&](int j, bool same_level) {
+        if (same_level && j <= i) return;
+        const auto sj = static_cast<std::size_t>(j);
+        double dx = positions[2 * sj] - positions[2 * si];
+        double dy = positions[2 * sj + 1] - positions[2 * si + 1];
+        cell.nearest(dx, dy);
+        const double reach = radii[si] + radii[sj] + skin;
+        if (dx * dx + dy * dy < reach * reach) keys.push_back(i < j ? pair_key(i, j) : pair_key(j, i));
+      };
+      for (std::size_t m = 0; m <= k; ++m) {  // its own level and all coarser ones
+        visit(levels[m], positions, cell, i, [&](int j) { meet(j, m == k); });
       }
     }
-    std::sort(keys.begin() + static_cast<std::ptrdiff_t>(row_begin), keys.end());
   }
+  std::sort(keys.begin(), keys.end());
 }
 
 }  // namespace voussoir::kernels
