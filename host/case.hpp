@@ -133,7 +133,7 @@ struct Case {
 
   std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
   std::string resolved;     ///< TOML of every value after defaults and overrides
-  std::string fingerprint;  ///< of everything that decides the numbers; equal fingerprints give equal results
+  std::string fingerprint;  ///< of everything that decides the numbers; in SI to 12 digits, however it was written
 };
 
 /// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) on anything wrong:

@@ -50,19 +50,24 @@ K0Table fit(const std::vector<ColumnRow>& rows, double initial_stress) {
   return K0Table::fit(std::move(samples), initial_stress);
 }
 
-/// The fitted table, and the rows of the last load factor as they were measured.
-void write_k0(const std::filesystem::path& folder, const K0Table& k0, const std::vector<ColumnRow>& rows,
-              std::size_t last_rows) {
+/// The rows of the last load factor as they were measured.
+std::vector<io::TableColumn> rows_table(std::span<const ColumnRow> rows) {
+  std::vector<io::TableColumn> columns{{"vertical_stress", "Pa", {}}, {"ratio", "-", {}}, {"deflection", "rad", {}}};
+  for (const ColumnRow& row : rows) {
+    columns[0].values.push_back(row.sample.vertical);
+    columns[1].values.push_back(row.sample.ratio);
+    columns[2].values.push_back(row.deflection);
+  }
+  return columns;
+}
+
+/// The fitted table as text, for a tunnel's user and for other programs.
+void write_k0(const std::filesystem::path& folder, const K0Table& k0) {
   std::string fitted = "vertical_stress_Pa,k0\n";
   for (std::size_t k = 0; k < k0.stress().size(); ++k) {
     fitted += fmt::format("{:.9g},{:.9g}\n", k0.stress()[k], k0.ratio()[k]);
   }
   io::write_text(folder / "k0.csv", fitted);
-  std::string measured = "vertical_stress_Pa,k0,deflection_rad\n";
-  for (std::size_t k = rows.size() - std::min(last_rows, rows.size()); k < rows.size(); ++k) {
-    measured += fmt::format("{:.9g},{:.9g},{:.9g}\n", rows[k].sample.vertical, rows[k].sample.ratio, rows[k].deflection);
-  }
-  io::write_text(folder / "column_rows.csv", measured);
 }
 
 Stage column_stage(const fem::Mesh& mesh, const Case& input, std::vector<ColumnRow>& rows) {
@@ -82,14 +87,18 @@ Stage column_stage(const fem::Mesh& mesh, const Case& input, std::vector<ColumnR
     const auto deepest = std::max_element(now.begin(), now.end(), [](const ColumnRow& a, const ColumnRow& b) {
       return a.sample.vertical < b.sample.vertical;
     });
-    info.extra["k0_at_base"] = deepest->sample.ratio;
-    info.extra["deflection_at_base"] = deepest->deflection;
+    info.extra["k0_at_base"] = {deepest->sample.ratio, "-"};
+    info.extra["deflection_at_base"] = {deepest->deflection, "rad"};
   };
   stage.on_checkpoint = [&rows](io::Checkpoint& checkpoint) { put_rows(checkpoint, rows); };
   return stage;
 }
 
 }  // namespace
+
+std::vector<io::TableColumn> k0_columns(const K0Table& k0) {
+  return {{"vertical_stress", "Pa", k0.stress()}, {"ratio", "-", k0.ratio()}};
+}
 
 ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& log) {
   const fem::Mesh mesh = fem::make_rectangle(input.column.width, input.ground.height, 1, input.column.elements);
@@ -109,7 +118,10 @@ ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& lo
     if (status != RunStatus::finished) return {status, {}};
   }
   const K0Table k0 = fit(rows, input.ground.surcharge);
-  write_k0(options.folder, k0, rows, static_cast<std::size_t>(2 * mesh.n_elements()));
+  write_k0(options.folder, k0);
+  const std::size_t last_rows = std::min(rows.size(), static_cast<std::size_t>(2 * mesh.n_elements()));
+  recorder.set_table("k0", k0_columns(k0));
+  recorder.set_table("column_rows", rows_table(std::span(rows).last(last_rows)));
   log.line(fmt::format("column: K0 falls from 1 at {:.3g} Pa to {:.3f} at {:.3g} Pa", input.ground.surcharge,
                        k0.ratio().back(), k0.stress().back()));
   return {RunStatus::finished, k0};

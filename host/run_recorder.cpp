@@ -98,7 +98,7 @@ void RunRecorder::report(const io::IncrementInfo& info) {
       fmt::format("{} {}/{}: at {:.5g}, {} iterations, residual {:.1e}, {:.2g} s", info.stage, info.stage_index,
                   stage_planned_, info.load_parameter, info.iterations, info.residual, info.wall_s);
   if (info.cuts > 0) text += fmt::format(", cut {} times", info.cuts);
-  const auto column = [&](const char* name) { return info.extra.contains(name) ? info.extra.at(name) : 0.0; };
+  const auto column = [&](const char* name) { return info.extra.contains(name) ? info.extra.at(name).value : 0.0; };
   if (column("open_points") > 0) text += fmt::format(", {} points open", column("open_points"));
   if (column("step_limit_points") > 0) text += fmt::format(", {} points at the step limit", column("step_limit_points"));
   if (column("slowest_steps") > 0) {
@@ -112,6 +112,10 @@ void RunRecorder::write(io::IncrementInfo info, const std::vector<io::Field>& fi
                         const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates) {
   info.index = ++result_index_;
   writer_->write(info, fields, snapshots, coordinates);
+}
+
+void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn> columns) {
+  writer_->set_table(name, std::move(columns));
 }
 
 void RunRecorder::save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished) {

@@ -39,6 +39,9 @@ class RunRecorder {
   void write(io::IncrementInfo info, const std::vector<io::Field>& fields,
              const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates);
 
+  /// A table of run.h5, see io::ResultWriter::set_table.
+  void set_table(const std::string& name, std::vector<io::TableColumn> columns);
+
   /// Saves a checkpoint after increment `stage_index` of `stage`; `finished`: nothing is left to do behind it.
   void save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished);
 

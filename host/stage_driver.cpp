@@ -21,15 +21,15 @@ double relative(double residual, const fem::NewtonReport& report, double toleran
 
 /// Columns that say how hard the points were to bring to equilibrium.
 void add_material_columns(const Ground& ground, const fem::NewtonReport& report, io::IncrementInfo& info) {
-  info.extra["largest_nodal_ratio"] = report.largest_nodal_ratio;
-  info.extra["noise_floor"] = report.noise_floor;
-  info.extra["open_points"] = static_cast<double>(report.material.open);
-  info.extra["step_limit_points"] = static_cast<double>(report.material.step_limit);
+  info.extra["largest_nodal_ratio"] = {report.largest_nodal_ratio, "-"};
+  info.extra["noise_floor"] = {report.noise_floor, "N/m"};
+  info.extra["open_points"] = {static_cast<double>(report.material.open), "-"};
+  info.extra["step_limit_points"] = {static_cast<double>(report.material.step_limit), "-"};
   for (const fem::PointField& field : ground.material.fields()) {
     if (field.name != "steps" || field.values.empty()) continue;
     const auto slowest = std::max_element(field.values.begin(), field.values.end());
-    info.extra["slowest_point"] = static_cast<double>(slowest - field.values.begin());
-    info.extra["slowest_steps"] = *slowest;
+    info.extra["slowest_point"] = {static_cast<double>(slowest - field.values.begin()), "-"};
+    info.extra["slowest_steps"] = {*slowest, "-"};
   }
 }
 

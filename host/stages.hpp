@@ -15,9 +15,12 @@ struct ColumnResult {
   RunStatus status = RunStatus::finished;
   K0Table k0;
 };
-/// Runs, or goes on with, the column in options.folder, with its own results and checkpoints, and k0.csv (vertical stress
-/// [Pa], K0 [-], deflection of the principal axis [rad]).
+/// Runs, or goes on with, the column in options.folder, with its own results and checkpoints, tables `k0` and `column_rows`
+/// of io/FORMAT.md, and k0.csv.
 [[nodiscard]] ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& log);
+
+/// The table `k0` of io/FORMAT.md.
+[[nodiscard]] std::vector<io::TableColumn> k0_columns(const K0Table& k0);
 
 /// From the isotropic initial state to geostatic equilibrium on the fixed mesh (stage "gravity"); the opening is held by
 /// the tractions of eqs. (15), (16). `last`: the run ends here.

@@ -139,7 +139,7 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
     text += fmt::format("{},{},{},{},{:.9g},{},{:.9g},{:.2f}", run.name, status_name(run.exit_code), run.exit_code,
                         last.stage, last.load_parameter, iterations, steps, wall);
     for (const std::string& column : columns) {
-      text += last.extra.contains(column) ? fmt::format(",{:.9g}", last.extra.at(column)) : ",";
+      text += last.extra.contains(column) ? fmt::format(",{:.9g}", last.extra.at(column).value) : ",";
     }
     text += "\n";
   }

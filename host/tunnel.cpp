@@ -32,6 +32,8 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   const ColumnResult column = run_column(input, column_options, log);
   if (column.status != RunStatus::finished) return column.status;
 
+  recorder.set_table("k0", k0_columns(column.k0));
+
   const auto material = make_material(input, static_cast<std::size_t>(mesh.n_points()),
                                       [&log](const std::string& text) { log.detail(text); });
   Ground ground{input, mesh, *material, {}, {}};

@@ -27,9 +27,9 @@ void add_tunnel_columns(const Ground& ground, io::IncrementInfo& info) {
   const std::vector<int>& top = ground.mesh.node_set("top");
   double largest = settlement(ground, top.front());
   for (const int node : top) largest = std::max(largest, settlement(ground, node));
-  info.extra["crown_settlement"] = settlement(ground, ground.mesh.node_set("crown").front());
-  info.extra["surface_settlement"] = largest;
-  info.extra["area_loss"] = area_loss(ground);
+  info.extra["crown_settlement"] = {settlement(ground, ground.mesh.node_set("crown").front()), "m"};
+  info.extra["surface_settlement"] = {largest, "m"};
+  info.extra["area_loss"] = {area_loss(ground), "-"};
 }
 
 /// The state at V_l = 0, with the reactions of the opening that is now fixed, as the stage's increment 0.
@@ -44,16 +44,17 @@ void record_start(const Ground& ground, const K0Table& k0, RunRecorder& recorder
       at_rest.deflection_mean * degree, at_rest.deflection_max * degree));
   recorder.log().line(fmt::format("V_l = 0: reactions of the opening differ from its tractions by {:.2e} of them",
                                   opening.relative));
+  recorder.set_table("geostatic_check", {{"vertical_error", "Pa", {at_rest.vertical_error}},
+                                         {"vertical_ratio", "-", {at_rest.vertical_ratio}},
+                                         {"k0_minimum", "-", {at_rest.k0_minimum}},
+                                         {"k0_maximum", "-", {at_rest.k0_maximum}},
+                                         {"deflection_mean", "rad", {at_rest.deflection_mean}},
+                                         {"deflection_max", "rad", {at_rest.deflection_max}}});
+  recorder.set_table("opening_check",
+                     {{"difference", "N/m", {opening.difference}}, {"relative", "-", {opening.relative}}});
   io::IncrementInfo info;
   info.stage = "volume_loss";
   info.converged = true;
-  info.extra = {{"geostatic_error", at_rest.vertical_error},
-                {"geostatic_ratio", at_rest.vertical_ratio},
-                {"k0_minimum", at_rest.k0_minimum},
-                {"k0_maximum", at_rest.k0_maximum},
-                {"deflection_mean", at_rest.deflection_mean},
-                {"deflection_max", at_rest.deflection_max},
-                {"opening_reaction_error", opening.relative}};
   add_tunnel_columns(ground, info);
   record_ground(ground, info, opening.reactions, recorder);
 }

@@ -69,6 +69,11 @@ double checked_quantity(const CaseNode& node, const std::string& written, Dimens
   return value;
 }
 
+/// Twelve digits: "500 cm" and "5 m" differ in the last bit of a double, and no input is known better.
+std::string significant(double in_si) {
+  return fmt::format("{:.12g}", in_si == 0 ? 0.0 : in_si);  // no "-0"
+}
+
 /// Reads one quantity and notes it as TOML; `fallback` stands in for a node that the user did not write.
 double read_quantity(CaseNode& node, Dimension dimension, const QuantityRule& rule,
                      const std::optional<std::string>& fallback) {
@@ -76,6 +81,7 @@ double read_quantity(CaseNode& node, Dimension dimension, const QuantityRule& ru
   const double value = checked_quantity(node, written, dimension, rule);
   const bool is_number = written.find_first_not_of("0123456789+-.eE") == std::string::npos;
   node.resolved = is_number ? written : toml_text(written);
+  node.meaning = significant(value);
   return value;
 }
 
@@ -91,6 +97,7 @@ std::int64_t read_integer(CaseNode& node, const IntegerRule& rule, const std::op
     fail(node, fmt::format("must be at most {}, is {}", *rule.at_most, value));
   }
   node.resolved = fmt::format("{}", value);
+  node.meaning = node.resolved;
   return value;
 }
 
@@ -100,6 +107,7 @@ std::string read_text(CaseNode& node, const std::optional<std::string>& fallback
   }
   const std::string value = node.written ? std::get<std::string>(node.value) : fallback.value();
   node.resolved = toml_text(value);
+  node.meaning = node.resolved;
   return value;
 }
 
@@ -115,12 +123,15 @@ std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Defaul
   }
   std::vector<T> values;
   std::vector<std::string> texts;
+  std::vector<std::string> meanings;
   for (const auto& entry : node.children) {
     entry->read = true;
     values.push_back(read_one(*entry, node.written ? std::optional<Default>{} : fallback->at(values.size())));
     texts.push_back(entry->resolved);
+    meanings.push_back(entry->meaning);
   }
   node.resolved = fmt::format("[{}]", fmt::join(texts, ", "));
+  node.meaning = fmt::format("[{}]", fmt::join(meanings, ", "));
   return values;
 }
 
@@ -173,6 +184,7 @@ bool Table::boolean(std::string_view key, std::optional<bool> fallback) const {
   }
   const bool value = node.written ? std::get<bool>(node.value) : fallback.value();
   node.resolved = value ? "true" : "false";
+  node.meaning = node.resolved;
   return value;
 }
 

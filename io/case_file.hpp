@@ -109,8 +109,8 @@ class CaseFile {
   /// All values read so far, as TOML in the units that a user writes; origins ("default", "--set") as comments.
   [[nodiscard]] std::string resolved() const;
 
-  /// Hash (16 hex digits) of the values read so far, without the tables or keys named in `without` (those that cannot
-  /// change a result, such as the number of threads).
+  /// Hash (16 hex digits) of the values read so far, in SI to 12 digits, however they were written; without the tables or
+  /// keys named in `without` (those that cannot change a result, such as the number of threads).
   [[nodiscard]] std::string fingerprint(std::span<const std::string> without = {}) const;
 
  private:

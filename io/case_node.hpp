@@ -23,6 +23,7 @@ struct CaseNode {
   bool written = false;       ///< by the user; else a default took its place
   bool read = false;          ///< the program knows this key
   std::string resolved = {};  ///< value as TOML, once read
+  std::string meaning = {};   ///< value in SI, the same however it was written; what the fingerprint is made of
 
   [[nodiscard]] CaseNode* find(std::string_view child_name);
   CaseNode& add(std::string child_name, std::string child_place);

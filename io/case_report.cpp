@@ -115,15 +115,15 @@ bool is_within(const std::string& key, const std::string& table) {
   return key.starts_with(table) && (key.size() == table.size() || key[table.size()] == '.' || key[table.size()] == '[');
 }
 
-void collect_resolved(const CaseNode& node, std::span<const std::string> without, std::vector<std::string>& lines) {
+void collect_meanings(const CaseNode& node, std::span<const std::string> without, std::vector<std::string>& lines) {
   for (const auto& child : node.children) {
     if (std::any_of(without.begin(), without.end(), [&](const auto& table) { return is_within(child->key, table); })) {
       continue;
     }
-    if (!child->resolved.empty()) {
-      lines.push_back(fmt::format("{}={}\n", child->key, child->resolved));
+    if (!child->meaning.empty()) {
+      lines.push_back(fmt::format("{}={}\n", child->key, child->meaning));
     } else {
-      collect_resolved(*child, without, lines);
+      collect_meanings(*child, without, lines);
     }
   }
 }
@@ -142,7 +142,7 @@ std::string CaseFile::resolved() const {
 
 std::string CaseFile::fingerprint(std::span<const std::string> without) const {
   std::vector<std::string> lines;
-  collect_resolved(state_->root, without, lines);
+  collect_meanings(state_->root, without, lines);
   std::sort(lines.begin(), lines.end());
   return fingerprint_of(std::accumulate(lines.begin(), lines.end(), std::string{}));
 }

@@ -44,15 +44,18 @@ void write_info(Hdf5File& file, const IncrementInfo& info) {
   file.set_attribute("/", "format", std::string(format_name));
   file.set_attribute("/", "format_version", std::int64_t{1});
   file.set_attribute("/", "stage", info.stage);
-  for_each_number(info, [&](const char* name, const char*, auto value) {
+  file.make_group("/units");
+  for_each_number(info, [&](const char* name, const char* unit, auto value) {
+    file.set_attribute("/units", name, std::string(unit));
     if constexpr (std::floating_point<decltype(value)>) {
       file.set_attribute("/", name, value);
     } else {
       file.set_attribute("/", name, static_cast<std::int64_t>(value));
     }
   });
-  for (const auto& [name, value] : info.extra) {
-    file.set_attribute("/", name, value);
+  for (const auto& [name, quantity] : info.extra) {
+    file.set_attribute("/", name, quantity.value);
+    file.set_attribute("/units", name, quantity.unit);
   }
   if (!info.residual_history.empty()) {
     file.write("/convergence/residual", info.residual_history, {info.residual_history.size()}, "-");
@@ -171,7 +174,7 @@ IncrementInfo read_increment_info(const std::filesystem::path& path) {
   });
   for (const auto& name : file.attributes("/")) {
     if (!known.contains(name)) {
-      info.extra[name] = file.number_attribute("/", name);
+      info.extra[name] = {file.number_attribute("/", name), file.text_attribute("/units", name)};
     }
   }
   if (file.has("/convergence/residual")) {

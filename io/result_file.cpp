@@ -6,7 +6,6 @@
 #include <charconv>
 #include <concepts>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 #include "io/atomic_file.hpp"
@@ -55,13 +54,22 @@ void write_mesh(Hdf5File& file, const MeshData& mesh) {
   }
 }
 
+void write_tables(Hdf5File& file, const Tables& tables) {
+  file.make_group("/tables");
+  for (const auto& [table, columns] : tables) {
+    for (const TableColumn& column : columns) {
+      file.write(fmt::format("/tables/{}/{}", table, column.name), column.values, {column.values.size()}, column.unit);
+    }
+  }
+}
+
 /// Columns for all increments; one that has no value of an extra column gets NaN.
-void write_table(Hdf5File& file, const std::vector<IncrementInfo>& increments) {
+void write_increment_table(Hdf5File& file, const std::vector<IncrementInfo>& increments) {
   const std::vector<std::size_t> rows{increments.size()};
   file.make_group("/table");
   std::map<std::string, std::pair<std::string, std::vector<double>>> reals;
   std::map<std::string, std::vector<std::int64_t>> integers;
-  std::set<std::string> extra;
+  std::map<std::string, std::string> extra;  // name, unit
   std::vector<std::string> stages;
   for (const auto& info : increments) {
     stages.push_back(info.stage);
@@ -73,17 +81,17 @@ void write_table(Hdf5File& file, const std::vector<IncrementInfo>& increments) {
         integers[name].push_back(static_cast<std::int64_t>(value));
       }
     });
-    for (const auto& [name, value] : info.extra) {
-      extra.insert(name);
+    for (const auto& [name, quantity] : info.extra) {
+      extra[name] = quantity.unit;
     }
   }
-  for (const auto& name : extra) {
+  for (const auto& [name, unit] : extra) {
     for (const auto& info : increments) {
       const auto found = info.extra.find(name);
       reals[name].second.push_back(found == info.extra.end() ? std::numeric_limits<double>::quiet_NaN()
-                                                             : found->second);
+                                                             : found->second.value);
     }
-    reals[name].first = "SI";
+    reals[name].first = unit;
   }
   for (const auto& [name, column] : reals) {
     file.write("/table/" + name, column.second, rows, column.first);
@@ -141,6 +149,9 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& folder, Provenanc
   if (writer.mesh_.nodes() == 0) {
     fs::remove(folder / "result.xdmf");
   }
+  if (last >= 0 && fs::exists(folder / "run.h5")) {
+    writer.tables_ = read_tables(folder / "run.h5");
+  }
   writer.write_index();
   return writer;
 }
@@ -176,6 +187,18 @@ void ResultWriter::write(const IncrementInfo& info, const std::vector<Field>& fi
   write_index();
 }
 
+void ResultWriter::set_table(const std::string& name, std::vector<TableColumn> columns) {
+  const auto usable = [](const std::string& text) { return !text.empty() && text.find('/') == std::string::npos; };
+  const bool fits = !columns.empty() && std::all_of(columns.begin(), columns.end(), [&](const TableColumn& column) {
+    return usable(column.name) && column.values.size() == columns.front().values.size();
+  });
+  if (!usable(name) || !fits) {
+    throw std::invalid_argument(fmt::format("table \"{}\": names, or lengths of its columns, cannot be used", name));
+  }
+  tables_[name] = std::move(columns);
+  write_index();
+}
+
 void ResultWriter::write_index() const {
   const auto target = folder_ / "run.h5";
   Hdf5File file = Hdf5File::create(temporary_name(target));
@@ -188,7 +211,8 @@ void ResultWriter::write_index() const {
     const std::string name = increment_path({}, info.index).filename().stem().string();
     file.link_external("/increments/" + name, fmt::format("increments/{}.h5", name), "/");
   }
-  write_table(file, increments_);
+  write_increment_table(file, increments_);
+  write_tables(file, tables_);
   file.close();
   publish(target);
   if (mesh_.nodes() > 0) {
@@ -224,6 +248,18 @@ MeshData read_mesh(const std::filesystem::path& run_file) {
     mesh.geometry[name] = file.number_attribute("/mesh/geometry", name);
   }
   return mesh;
+}
+
+Tables read_tables(const std::filesystem::path& run_file) {
+  const Hdf5File file = Hdf5File::open(run_file);
+  Tables tables;
+  for (const auto& table : file.members("/tables")) {
+    for (const auto& column : file.members("/tables/" + table)) {
+      const std::string object = fmt::format("/tables/{}/{}", table, column);
+      tables[table].push_back({column, file.text_attribute(object, "unit"), file.read_doubles(object).values});
+    }
+  }
+  return tables;
 }
 
 std::vector<IncrementInfo> read_increments(const std::filesystem::path& run_file) {

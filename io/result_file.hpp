@@ -54,6 +54,11 @@ struct Field {
   std::vector<double> values = {};
 };
 
+struct Quantity {
+  double value = 0;
+  std::string unit = "-";
+};
+
 /// Row of the table of increments, and attributes of the increment's own file.
 struct IncrementInfo {
   int index = 0;              ///< number of the file, counted through all stages
@@ -67,10 +72,18 @@ struct IncrementInfo {
   int cuts = 0;         ///< times the increment was halved
   double residual = 0;  ///< ||R_free|| relative to its reference [-]
   double particle_steps = 0;
-  double wall_s = 0;                          ///< [s]
-  std::map<std::string, double> extra = {};   ///< further columns
-  std::vector<double> residual_history = {};  ///< relative residual of each iterate [-]
+  double wall_s = 0;                            ///< [s]
+  std::map<std::string, Quantity> extra = {};   ///< further columns
+  std::vector<double> residual_history = {};    ///< relative residual of each iterate [-]
 };
+
+/// One column of a named table of run.h5.
+struct TableColumn {
+  std::string name = {};
+  std::string unit = "-";
+  std::vector<double> values = {};
+};
+using Tables = std::map<std::string, std::vector<TableColumn>>;
 
 /// One RVE in full, for pictures and fabric analysis.
 struct RveSnapshot {
@@ -91,7 +104,7 @@ class ResultWriter {
   /// `mesh` may be empty (element tests), then no XDMF file is written.
   [[nodiscard]] static ResultWriter create(const std::filesystem::path& folder, Provenance provenance, MeshData mesh);
 
-  /// Continues after increment `last`: later increments are removed, earlier ones stay and are listed.
+  /// Continues after increment `last`: later increments are removed, earlier ones stay and are listed, tables stay.
   [[nodiscard]] static ResultWriter resume(const std::filesystem::path& folder, Provenance provenance, MeshData mesh,
                                            int last);
 
@@ -100,6 +113,10 @@ class ResultWriter {
   /// whose size does not fit its location.
   void write(const IncrementInfo& info, const std::vector<Field>& fields,
              const std::vector<RveSnapshot>& snapshots = {}, const std::vector<double>& coordinates = {});
+
+  /// Writes a table of run.h5 that belongs to no increment, such as K0 against stress, in place of an earlier one of that
+  /// name. Throws std::invalid_argument for an unusable name, no columns, or columns of different lengths.
+  void set_table(const std::string& name, std::vector<TableColumn> columns);
 
   [[nodiscard]] const std::vector<IncrementInfo>& increments() const { return increments_; }
 
@@ -112,6 +129,7 @@ class ResultWriter {
   Provenance provenance_;
   MeshData mesh_;
   std::vector<IncrementInfo> increments_;
+  Tables tables_;
   std::vector<std::string> grids_;  ///< XDMF grid of each increment
 };
 
@@ -122,6 +140,7 @@ class ResultWriter {
 [[nodiscard]] Provenance read_provenance(const std::filesystem::path& run_file);
 [[nodiscard]] MeshData read_mesh(const std::filesystem::path& run_file);
 [[nodiscard]] std::vector<IncrementInfo> read_increments(const std::filesystem::path& run_file);
+[[nodiscard]] Tables read_tables(const std::filesystem::path& run_file);  ///< columns in alphabetical order
 [[nodiscard]] std::vector<Field> read_fields(const std::filesystem::path& increment_file);
 [[nodiscard]] std::vector<RveSnapshot> read_snapshots(const std::filesystem::path& increment_file);
 

@@ -61,6 +61,7 @@ TEST(Case, FingerprintFollowsWhatDecidesTheNumbers) {
   const std::string base = load_case(write("kind = 'tunnel'\n")).fingerprint;
   EXPECT_EQ(base, load_case(write("kind = 'tunnel'\n[output]\nevery = 5\n")).fingerprint);
   EXPECT_EQ(base, load_case(write("title = 'x'\nkind = 'tunnel'\n[ground]\ndiameter = '5 m'\n")).fingerprint);
+  EXPECT_EQ(base, load_case(write("kind = 'tunnel'\n"), {"ground.diameter=500 cm", "volume_loss.total=0.2"}).fingerprint);
   EXPECT_NE(base, load_case(write("kind = 'tunnel'\n"), {"soil.friction=26 deg"}).fingerprint);
   EXPECT_NE(base, load_case(write("kind = 'tunnel'\n"), {"newton.tolerance=2e-3"}).fingerprint);
 }

@@ -1,5 +1,6 @@
 /// Case files: what is read, and the one line that each kind of mistake gives.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -174,6 +175,21 @@ TEST(CaseFile, FingerprintFollowsTheValuesThatCount) {
   EXPECT_NE(fingerprint({"soil.friction=0.6"}, without), fingerprint({}, without));
   EXPECT_EQ(fingerprint({"steps=5", "stage[1].seeds=[3]"}, without), fingerprint({}, without));
   EXPECT_EQ(fingerprint({"soil.thickness=0.1 m"}, {}), fingerprint({}, {}));  // a default, written out
+}
+
+TEST(CaseFile, FingerprintDoesNotFollowHowAValueIsWritten) {
+  const auto fingerprint = [&](const std::vector<std::string>& overrides) {
+    const CaseFile file = CaseFile::load(write(valid), overrides);
+    read_all(file);
+    return file.fingerprint();
+  };
+  const std::string base = fingerprint({"soil.radius=7 mm", "stage[0].targets=[1, \"2 %\"]"});
+  for (const char* same : {"7.0 mm", "0.7 cm", "0.007 m", "7e-3 m"}) {
+    EXPECT_EQ(fingerprint({fmt::format("soil.radius={}", same), "stage[0].targets=[1.0, 0.02]"}), base) << same;
+  }
+  EXPECT_NE(fingerprint({"soil.radius=7.0001 mm", "stage[0].targets=[1, \"2 %\"]"}), base);
+  EXPECT_NE(fingerprint({"soil.radius=7 mm", "stage[0].targets=[1, \"2.1 %\"]"}), base);
+  EXPECT_NE(fingerprint({"soil.radius=7 mm", "stage[0].targets=[\"2 %\", 1]"}), base);
 }
 
 TEST(CaseFile, ChecksOfTheHostCarryThePlace) {

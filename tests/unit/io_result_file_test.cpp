@@ -35,7 +35,7 @@ class ResultFileTest : public testing::Test {
             .residual = 1e-4,
             .particle_steps = 1e9,
             .wall_s = 2.5,
-            .extra = {{"crown_settlement", 0.25}},
+            .extra = {{"crown_settlement", {0.25, "m"}}},
             .residual_history = {1, 0.1, 1e-4}};
   }
   static std::vector<double> counted(std::size_t n) {
@@ -85,7 +85,10 @@ TEST_F(ResultFileTest, EverythingReadsBack) {
   EXPECT_EQ(increments[0].stage, "gravity");
   EXPECT_TRUE(increments[0].converged);
   EXPECT_EQ(increments[0].wall_s, 2.5);
-  EXPECT_EQ(increments[0].extra, info(1).extra);
+  ASSERT_TRUE(increments[0].extra.contains("crown_settlement"));
+  EXPECT_EQ(increments[0].extra.size(), 1U);
+  EXPECT_EQ(increments[0].extra.at("crown_settlement").value, 0.25);
+  EXPECT_EQ(increments[0].extra.at("crown_settlement").unit, "m");
   EXPECT_EQ(increments[0].residual_history, info(1).residual_history);
 
   const auto loaded = read_fields(increment_path(folder_, 1));
@@ -114,6 +117,7 @@ TEST_F(ResultFileTest, ShapesTableAndLinksAreAsFormatMdSays) {
   EXPECT_EQ(run.read_integers("/table/index").values, (std::vector<std::int64_t>{1, 2}));
   EXPECT_EQ(run.read_doubles("/table/crown_settlement").values, (std::vector{0.25, 0.25}));
   EXPECT_EQ(run.text_attribute("/table/wall_s", "unit"), "s");
+  EXPECT_EQ(run.text_attribute("/table/crown_settlement", "unit"), "m");
   EXPECT_EQ(run.members("/increments"), (std::vector<std::string>{"0001", "0002"}));
   EXPECT_EQ(run.shape("/increments/0001/gauss/stress"), (std::vector<std::size_t>{2, 4, 3}));  // through the link
   const Hdf5File increment = Hdf5File::open(increment_path(folder_, 2));
@@ -155,6 +159,50 @@ TEST_F(ResultFileTest, ResumeDropsWhatCameAfterTheCheckpoint) {
   EXPECT_EQ(Hdf5File::open(folder_ / "run.h5").members("/increments"), (std::vector<std::string>{"0001", "0002"}));
   writer.write(info(3), fields());
   EXPECT_EQ(xdmf(), straight);
+}
+
+TEST_F(ResultFileTest, TablesStayThroughIncrementsAndResume) {
+  const std::vector<TableColumn> k0{{"ratio", "-", {1, 0.4, 0.3}}, {"vertical_stress", "Pa", {1e3, 1e4, 1e5}}};
+  const auto expect_k0 = [&](const char* when) {
+    const Tables tables = read_tables(folder_ / "run.h5");
+    ASSERT_TRUE(tables.contains("k0")) << when;
+    ASSERT_EQ(tables.at("k0").size(), 2U) << when;
+    for (std::size_t c = 0; c < 2; ++c) {
+      EXPECT_EQ(tables.at("k0")[c].name, k0[c].name) << when;
+      EXPECT_EQ(tables.at("k0")[c].unit, k0[c].unit) << when;
+      EXPECT_EQ(tables.at("k0")[c].values, k0[c].values) << when;
+    }
+  };
+  {
+    ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
+    writer.write(info(1), fields());
+    writer.set_table("k0", {{"ratio", "-", {0.5}}});
+    writer.set_table("k0", k0);  // in place of the first
+    expect_k0("once set");
+    writer.write(info(2), fields());
+    expect_k0("after an increment");
+  }
+  ResultWriter writer = ResultWriter::resume(folder_, provenance_, mesh(), 1);
+  expect_k0("resumed");
+  writer.write(info(2), fields());
+  expect_k0("after an increment of the resumed run");
+  EXPECT_EQ(Hdf5File::open(folder_ / "run.h5").shape("/tables/k0/ratio"), (std::vector<std::size_t>{3}));
+  EXPECT_TRUE(read_tables(folder_ / "run.h5").size() == 1);
+  static_cast<void>(ResultWriter::create(folder_, provenance_, mesh()));
+  EXPECT_TRUE(read_tables(folder_ / "run.h5").empty());
+}
+
+TEST_F(ResultFileTest, TablesThatCannotBeReadBackAreRefused) {
+  ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
+  const auto refuses = [&](const std::string& name, const std::vector<TableColumn>& columns) {
+    EXPECT_THROW(writer.set_table(name, columns), std::invalid_argument) << name;
+  };
+  refuses("a/b", {{"x", "-", {1}}});
+  refuses("", {{"x", "-", {1}}});
+  refuses("k0", {});
+  refuses("k0", {{"", "-", {1}}});
+  refuses("k0", {{"x", "-", {1}}, {"y", "-", {1, 2}}});
+  EXPECT_TRUE(read_tables(folder_ / "run.h5").empty());
 }
 
 TEST_F(ResultFileTest, AnewMeansAnew) {
