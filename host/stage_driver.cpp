@@ -19,9 +19,12 @@ double relative(double residual, const fem::NewtonReport& report, double toleran
   return reference > 0 ? residual / reference : residual;
 }
 
-/// Columns that say how hard the points were to bring to equilibrium.
-void add_material_columns(const Ground& ground, const fem::NewtonReport& report, io::IncrementInfo& info) {
+/// Columns that say how hard the equilibrium was to find: `residual_bound` is what `residual` was held to, the tolerance
+/// and the noise floor of the points' stresses.
+void add_report_columns(const Ground& ground, const fem::NewtonReport& report, io::IncrementInfo& info) {
+  const double tolerance = ground.input.newton.tolerance;
   info.extra["largest_nodal_ratio"] = {report.largest_nodal_ratio, "-"};
+  info.extra["residual_bound"] = {relative(report.residual_bound, report, tolerance), "-"};
   info.extra["noise_floor"] = {report.noise_floor, "N/m"};
   info.extra["open_points"] = {static_cast<double>(report.material.open), "-"};
   info.extra["step_limit_points"] = {static_cast<double>(report.material.step_limit), "-"};
@@ -82,7 +85,7 @@ class StageRun {
     for (const double r : step.report.residual_history) {
       info_.residual_history.push_back(relative(r, step.report, tolerance));
     }
-    add_material_columns(ground_, step.report, info_);
+    add_report_columns(ground_, step.report, info_);
     if (stage_.on_record) stage_.on_record(info_);
     info_.wall_s = std::chrono::duration<double>(Clock::now() - since_).count();
     const bool last_target = done_ == static_cast<int>(stage_.targets.size());

@@ -19,7 +19,10 @@ def draw(result, path):
     top.semilogy(index[shown & good], column["residual"][shown & good], "o", markersize=3.5, color="C0", label="converged")
     if not good.all():
         top.semilogy(index[shown & ~good], column["residual"][shown & ~good], "X", color="C3", label="not converged")
-        top.legend()
+    if all("residual_bound" in i.attributes for i, s in zip(increments, shown) if s) and shown.any():
+        bound = np.array([float(i.attributes.get("residual_bound", np.nan)) for i in increments])
+        top.semilogy(index[shown], bound[shown], "_", color="black", label="allowed: tolerance and noise floor")
+        top.legend(loc="lower right")
     if shown.any():
         top.set_ylim(column["residual"][shown].min() / 3, 3 * column["residual"][shown].max())
     top.set_ylabel("relative residual  [-]")

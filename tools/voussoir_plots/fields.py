@@ -33,7 +33,10 @@ def magnification(result, displacement):
 
 
 def canvas(result, increment):
-    """Figure with deformed element edges; returns (figure, axis, deformed coordinates, note on magnification)."""
+    """Figure with deformed element edges; returns (figure, axis, deformed coordinates, line on magnification).
+
+    The line, empty or not, goes below the title's first one, beside the key of the arrows.
+    """
     displacement = increment.field("node/displacement")
     factor = magnification(result, displacement)
     deformed = result.coordinates + factor * displacement
@@ -48,7 +51,7 @@ def canvas(result, increment):
     axis.set_ylim(low[1] - margin, high[1] + margin)
     axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
     axis.set_ylabel("height above the base  $y$  [m]")
-    note = "" if factor == 1 else f", deformation × {factor:g}"
+    note = "" if factor == 1 else f"deformation × {factor:g}"
     return figure, axis, deformed, note
 
 
@@ -61,7 +64,7 @@ def draw_displacement(result, path):
                               cmap="viridis", zorder=1)
     figure.colorbar(filled, ax=axis, label="displacement  $|u|$  [m]", shrink=0.85)
     _add_arrows(axis, result, deformed, displacement)
-    axis.set_title(f"Displacement, {state(increment)}{note}", loc="left")
+    axis.set_title(f"Displacement, {state(increment)}\n{note}", loc="left")
     save(figure, path)
 
 
@@ -94,7 +97,7 @@ def _draw_points(result, path, name, label, title, colour_map, symmetric=False, 
     collection.set_clim(*limits)
     axis.add_collection(collection)
     figure.colorbar(collection, ax=axis, label=label, shrink=0.85)
-    axis.set_title(f"{title}, {state(increment)}{note}")
+    axis.set_title(f"{title}, {state(increment)}\n{note}".rstrip(), loc="left")
     save(figure, path)
 
 

@@ -51,6 +51,8 @@ class Result:
                 self.connectivity = mesh["connectivity"][()]
                 self.boundaries = {name: nodes[()] for name, nodes in mesh["boundaries"].items()}
                 self.geometry = {name: float(value) for name, value in mesh["geometry"].attrs.items()}
+            self.tables = {name: {column: values[()] for column, values in table.items()}
+                           for name, table in file.get("tables", {}).items()}
         if not self.increments:
             raise Missing("there are no increments yet")
 

@@ -31,6 +31,7 @@ def draw(result, path):
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 5.2))
     _draw_vertical(left, depth, stress[..., 1], far, weight)
     _draw_ratio(right, stress, far)
+    _draw_fit(right, result)
     worst = np.max(np.abs(stress[..., 1] - weight)[far] / (0.05 * weight[far] + 1))
     figure.suptitle(f"After gravity: $\\gamma$ = {unit_weight / 1e3:g} kN/m³, surcharge {surcharge / 1e3:g} kPa; "
                     f"largest departure {worst:.2f} of the allowed 5 % + 1 kPa", fontsize=12)
@@ -58,7 +59,7 @@ def _draw_ratio(axis, stress, far):
     good = far & (vertical > 0)
     if not good.any():
         raise Missing("no point is compressed vertically")
-    axis.semilogx(vertical[good], horizontal[good] / vertical[good], ".", color="C0", markersize=4)
+    axis.semilogx(vertical[good], horizontal[good] / vertical[good], ".", color="C0", markersize=4, label="Gauss points")
     ticks = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000])
     shown = ticks[(ticks >= 0.45 * vertical[good].min()) & (ticks <= 2.2 * vertical[good].max())]
     if len(shown) > 1:
@@ -70,3 +71,13 @@ def _draw_ratio(axis, stress, far):
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
     axis.set_ylabel(r"$K_0 = \sigma_{xx} / \sigma_{yy}$  [-]")
     axis.set_title("away from the opening")
+
+
+def _draw_fit(axis, result):
+    """K0 of the column, with which the opening was held."""
+    if "k0" not in result.tables:
+        return
+    k0 = result.tables["k0"]
+    # Straight between knots; the program's own curve is a monotone cubic through them.
+    axis.plot(k0["vertical_stress"] / 1e3, k0["ratio"], "-", color="black", linewidth=1, label="fitted to the column")
+    axis.legend()
