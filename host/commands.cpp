@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "host/case_size.hpp"
 #include "host/exit_code.hpp"
 #include "host/interrupt.hpp"
 #include "host/run_case.hpp"
@@ -49,7 +50,7 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
   std::printf("# %zu Gauss points, %zu in the column, %zu increments planned\n", size.points, size.column_points,
               size.increments);
   if (size.grains > 0) {
-    std::printf("# %.3g grains in all, about %.1g particle-steps (an estimate, good to a factor of 3)\n", size.grains,
+    std::printf("# %.3g grains in all, about %.2g particle-steps (an estimate, good to a factor of 2)\n", size.grains,
                 size.particle_steps);
   }
   return exit_ok;

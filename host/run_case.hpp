@@ -10,14 +10,4 @@ namespace voussoir::host {
 /// initialised Kokkos. Throws io::InputError on input that shows itself to be wrong only here.
 [[nodiscard]] int run_case(const Case& input, const RunOptions& options);
 
-/// Numbers of a case before it is run.
-struct CaseSize {
-  std::size_t points = 0;         ///< Gauss points of the largest mesh
-  std::size_t column_points = 0;  ///< of the column
-  std::size_t increments = 0;     ///< planned, all stages
-  double grains = 0;              ///< of all RVEs of the largest mesh; 0 without grains
-  double particle_steps = 0;      ///< estimate of the whole run [grains x steps]; 0 without grains
-};
-[[nodiscard]] CaseSize case_size(const Case& input);
-
 }  // namespace voussoir::host
