@@ -26,9 +26,9 @@ def command(case, folder, settings=(), *further):
     return words
 
 
-def run(words, code=0):
+def run(words, code=0, timeout=280):
     """Runs to the end and checks the exit code."""
-    done = subprocess.run(words, capture_output=True, text=True, timeout=280)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=timeout)
     check(done.returncode == code, f"{' '.join(words)}: exit {done.returncode} instead of {code}\n{done.stdout}{done.stderr}")
     return done
 
@@ -43,6 +43,18 @@ def start_and_signal(words, wait_for, signal):
         time.sleep(0.002)
     process.send_signal(signal)
     return process.wait(timeout=120)
+
+
+def draw_and_read_back(folder, figures):
+    """The figures named are drawn, and VTK reads every field and time of the XDMF file (skipped where there is no VTK)."""
+    drawn = run([sys.executable, str(ROOT / "tools/figures.py"), str(folder)])
+    for name in figures:
+        check((Path(folder) / name).stat().st_size > 10000 if (Path(folder) / name).exists() else False,
+              f"{folder}: {name} was not drawn: {drawn.stdout}")
+    read = subprocess.run([sys.executable, str(ROOT / "tools/xdmf_check.py"), str(folder)], capture_output=True, text=True,
+                          timeout=120)
+    check(read.returncode in (0, 77), f"{folder}: {read.stderr}")
+    print((read.stdout.splitlines() or [""])[-1])
 
 
 def fresh(name):
