@@ -41,7 +41,8 @@ class MaterialBatch {
   [[nodiscard]] virtual std::size_t size() const = 0;
 
   /// Forget what was fixed for the last increment (step counts of RVEs follow the first `evaluate` after this call and
-  /// stay frozen until the next, so that stress is a fixed function of the gradient within an increment).
+  /// stay frozen until the next, so that stress is a fixed function of the gradient within an increment; only a gradient that
+  /// asks for more than twice the frozen steps gets them).
   virtual void begin_increment() = 0;
 
   /// Stress and tangent at committed state + gradients. All spans have `size()` entries.

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "host/exit_code.hpp"
 #include "host/packing.hpp"
@@ -48,6 +50,10 @@ int run_probe(const Case& input, const RunOptions& options) {
   std::vector<fem::Tangent> tangent(all.size()), tangent_after(all.size());
   pool.committed(before, tangent);
   const fem::BatchReport report = pool.evaluate(gradients, after, tangent_after);
+  if (!report.usable) {
+    std::fprintf(stderr, "probe: %s\n", report.message.c_str());
+    return exit_numerical;
+  }
 
   std::filesystem::create_directories(options.folder);
   std::ofstream csv(options.folder / "probe.csv");
@@ -65,9 +71,8 @@ int run_probe(const Case& input, const RunOptions& options) {
   const fem::Tangent& d = tangent[0];
   std::printf("tangent of eq. (4) [MPa]: xxxx %.4f xxyy %.4f xxxy %.4f yyyy %.4f yyxy %.4f xyxy %.4f\n", d(0, 0) * 1e-6,
               d(0, 1) * 1e-6, d(0, 2) * 1e-6, d(1, 1) * 1e-6, d(1, 2) * 1e-6, d(2, 2) * 1e-6);
-  if (report.usable) return exit_ok;
-  std::fprintf(stderr, "%s\n", report.message.c_str());
-  return exit_numerical;
+  if (!csv.flush()) throw std::runtime_error((options.folder / "probe.csv").string() + " cannot be written");
+  return exit_ok;
 }
 
 int run_pack(const Case& input, const RunOptions&) {

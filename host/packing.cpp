@@ -4,7 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "io/hash.hpp"
 #include "io/packing_file.hpp"
@@ -13,6 +18,7 @@ namespace voussoir::host {
 
 namespace {
 
+// The test behind `bias`. A change here must raise recipe_version: biases are kept with the packings.
 constexpr double oedometric_end = 700.0e3;       ///< [Pa], the deepest ground of the study
 constexpr double oedometric_increment = 1.0e-3;  ///< axial strain [-]
 constexpr int most_increments = 200;
@@ -40,55 +46,72 @@ io::Packing to_file(const PackedRve& rve, const std::string& recipe, const std::
   return file;
 }
 
-PackedRve from_file(const io::Packing& file, const SoilCase& soil) {
+/// The cached packing, or nothing where the file is not one of this recipe: a damaged cache is made anew.
+std::optional<PackedRve> from_file(const io::Packing& file, const Case& input) {
+  const std::vector<std::string> histories{"tangential_force", "rolling_moment"};
+  const auto number = [&](const char* name) {
+    const auto found = file.numbers.find(name);
+    return found == file.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+  };
   PackedRve rve;
   rve.packing = {.radii = file.radius,
-                 .material = grain_material(soil),
+                 .materials = {grain_material(input.soil)},
+                 .class_of = {},
                  .thickness = file.thickness,
-                 .local_damping = soil.damping};
+                 .local_damping = input.soil.damping};
   for (std::size_t i = 0; i < file.grains(); ++i) {
     rve.position.push_back(file.x[i]);
     rve.position.push_back(file.y[i]);
   }
   rve.rotation = file.rotation;
   rve.cell = {file.cell[0], file.cell[1], file.cell[2], file.cell[3]};
+  rve.contact_history = file.history;
   for (std::size_t c = 0; c < file.contacts(); ++c) {
+    if (file.contact_i[c] >= file.contact_j[c]) return {};
     rve.contact_key.push_back(kernels::pair_key(static_cast<int>(file.contact_i[c]), static_cast<int>(file.contact_j[c])));
   }
-  rve.contact_history = file.history;
-  rve.seed = static_cast<std::int64_t>(file.numbers.at("seed"));
-  rve.void_ratio = file.numbers.at("void_ratio");
-  rve.pressure = file.numbers.at("pressure");
-  rve.coordination = file.numbers.at("coordination");
-  rve.unbalanced = file.numbers.at("unbalanced_ratio");
-  rve.bias = file.numbers.at("bias");
+  const bool ascending = std::adjacent_find(rve.contact_key.begin(), rve.contact_key.end(), std::greater_equal<>()) == rve.contact_key.end();
+  const bool finite = std::all_of(file.history.begin(), file.history.end(), [](double h) { return std::isfinite(h); });
+  rve.void_ratio = number("void_ratio");
+  rve.pressure = number("pressure");
+  rve.coordination = number("coordination");
+  rve.unbalanced = number("unbalanced_ratio");
+  rve.bias = number("bias");
+  const double seed = number("seed");
+  if (!ascending || !finite || file.history_names != histories || static_cast<int>(file.grains()) != input.packing.grains ||
+      !(rve.cell.det() > 0) || !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {
+    return {};
+  }
+  rve.seed = static_cast<std::int64_t>(seed);
   return rve;
 }
 
-double bias_of(const std::vector<OedometricPoint>& test) {
+/// Largest |tau_xy|/sigma_yy of a curve above the floor.
+double bias_of(const std::vector<OedometricPoint>& curve) {
   double bias = 0;
-  for (const OedometricPoint& point : test) {
+  for (const OedometricPoint& point : curve) {
     if (point.stress_yy >= bias_floor) bias = std::max(bias, std::abs(point.stress_xy) / point.stress_yy);
   }
   return bias;
 }
 
 std::string table_line(const PackedRve& rve) {
-  return fmt::format("seed {:5d}  grains {:5d}  void ratio {:.4f}  p {:.1f} Pa  coordination {:.3f}  unbalanced {:.1e}  bias {:.4f}",
-                     rve.seed, rve.packing.size(), rve.void_ratio, rve.pressure, rve.coordination, rve.unbalanced, rve.bias);
+  const std::string bias = std::isnan(rve.bias) ? "" : fmt::format("  bias {:.4f}", rve.bias);
+  return fmt::format("seed {:5d}  grains {:5d}  void ratio {:.4f}  p {:.1f} Pa  coordination {:.3f}  unbalanced {:.1e}{}",
+                     rve.seed, rve.packing.size(), rve.void_ratio, rve.pressure, rve.coordination, rve.unbalanced, bias);
 }
 
 }  // namespace
 
 std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const PackedRve> rves, double stress) {
+  std::vector<std::vector<OedometricPoint>> curves(rves.size());
+  if (rves.empty()) return curves;
   kernels::RveBatch batch = batch_of(rves);
   const kernels::EngineSettings settings{.precision = kernels::Precision::float64};
   std::vector<kernels::RveReport> reports(rves.size());
-  std::vector<std::vector<OedometricPoint>> curves(rves.size());
-  const auto reached = [&](const auto& curve) { return !curve.empty() && curve.back().stress_yy >= stress; };
+  std::vector<char> ended(rves.size(), 0);
   double total = 0;
-  for (int increment = 0; !std::all_of(curves.begin(), curves.end(), reached); ++increment) {
-    if (increment == most_increments) throw std::runtime_error("the oedometric test does not reach its stress");
+  for (int increment = 0; increment < most_increments && std::count(ended.begin(), ended.end(), 0) > 0; ++increment) {
     const double strain = increment < 4 ? 0.25 * oedometric_increment : oedometric_increment;  // fine while it is soft
     const std::vector<kernels::StrainRequest> requests(
         rves.size(), {.f_rel = {1, 0, 0, std::exp(-strain)}, .strain_steps = 1000, .hold_cap = 2000});
@@ -96,12 +119,11 @@ std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const Packe
     kernels::commit(batch);
     total += strain;
     for (std::size_t k = 0; k < rves.size(); ++k) {
-      if (kernels::is_failure(reports[k].status)) {
-        throw std::runtime_error(fmt::format("oedometric test of seed {} ended as {}", rves[k].seed,
-                                             kernels::name_of(reports[k].status)));
-      }
       const double* s = reports[k].stress;
+      if (kernels::is_failure(reports[k].status)) ended[k] = 1;
+      if (ended[k] != 0) continue;
       curves[k].push_back({total, -s[3], -s[0], -0.5 * (s[1] + s[2])});
+      if (-s[3] >= stress) ended[k] = 1;
     }
   }
   return curves;
@@ -113,40 +135,73 @@ std::vector<std::int64_t> seeds_of(const PackingCase& packing) {
   return seeds;
 }
 
+namespace {
+
+void keep(const Case& input, const PackedRve& rve) {
+  const std::string recipe = recipe_text(input.soil, input.packing, rve.seed);
+  const std::string fingerprint = io::fingerprint_of(recipe);
+  std::filesystem::create_directories(input.packing.folder);
+  io::save_packing(io::packing_path(input.packing.folder, fingerprint), to_file(rve, recipe, fingerprint));
+}
+
+std::optional<PackedRve> find(const Case& input, std::int64_t seed) {
+  const auto file = io::find_packing(input.packing.folder, io::fingerprint_of(recipe_text(input.soil, input.packing, seed)));
+  return file ? from_file(*file, input) : std::nullopt;
+}
+
+/// Bias of the packings that have none yet; kept with them.
+void measure_bias(const Case& input, std::vector<PackedRve>& rves) {
+  std::vector<PackedRve> unknown;
+  for (const PackedRve& rve : rves) {
+    if (std::isnan(rve.bias)) unknown.push_back(rve);
+  }
+  const auto curves = oedometric_tests(unknown, oedometric_end);
+  for (PackedRve& rve : rves) {
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      if (unknown[k].seed != rve.seed) continue;
+      rve.bias = bias_of(curves[k]);
+      keep(input, rve);
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note) {
-  std::vector<PackedRve> out;
   std::vector<std::int64_t> missing;
   for (const std::int64_t seed : seeds) {
-    const auto found = io::find_packing(input.packing.folder, io::fingerprint_of(recipe_text(input.soil, input.packing, seed)));
-    if (!found) {
-      missing.push_back(seed);
-      continue;
-    }
-    out.push_back(from_file(*found, input.soil));
-    if (note) note("packing found: " + table_line(out.back()));
+    if (!find(input, seed)) missing.push_back(seed);
   }
-  std::vector<PackedRve> made = make_packings(input.soil, input.packing, missing);
-  const auto curves = oedometric_tests(made, oedometric_end);
-  for (std::size_t k = 0; k < made.size(); ++k) {
-    made[k].bias = bias_of(curves[k]);
-    const std::string recipe = recipe_text(input.soil, input.packing, made[k].seed);
-    const std::string fingerprint = io::fingerprint_of(recipe);
-    std::filesystem::create_directories(input.packing.folder);
-    io::save_packing(io::packing_path(input.packing.folder, fingerprint), to_file(made[k], recipe, fingerprint));
-    if (note) note("packing made:  " + table_line(made[k]));
-    out.push_back(std::move(made[k]));
+  for (const PackedRve& rve : make_packings(input.soil, input.packing, missing)) {
+    if (rve.status == kernels::RveStatus::converged) {
+      keep(input, rve);
+    } else if (note) {
+      note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed, kernels::name_of(rve.status)));
+    }
+  }
+  std::vector<PackedRve> out;
+  for (const std::int64_t seed : seeds) {
+    if (auto rve = find(input, seed)) out.push_back(std::move(*rve));
+  }
+  if (out.empty()) throw std::runtime_error("no packing of this recipe comes to rest");
+  if (out.size() > 1) measure_bias(input, out);
+  for (const PackedRve& rve : out) {
+    const bool made = std::find(missing.begin(), missing.end(), rve.seed) != missing.end();
+    if (note) note((made ? "packing made:  " : "packing found: ") + table_line(rve));
   }
   return out;
 }
 
 PackedRve choose_packing(const Case& input, const PackingNote& note) {
   std::vector<PackedRve> all = obtain_packings(input, seeds_of(input.packing), note);
+  if (all.size() == 1) return std::move(all.front());
   const auto less_biased = [](const PackedRve& a, const PackedRve& b) {
     return a.bias != b.bias ? a.bias < b.bias : a.seed < b.seed;
   };
   PackedRve best = *std::min_element(all.begin(), all.end(), less_biased);
   if (note) {
-    note(fmt::format("packing of seed {} is used: largest |tau_xy|/sigma_yy in oedometric compression {:.4f}", best.seed, best.bias));
+    note(fmt::format("packing of seed {} is used: largest |tau_xy|/sigma_yy in oedometric compression {:.4f}", best.seed,
+                     best.bias));
   }
   return best;
 }

@@ -13,7 +13,9 @@ namespace voussoir::host {
 /// A line for the log while packings are made or found; may be empty.
 using PackingNote = std::function<void(const std::string&)>;
 
-/// The packings of these seeds: from the case's folder, or made (side by side), tested for their bias and stored there.
+/// The packings of these seeds, in their order: from the case's folder, or made side by side and stored there. A seed that does
+/// not come to rest is noted and left out. Of several packings the bias is measured: the largest |tau_xy|/sigma_yy above 20 kPa
+/// in oedometric compression to 700 kPa. Throws std::runtime_error when no packing is left.
 [[nodiscard]] std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds,
                                                      const PackingNote& note = {});
 
@@ -29,8 +31,8 @@ struct OedometricPoint {
   double strain, stress_yy, stress_xx, stress_xy;  ///< axial log strain [-], compression-positive stresses [Pa]
 };
 
-/// Each packing compressed along y without lateral strain from its own pressure until every sigma_yy has reached `stress`
-/// [Pa]; one curve per packing. Throws std::runtime_error when an increment fails.
+/// Each packing compressed along y without lateral strain from its own pressure until sigma_yy has reached `stress` [Pa]; one
+/// curve per packing, which ends early where an increment fails.
 [[nodiscard]] std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const PackedRve> rves, double stress);
 
 /// `kind = "pack"`: makes the packings and prints their table. Returns an exit code.

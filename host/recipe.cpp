@@ -12,7 +12,7 @@ namespace voussoir::host {
 
 namespace {
 
-constexpr int recipe_version = 1;  ///< raise when a change here changes packings
+constexpr int recipe_version = 2;  ///< raise when a change here or in the engine changes packings
 constexpr double loose_solid_fraction = 0.45;
 constexpr int placement_tries = 20000;
 
@@ -57,33 +57,35 @@ void place_loose(PackedRve& rve, Uniform& uniform) {
   }
 }
 
-/// All RVEs to rest under their isotropic pressure [Pa].
-std::vector<kernels::RveReport> consolidate(kernels::RveBatch& batch, double pressure, double max_rate) {
+/// Largest strain per step so that the inertial number stays at 1e-3 once the pressure has been reached; the limits keep
+/// packings of 100 Pa from taking forever and those of 1 MPa from closing on their overlaps.
+double consolidation_rate(const kernels::Packing& packing, double pressure) {
+  return std::clamp(1e-3 / packing.inertial_time(pressure), 2e-6, 2e-5);
+}
+
+/// All RVEs to rest under their isotropic pressure [Pa], each at `share` of its own rate, whoever is beside it.
+std::vector<kernels::RveReport> consolidate(kernels::RveBatch& batch, double pressure, double share) {
   const kernels::ServoAxis axis{.stress_controlled = true, .target = -pressure};
-  const std::vector<kernels::ServoRequest> requests(batch.size(),
-                                                    {.x = axis, .y = axis, .max_rate = max_rate, .max_steps = 2000000});
+  std::vector<kernels::ServoRequest> requests;
+  for (std::size_t k = 0; k < batch.size(); ++k) {
+    requests.push_back({.x = axis,
+                        .y = axis,
+                        .max_rate = share * consolidation_rate(batch.packing(k), pressure),
+                        .max_steps = 2000000});
+  }
   std::vector<kernels::RveReport> reports(batch.size());
   const kernels::EngineSettings settings{.precision = kernels::Precision::float64, .hold_tolerance = 1e-4};
   kernels::advance(batch, std::span<const kernels::ServoRequest>(requests), settings, reports);
-  for (const kernels::RveReport& report : reports) {
-    if (report.status == kernels::RveStatus::converged) continue;
-    throw std::runtime_error(fmt::format("consolidation at {} Pa ended as {} after {} steps", pressure,
-                                         kernels::name_of(report.status), report.steps));
-  }
   kernels::commit(batch);
   return reports;
-}
-
-/// Largest strain per step so that the inertial number stays at 1e-3 once the pressure has been reached.
-double consolidation_rate(const kernels::Packing& packing, double pressure) {
-  return std::clamp(1e-3 * std::sqrt(packing.mean_mobility() * pressure * packing.thickness), 2e-6, 2e-5);
 }
 
 PackedRve loose_packing(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
   PackedRve rve;
   rve.seed = seed;
   rve.packing = {.radii = sample_radii(soil, recipe.grains, seed),
-                 .material = grain_material(soil),
+                 .materials = {grain_material(soil)},
+                 .class_of = {},
                  .thickness = soil.thickness,
                  .local_damping = soil.damping};
   Uniform uniform(seed + 1000003);
@@ -119,11 +121,12 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
   for (std::size_t k = 0; k < seeds.size(); ++k) rves[k] = loose_packing(soil, recipe, seeds[k]);
   if (rves.empty()) return rves;
   kernels::RveBatch batch = batch_of(rves);
-  const double rate = consolidation_rate(rves[0].packing, recipe.pressure);
-  for (kernels::Packing& packing : batch.packings) packing.material.friction = recipe.consolidation_friction;
-  consolidate(batch, recipe.pressure, rate);
-  for (kernels::Packing& packing : batch.packings) packing.material.friction = std::tan(soil.friction);
-  const std::vector<kernels::RveReport> reports = consolidate(batch, recipe.pressure, 0.1 * rate);
+  for (kernels::Packing& packing : batch.packings) {
+    for (kernels::GrainMaterial& material : packing.materials) material.friction = recipe.consolidation_friction;
+  }
+  consolidate(batch, recipe.pressure, 1.0);
+  for (std::size_t k = 0; k < rves.size(); ++k) batch.packings[k].materials = rves[k].packing.materials;
+  const std::vector<kernels::RveReport> reports = consolidate(batch, recipe.pressure, 0.1);
   for (std::size_t k = 0; k < rves.size(); ++k) {
     PackedRve& rve = rves[k];
     load_rve(batch.committed, k, rve);
@@ -131,6 +134,7 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
     rve.pressure = reports[k].pressure();
     rve.coordination = 2.0 * reports[k].contacts / rve.packing.size();
     rve.unbalanced = reports[k].unbalanced;
+    rve.status = reports[k].status;
   }
   return rves;
 }
@@ -143,7 +147,7 @@ kernels::RveBatch batch_of(std::span<const PackedRve> rves) {
     packings.push_back(rve.packing);
   }
   kernels::RveBatch batch = kernels::make_batch(std::move(packings), std::move(packing_of));
-  for (std::size_t k = 0; k < rves.size(); ++k) store_rve(rves[k], batch.committed, k);
+  for (std::size_t k = 0; k < rves.size(); ++k) store_rve(rves[k], batch, k);
   return batch;
 }
 
@@ -154,7 +158,12 @@ std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::in
                      recipe.consolidation_friction, recipe.pressure, seed);
 }
 
-void store_rve(const PackedRve& from, kernels::RveStates& to, std::size_t rve) {
+void store_rve(const PackedRve& from, kernels::RveBatch& batch, std::size_t rve) {
+  kernels::RveStates& to = batch.committed;
+  if (static_cast<int>(from.contact_key.size()) > to.contact_capacity()) {
+    throw std::invalid_argument("a packing has more contacts than discs can have");
+  }
+  batch.candidates.skin[rve] = -1.0;
   std::copy(from.position.begin(), from.position.end(), &to.position(rve, 0, 0));
   std::copy(from.rotation.begin(), from.rotation.end(), &to.rotation(rve, 0));
   const double h[4] = {from.cell.xx, from.cell.xy, from.cell.yx, from.cell.yy};

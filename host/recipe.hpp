@@ -3,6 +3,7 @@
 /// then the working friction at the same pressure. Same recipe and seed: same packing, bit for bit.
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,7 +26,8 @@ struct PackedRve {
   double pressure = 0;      ///< [Pa]
   double coordination = 0;  ///< 2 contacts / grains [-]
   double unbalanced = 0;    ///< [-]
-  double bias = 0;          ///< largest |tau_xy|/sigma_yy of the oedometric test above 20 kPa [-]; see packing.hpp
+  double bias = std::numeric_limits<double>::quiet_NaN();  ///< see packing.hpp [-]; NaN: not measured
+  kernels::RveStatus status = kernels::RveStatus::converged;  ///< of the consolidation
 };
 
 /// The grain material of a soil.
@@ -35,7 +37,8 @@ struct PackedRve {
 /// same grading as a large one, in random order of placement.
 [[nodiscard]] std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t seed);
 
-/// The packings of several seeds, side by side in one batch. Throws std::runtime_error when one does not come to rest.
+/// The packings of several seeds, side by side in one batch; each is the same whatever other seeds it is made with. One that
+/// does not come to rest says so in its status.
 [[nodiscard]] std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe,
                                                    std::span<const std::int64_t> seeds);
 
@@ -45,11 +48,11 @@ struct PackedRve {
 /// Everything that decides the packing's numbers, as text; equal texts give equal packings.
 [[nodiscard]] std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed);
 
-/// The RVE's state into / out of a batch.
-void store_rve(const PackedRve& from, kernels::RveStates& to, std::size_t rve);
+/// The RVE's state into a batch's committed states (throws std::invalid_argument if it has too many contacts), and out.
+void store_rve(const PackedRve& from, kernels::RveBatch& batch, std::size_t rve);
 void load_rve(const kernels::RveStates& from, std::size_t rve, PackedRve& to);
 
-/// 2 x 2 area of the cell over the area of its grains, less one.
+/// Area of the cell over the area of its grains, less one.
 [[nodiscard]] double void_ratio(double cell_area, double solid_area);
 
 }  // namespace voussoir::host

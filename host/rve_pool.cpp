@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "kernels/neighbours.hpp"
 
@@ -38,7 +39,9 @@ void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::St
 kernels::Mat2 relative_gradient(const fem::Gradient& h) { return {1.0 + h(0, 0), h(0, 1), h(1, 0), 1.0 + h(1, 1)}; }
 
 /// Next number of the series 1.25^k: counts on a coarse grid, so that a predictor's rounding does not change them.
-int round_up(double steps) { return static_cast<int>(std::ceil(std::pow(1.25, std::ceil(std::log(steps) / std::log(1.25) - 1e-9)))); }
+int round_up(double steps) {
+  return static_cast<int>(std::ceil(std::pow(1.25, std::ceil(std::log(steps) / std::log(1.25) - 1e-9))));
+}
 
 }  // namespace
 
@@ -52,24 +55,27 @@ RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n)
       requests_(n),
       trial_reports_(n),
       committed_reports_(n) {
-  for (std::size_t k = 0; k < n; ++k) store_rve(rve, batch_.committed, k);
+  for (std::size_t k = 0; k < n; ++k) store_rve(rve, batch_, k);
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
-  for (auto& report : committed_reports_) report.status = kernels::RveStatus::converged;  // at rest: no motion was asked
+  for (auto& report : committed_reports_) {
+    if (kernels::is_failure(report.status)) {
+      throw std::invalid_argument(fmt::format("the packing of seed {} cannot start: {}", rve.seed, kernels::name_of(report.status)));
+    }
+    if (report.status == kernels::RveStatus::step_limit) report.status = kernels::RveStatus::converged;  // no motion was asked
+  }
 }
 
 void RvePool::begin_increment() { steps_are_fixed_ = false; }
 
-/// n = |D| / I * sqrt(m / (p t)): the inertial number of the scaled masses at the RVE's committed pressure. A rotation
-/// costs no steps, the path is rigid all the way.
+/// Steps that keep the target inertial number at the RVE's committed pressure. A rotation costs none, the path is rigid all the
+/// way.
 int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
-  const kernels::Mat2 log = kernels::log_of(f_rel);
-  const double shear = 0.5 * (log.xy + log.yx);
-  const double strain = std::sqrt(log.xx * log.xx + log.yy * log.yy + 2.0 * shear * shear);
-  const kernels::Packing& packing = batch_.packing(rve);
+  const double strain = kernels::symmetric_norm(kernels::log_of(f_rel));
   const double p = std::max(committed_reports_[rve].pressure(), settings_.pressure_floor);
-  const double steps = strain / engine_.inertial_number / std::sqrt(packing.mean_mobility() * p * packing.thickness);
+  const double steps = strain / engine_.inertial_number * batch_.packing(rve).inertial_time(p);
   if (!std::isfinite(steps)) return engine_.minimum_steps;
-  return std::clamp(round_up(std::max(steps, 1.0)), engine_.minimum_steps, engine_.maximum_steps);
+  const double most = engine_.maximum_steps;
+  return std::clamp(round_up(std::clamp(steps, 1.0, most)), engine_.minimum_steps, engine_.maximum_steps);
 }
 
 void RvePool::choose_steps(std::span<const fem::Gradient> gradients) {
@@ -173,7 +179,7 @@ io::RveSnapshot RvePool::snapshot(std::size_t rve) const {
     double bx = out.x[j] - out.x[i], by = out.y[j] - out.y[i];
     cell.nearest(bx, by);
     const double length = std::hypot(bx, by);
-    const kernels::PairConstants k = kernels::combine(packing.material, packing.radii[i], packing.material, packing.radii[j]);
+    const kernels::PairConstants k = kernels::combine(packing.material_of(i), packing.radii[i], packing.material_of(j), packing.radii[j]);
     const Law law{V(k.normal_stiffness), V(k.tangential_stiffness), V(k.rolling_stiffness), V(k.friction), V(k.rolling_arm)};
     Law::History history{V(grains.contact_history[2 * c]), V(grains.contact_history[2 * c + 1])};
     const auto f = law({V(packing.radii[i] + packing.radii[j] - length), V(0.0), V(0.0)}, history);

@@ -40,6 +40,19 @@ class Reader {
   std::span<const std::byte> bytes_;
 };
 
+/// Field by field: the padding of a struct is no state.
+template <class Transfer, class Report>
+void transfer_report(Transfer& transfer, Report& r) {
+  transfer(&r.status, 1);
+  transfer(&r.steps, 1);
+  transfer(&r.contacts, 1);
+  transfer(r.stress, 4);
+  transfer(r.tangent, 6);
+  transfer(&r.unbalanced, 1);
+  transfer(&r.inertial_number, 1);
+  transfer(&r.largest_overlap, 1);
+}
+
 /// One order of the numbers for both directions; `count` comes first so that only used contacts are kept.
 template <class Transfer, class States>
 void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t grains) {
@@ -51,6 +64,12 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
   if (count < 0 || count > s.contact_capacity()) throw std::runtime_error("the checkpoint's contact count is impossible");
   transfer(&s.contact_key(rve, 0), static_cast<std::size_t>(count));
   transfer(&s.contact_history(rve, 0, 0), 2 * static_cast<std::size_t>(count));
+  for (int c = 0; c < count; ++c) {
+    const std::uint32_t key = s.contact_key(rve, c);
+    if (kernels::first_of(key) >= kernels::second_of(key) || kernels::second_of(key) >= static_cast<int>(grains)) {
+      throw std::runtime_error("the checkpoint's contacts are impossible");
+    }
+  }
 }
 
 }  // namespace
@@ -60,7 +79,7 @@ std::vector<std::byte> RvePool::state() const {
   Writer write(bytes);
   const std::uint64_t n = size();
   write(&n, 1);
-  write(committed_reports_.data(), size());
+  for (const auto& report : committed_reports_) transfer_report(write, report);
   for (std::size_t k = 0; k < size(); ++k) {
     transfer_rve(write, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
   }
@@ -72,12 +91,12 @@ void RvePool::set_state(std::span<const std::byte> bytes) {
   std::uint64_t n = 0;
   read(&n, 1);
   if (n != size()) throw std::runtime_error("the checkpoint has another number of RVEs");
-  read(committed_reports_.data(), size());
+  for (auto& report : committed_reports_) transfer_report(read, report);
   for (std::size_t k = 0; k < size(); ++k) {
     transfer_rve(read, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
   }
   if (!read.at_end()) throw std::runtime_error("the checkpoint's RVEs are not those of this case");
-  std::fill(batch_.candidates.valid.begin(), batch_.candidates.valid.end(), char{0});
+  kernels::forget_candidates(batch_);
   steps_are_fixed_ = false;
 }
 

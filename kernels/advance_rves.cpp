@@ -1,6 +1,8 @@
 #include "kernels/advance_rves.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <memory>
 #include <numeric>
 #include <vector>
@@ -81,22 +83,30 @@ template <class V, bool Rolling, class Drive>
 Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
             std::span<RveReport> reports) {
   using Space = Kokkos::DefaultHostExecutionSpace;
-  using Advance = GroupAdvance<V, Rolling, Drive>;
+  using Run = GroupRun<V, Drive>;
+  using Law = LinearContactLaw<V, Rolling>;
   const auto groups = form_groups<lane_count<V>>(batch, requests);
   const Space space;
   Kokkos::Experimental::UniqueToken<Space> tokens(space);
-  std::vector<std::unique_ptr<Advance>> workers(static_cast<std::size_t>(tokens.size()));
-  for (auto& worker : workers) worker = std::make_unique<Advance>();
+  std::vector<std::unique_ptr<Run>> workers(static_cast<std::size_t>(tokens.size()));
+  for (auto& worker : workers) worker = std::make_unique<Run>();
+  std::exception_ptr failure;
+  std::atomic_flag failed;
   Kokkos::parallel_for(
       "voussoir::advance_rves::groups",
       Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(space, 0, groups.size()).set_chunk_size(1),
       [&](std::size_t g) {
         const FlushSubnormals flush;
         const auto token = tokens.acquire();
-        workers[static_cast<std::size_t>(token)]->run(batch, groups[g], requests, settings, reports);
+        try {
+          advance_group<Law>(*workers[static_cast<std::size_t>(token)], batch, groups[g], requests, settings, reports);
+        } catch (...) {  // no memory, say: nothing may leave the parallel region but through here
+          if (!failed.test_and_set()) failure = std::current_exception();
+        }
         tokens.release(token);
       });
   space.fence("voussoir::advance_rves::groups");
+  if (failure) std::rethrow_exception(failure);
   return count_work<lane_count<V>>(batch, groups, reports);
 }
 
@@ -105,7 +115,8 @@ bool mostly_alone(const RveBatch& batch) { return batch.size() < 2 * batch.packi
 
 bool rolls(const RveBatch& batch) {
   return std::any_of(batch.packings.begin(), batch.packings.end(), [](const Packing& p) {
-    return p.material.rolling_stiffness > 0 && p.material.rolling_limit > 0;
+    return std::any_of(p.materials.begin(), p.materials.end(),
+                       [](const GrainMaterial& m) { return m.rolling_stiffness > 0 && m.rolling_limit > 0; });
   });
 }
 

@@ -14,11 +14,17 @@ namespace voussoir::kernels {
 
 /// What a measuring step saw of one lane.
 struct Measurement {
-  double stress_xx = 0, stress_yy = 0;  ///< tension positive [Pa]
+  double stress_xx = 0, stress_yy = 0, stress_xy = 0;  ///< tension positive [Pa]
   double unbalanced = 0;                ///< rms|f| / (max(p, floor) t d) [-]
 };
 
 enum class Verdict { running, converged, step_limit };
+
+/// Largest |L| per step at which lists keep up: within one list interval the cell then moves a pair by a tenth of the slack.
+[[nodiscard]] inline double largest_rate(const Packing& packing, const EngineSettings& settings) {
+  const double skin = settings.skin * packing.mean_diameter();
+  return 0.05 * skin / (settings.list_interval * (2.0 * packing.largest_radius() + skin));
+}
 
 /// F(t) = exp(t log F_rel / n) for n steps, then rest until the forces balance.
 class StrainDrive {
@@ -26,12 +32,12 @@ class StrainDrive {
   using Request = StrainRequest;
 
   StrainDrive() = default;
-  StrainDrive(const StrainRequest& request, const Packing&, const EngineSettings& settings)
-      : strain_steps_(request.f_rel == identity2 ? request.strain_steps : std::max(request.strain_steps, 1)),
-        last_(strain_steps_ + std::max(request.hold_cap, 1) - 1),
-        interval_(settings.look_interval),
-        tolerance_(settings.hold_tolerance),
-        total_(log_of(request.f_rel)) {
+  StrainDrive(const StrainRequest& request, const Packing& packing, const EngineSettings& settings)
+      : interval_(settings.look_interval), tolerance_(settings.hold_tolerance), total_(log_of(request.f_rel)) {
+    if (!possible()) return;
+    const double fewest = std::ceil(total_.norm() / largest_rate(packing, settings));
+    strain_steps_ = static_cast<int>(std::clamp(fewest, static_cast<double>(std::max(request.strain_steps, 0)), 1e9));
+    last_ = strain_steps_ + std::max(request.hold_cap, 1) - 1;
     if (strain_steps_ > 0) rate_ = (1.0 / strain_steps_) * total_;
   }
 
@@ -39,7 +45,7 @@ class StrainDrive {
   [[nodiscard]] bool possible() const { return std::isfinite(total_.norm()); }
   [[nodiscard]] Mat2 rate(int step) const { return step < strain_steps_ ? rate_ : Mat2{}; }
   [[nodiscard]] bool looks(int step) const { return step >= strain_steps_ && (step % interval_ == 0 || step >= last_); }
-  [[nodiscard]] double strain_rate() const { return rate_.norm(); }
+  [[nodiscard]] double strain_rate() const { return symmetric_norm(rate_); }
 
   Verdict judge(int step, const Measurement& m) {
     if (step < strain_steps_) return Verdict::running;
@@ -56,7 +62,7 @@ class StrainDrive {
   Mat2 rate_;
 };
 
-/// Velocity-form PI control of each stress-controlled axis against a reference modulus (E r / t of the packing): the
+/// PI control of each stress-controlled axis against a reference modulus (E r / t of the packing): the
 /// proportional part alone leaves an offset with stiff grains (method.md §6).
 class ServoDrive {
  public:
@@ -67,7 +73,8 @@ class ServoDrive {
       : request_(request),
         tolerance_(settings.hold_tolerance),
         floor_(settings.pressure_floor),
-        modulus_(packing.material.modulus * 0.5 * packing.mean_diameter() / packing.thickness) {
+        modulus_(packing.mean_stiffness() / packing.thickness) {
+    request_.max_rate = std::min(request_.max_rate, largest_rate(packing, settings));
     rate_x_.value = request.x.stress_controlled ? 0.0 : request.x.target;
     rate_y_.value = request.y.stress_controlled ? 0.0 : request.y.target;
   }
@@ -75,14 +82,14 @@ class ServoDrive {
   [[nodiscard]] bool possible() const { return std::isfinite(request_.x.target) && std::isfinite(request_.y.target); }
   [[nodiscard]] Mat2 rate(int) const { return {rate_x_.value, 0, 0, rate_y_.value}; }
   [[nodiscard]] bool looks(int) const { return true; }
-  [[nodiscard]] double strain_rate() const { return rate(0).norm(); }
+  [[nodiscard]] double strain_rate() const { return symmetric_norm(rate(0)); }
 
   Verdict judge(int step, const Measurement& m) {
     const bool x_ok = follow(request_.x, m.stress_xx, rate_x_);
     const bool y_ok = follow(request_.y, m.stress_yy, rate_y_);
     settled_ = x_ok && y_ok && m.unbalanced < tolerance_ ? settled_ + 1 : 0;
     if (settled_ >= request_.settle_steps) return Verdict::converged;
-    return step >= request_.max_steps ? Verdict::step_limit : Verdict::running;
+    return step + 1 >= request_.max_steps ? Verdict::step_limit : Verdict::running;
   }
 
  private:

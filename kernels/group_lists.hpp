@@ -66,8 +66,9 @@ void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<c
 template <class V>
 PairShape<real_of<V>> shape_of(const Packing& packing, int i, int j) {
   using real = real_of<V>;
-  const double ri = packing.radii[static_cast<std::size_t>(i)], rj = packing.radii[static_cast<std::size_t>(j)];
-  const PairConstants c = combine(packing.material, ri, packing.material, rj);
+  const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
+  const double ri = packing.radii[si], rj = packing.radii[sj];
+  const PairConstants c = combine(packing.material_of(si), ri, packing.material_of(sj), rj);
   const auto r = [](double x) { return static_cast<real>(x); };
   return {.other = j,
           .active = 1,
@@ -101,7 +102,6 @@ class UnionBuilder {
       count = append_row(group, lanes, packing, i, count);
     }
     group.row[static_cast<std::size_t>(n)] = count;
-    group.n_pairs = count;
   }
 
  private:

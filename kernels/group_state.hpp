@@ -54,7 +54,7 @@ struct PairShape {
 template <class V>
 struct CellMotion {
   V f_xx, f_xy, f_yx, f_yy;  ///< F - I since the lane's last rebase
-  V d_xx, d_xy, d_yy;        ///< D = sym E of the motion that led to the current positions
+  V d_xx, d_xy, d_yy;        ///< D = sym L of the motion that led to the current positions
   V e_xx, e_xy, e_yx, e_yy;  ///< E of the coming motion
   V rotation;                ///< W of the coming motion
   V alive;                   ///< 1, or 0 for a lane that is finished, empty or lost
@@ -64,19 +64,19 @@ struct CellMotion {
 template <class V>
 struct SweepSums {
   V stress_xx = V(0), stress_xy = V(0), stress_yx = V(0), stress_yy = V(0);  ///< sum P_i b_j [N m]
-  V force_squared = V(0);  ///< sum |f|^2 over grains [N^2]
+  V force_squared = V(0);    ///< sum |f|^2 over grains [N^2]
+  V largest_overlap = V(0);  ///< largest e = -g/R^2 over contacts [-]
 };
 
 /// Plain vectors, not views: a group grows its arrays inside the parallel region, where a view may not be made.
 template <class V>
 struct GroupState {
   int n_grains = 0;
-  int n_pairs = 0;
   double local_damping = 0.3;
   std::vector<GrainLanes<V>> grains;
   std::vector<GrainShape<real_of<V>>> shapes;
   std::vector<int> row;  ///< pairs of grain i: row[i] .. row[i + 1]
-  std::vector<PairLanes<V>> pairs;  ///< the first n_pairs are in use
+  std::vector<PairLanes<V>> pairs;  ///< the first row.back() are in use
   std::vector<PairShape<real_of<V>>> pair_shapes;
   CellMotion<V> motion;
 };

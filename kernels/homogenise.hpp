@@ -14,7 +14,6 @@ struct Homogenised {
   SweepSums<V> sums;
   V tangent[6] = {V(0), V(0), V(0), V(0), V(0), V(0)};  ///< xxxx, xxyy, xxxy, yyyy, yyxy, xyxy [N m]
   V contacts = V(0);
-  V largest_overlap = V(0);  ///< largest e = -g/R^2
 };
 
 /// k s (x) s with s = sym(direction (x) branch) in Voigt form.
@@ -43,13 +42,13 @@ void homogenise_pair(Homogenised<V>& out, PairLanes<V>& pair, const PairShape<re
   add_stress(out.sums, act<Law>(pair, shape, at, still, zero, zero, zero, zero, radius_i), at);
 
   const V weight = Kokkos::Experimental::condition(touching, one, zero);
-  const V e = weight * (at.gap * V(-shape.inverse_sum_squared));
+  const V e = overlap_measure(at, shape);
   const V to_unit = distance_of(e, V(shape.sum_radii)).inverse_ratio * V(shape.inverse_sum);
   const V nx = at.branch_x * to_unit, ny = at.branch_y * to_unit;
   add_spring(out.tangent, weight * V(shape.normal_stiffness), nx, ny, at);
   add_spring(out.tangent, weight * V(shape.tangential_stiffness), -ny, nx, at);
   out.contacts = out.contacts + weight;
-  out.largest_overlap = larger(out.largest_overlap, e);
+  out.sums.largest_overlap = larger(out.sums.largest_overlap, e);
 }
 
 template <class Law, class V>

@@ -22,6 +22,12 @@ struct Mat2 {
   [[nodiscard]] Mat2 inverse() const { return (1.0 / det()) * Mat2{yy, -xy, -yx, xx}; }
 };
 
+/// |sym A|: the strain in a velocity gradient, without its rotation.
+[[nodiscard]] inline double symmetric_norm(const Mat2& a) {
+  const double shear = 0.5 * (a.xy + a.yx);
+  return std::sqrt(a.xx * a.xx + a.yy * a.yy + 2.0 * shear * shear);
+}
+
 inline constexpr Mat2 identity2{1, 0, 0, 1};
 
 /// exp(A) - I without cancellation for small A: A = s I + B with tr B = 0, B^2 = q I, q = -det B.

@@ -22,6 +22,31 @@ void Cell::nearest(double& dx, double& dy) const {
   dy -= h.yx * a + h.yy * b;
 }
 
+Mat2 reduced_lattice(Mat2 cell) {
+  constexpr int most_swaps = 1000;  // each but the last shortens a vector; a bound for cells that are no numbers
+  for (int k = 0; k < most_swaps; ++k) {
+    const double aa = cell.xx * cell.xx + cell.yx * cell.yx;
+    const double bb = cell.xy * cell.xy + cell.yy * cell.yy;
+    const double ab = cell.xx * cell.xy + cell.yx * cell.yy;
+    if (aa <= bb) {
+      const double n = std::nearbyint(ab / aa);
+      if (n == 0 || !std::isfinite(n)) break;
+      cell.xy -= n * cell.xx;
+      cell.yy -= n * cell.yx;
+    } else {
+      const double n = std::nearbyint(ab / bb);
+      if (n == 0 || !std::isfinite(n)) break;
+      cell.xx -= n * cell.xy;
+      cell.yx -= n * cell.yy;
+    }
+  }
+  return cell;
+}
+
+bool wide_enough(const Cell& cell, double largest_radius, double skin) {
+  return std::min(cell.height(0), cell.height(1)) > 2.0 * (2.0 * largest_radius + skin);
+}
+
 double Cell::height(int axis) const {
   const double row = axis == 0 ? std::hypot(inverse.xx, inverse.xy) : std::hypot(inverse.yx, inverse.yy);
   return 1.0 / row;
@@ -38,8 +63,9 @@ struct Level {
 
   Level(std::span<const double> positions, const std::vector<int>& grains, const Cell& cell, double largest, double skin) {
     const double width = 2.0 * largest + skin;
-    nx = std::max(1, static_cast<int>(cell.height(0) / width));
-    ny = std::max(1, static_cast<int>(cell.height(1) / width));
+    const double most = std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 1.0;  // more bins than grains find nothing
+    nx = static_cast<int>(std::clamp(cell.height(0) / width, 1.0, most));
+    ny = static_cast<int>(std::clamp(cell.height(1) / width, 1.0, most));
     start.assign(static_cast<std::size_t>(nx * ny) + 1, 0);
     member.resize(grains.size());
     for (const int i : grains) ++start[bin_of(positions, cell, i) + 1];

@@ -24,6 +24,12 @@ struct Cell {
   [[nodiscard]] double height(int axis) const;
 };
 
+/// The same lattice with its shortest vectors (Gauss' reduction): a cell never gets thin by shear alone, so shear is unlimited.
+[[nodiscard]] Mat2 reduced_lattice(Mat2 cell);
+
+/// Nearest images are unique for contacts: both heights exceed two contact distances of the largest grains.
+[[nodiscard]] bool wide_enough(const Cell& cell, double largest_radius, double skin);
+
 /// Keys (kernels/rve_batch.hpp, pair_key) in ascending order into `keys`.
 /// @param positions (grain, 2) in the cell [m]; @param radii (grain) [m]; @param skin [m]
 void find_candidates(std::span<const double> positions, std::span<const double> radii, const Cell& cell, double skin,

@@ -60,14 +60,18 @@ KOKKOS_FORCEINLINE_FUNCTION PairGeometry<V> geometry_of(const PairLanes<V>& pair
   return {bx, by, fused(dx, bx + pair.branch_x, fused(dy, by + pair.branch_y, pair.gap))};
 }
 
+/// e = -g/R^2 of a pair; 0 in lanes that do not touch: no overlap, no force, no history.
+template <class V, class real>
+KOKKOS_FORCEINLINE_FUNCTION V overlap_measure(const PairGeometry<V>& at, const PairShape<real>& shape) {
+  return Kokkos::Experimental::condition(at.gap < V(0), at.gap * V(-shape.inverse_sum_squared), V(0));
+}
+
 /// Law and forces of a pair that touches in at least one lane. (dw_x, dw_y) is w_j - w_i.
 template <class Law, class V, class real>
 KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShape<real>& shape, const PairGeometry<V>& at,
                                               const CellMotion<V>& cell, const V& dw_x, const V& dw_y, const V& spin_i,
                                               const V& spin_j, const V& radius_i) {
-  // A lane that does not touch gets e = 0: no overlap, no force, no history.
-  const V e = Kokkos::Experimental::condition(at.gap < V(0), at.gap * V(-shape.inverse_sum_squared), V(0));
-  const PairDistance<V> distance = distance_of(e, V(shape.sum_radii));
+  const PairDistance<V> distance = distance_of(overlap_measure(at, shape), V(shape.sum_radii));
   const V to_unit = distance.inverse_ratio * V(shape.inverse_sum);
   const V nx = at.branch_x * to_unit;
   const V ny = at.branch_y * to_unit;
@@ -171,7 +175,10 @@ void sweep_pairs(GroupState<V>& group, SweepSums<V>& sums) {
       gj.force_x = gj.force_x - action.force_x;
       gj.force_y = gj.force_y - action.force_y;
       gj.torque = gj.torque + action.torque_j;
-      if constexpr (mode == Sweep::measure) add_stress(sums, action, at);
+      if constexpr (mode == Sweep::measure) {
+        add_stress(sums, action, at);
+        sums.largest_overlap = larger(sums.largest_overlap, overlap_measure(at, shape));
+      }
     }
     if constexpr (mode == Sweep::measure) sums.force_squared = fused(fx, fx, fused(fy, fy, sums.force_squared));
     integrate(gi, shapes[i], cell, damping, fx, fy, torque);

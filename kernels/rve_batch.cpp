@@ -1,6 +1,7 @@
 #include "kernels/rve_batch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -30,7 +31,13 @@ double Packing::solid_area() const {
 
 double Packing::mean_mobility() const {
   double sum = 0;
-  for (const double r : radii) sum += mobility_of(material, r);
+  for (std::size_t i = 0; i < radii.size(); ++i) sum += mobility_of(material_of(i), radii[i]);
+  return sum / static_cast<double>(radii.size());
+}
+
+double Packing::mean_stiffness() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < radii.size(); ++i) sum += material_of(i).modulus * radii[i];
   return sum / static_cast<double>(radii.size());
 }
 
@@ -40,9 +47,15 @@ double mobility_of(const GrainMaterial& m, double radius) {
   return step_safety * step_safety * 4.0 / (neighbours * (kn + 2.0 * kt));
 }
 
-double rotational_mobility_of(const GrainMaterial& m, double radius) {
+double rotational_mobility_of(const GrainMaterial& m, double radius, double largest_radius) {
   const double kt = m.stiffness_ratio * m.modulus * radius;
-  return step_safety * step_safety * 4.0 / (neighbours * (4.0 + 2.0 * m.rolling_stiffness) * kt * radius * radius);
+  const double ratio = largest_radius / radius;
+  const double rolling = m.rolling_stiffness * 2.0 * ratio * ratio / (1.0 + ratio);  // k_r / (k_t r^2) on the largest grain
+  return step_safety * step_safety * 4.0 / (neighbours * (4.0 + 2.0 * rolling) * kt * radius * radius);
+}
+
+double Packing::inertial_time(double pressure) const {
+  return 1.0 / std::sqrt(mean_mobility() * pressure * thickness);
 }
 
 RveStates::RveStates(std::string_view label, std::size_t n, int grains) {
@@ -54,6 +67,16 @@ RveStates::RveStates(std::string_view label, std::size_t n, int grains) {
   contact_count = Array<int*>(name("contact_count"), n);
   contact_key = Array<std::uint32_t**>(name("contact_key"), n, g * contacts_per_grain);
   contact_history = Array<double** [2]>(name("contact_history"), n, g * contacts_per_grain);
+}
+
+void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size_t grains) {
+  const auto contacts = static_cast<std::size_t>(from.contact_count(rve));
+  std::copy_n(&from.position(rve, 0, 0), 2 * grains, &to.position(rve, 0, 0));
+  std::copy_n(&from.rotation(rve, 0), grains, &to.rotation(rve, 0));
+  std::copy_n(&from.cell(rve, 0), 4, &to.cell(rve, 0));
+  to.contact_count(rve) = from.contact_count(rve);
+  std::copy_n(&from.contact_key(rve, 0), contacts, &to.contact_key(rve, 0));
+  std::copy_n(&from.contact_history(rve, 0, 0), 2 * contacts, &to.contact_history(rve, 0, 0));
 }
 
 const char* name_of(RveStatus s) {
@@ -71,8 +94,20 @@ const char* name_of(RveStatus s) {
 RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of) {
   int grains = 0;
   for (const Packing& p : packings) {
+    const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
+    if (!positive(p.thickness) || !std::all_of(p.radii.begin(), p.radii.end(), positive)) {
+      throw std::invalid_argument("radii and thickness of a packing must be positive numbers");
+    }
     if (p.size() < 2 || p.size() > max_grains) throw std::invalid_argument("a packing needs 2 to 65535 grains");
+    const bool classes_fit = std::all_of(p.class_of.begin(), p.class_of.end(),
+                                         [&](std::uint8_t c) { return c < p.materials.size(); });
+    if (p.materials.empty() || !classes_fit || (!p.class_of.empty() && p.class_of.size() != p.radii.size())) {
+      throw std::invalid_argument("a packing's grain classes do not fit its grains");
+    }
     grains = std::max(grains, p.size());
+  }
+  for (const int p : packing_of) {
+    if (p < 0 || p >= static_cast<int>(packings.size())) throw std::invalid_argument("an RVE names no packing");
   }
   RveBatch batch;
   batch.packings = std::move(packings);
@@ -81,13 +116,15 @@ RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of) 
   batch.committed = RveStates("committed", n, grains);
   batch.trial = RveStates("trial", n, grains);
   batch.candidates.keys.resize(n);
-  batch.candidates.valid.assign(n, 0);
+  forget_candidates(batch);
   return batch;
 }
 
 void commit(RveBatch& batch) {
   std::swap(batch.committed, batch.trial);
-  std::fill(batch.candidates.valid.begin(), batch.candidates.valid.end(), 0);
+  forget_candidates(batch);
 }
+
+void forget_candidates(RveBatch& batch) { batch.candidates.skin.assign(batch.size(), -1.0); }
 
 }  // namespace voussoir::kernels

@@ -5,6 +5,7 @@
 /// Layout (RVE, grain, component), LayoutRight: one thread walks one group, one RVE is contiguous. State is double, whatever
 /// the lanes compute in, and complete: neighbour lists derive from it.
 
+#include <Kokkos_Core.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -17,21 +18,31 @@ namespace voussoir::kernels {
 
 /// What all RVEs cloned from one packing share.
 struct Packing {
-  std::vector<double> radii;  ///< [m]
-  GrainMaterial material;
+  std::vector<double> radii;                   ///< [m]
+  std::vector<GrainMaterial> materials = std::vector<GrainMaterial>(1);  ///< the classes of grains (Table 1)
+  std::vector<std::uint8_t> class_of;          ///< by grain, index into `materials`; empty: all of class 0
   double thickness = 0.1;      ///< out of plane [m]
   double local_damping = 0.3;  ///< Cundall's lambda [-]
 
   [[nodiscard]] int size() const { return static_cast<int>(radii.size()); }
+  [[nodiscard]] const GrainMaterial& material_of(std::size_t grain) const {
+    return class_of.empty() ? materials[0] : materials[class_of[grain]];
+  }
   [[nodiscard]] double mean_diameter() const;
   [[nodiscard]] double largest_radius() const;
   [[nodiscard]] double solid_area() const;     ///< sum of pi r^2 [m^2]
   [[nodiscard]] double mean_mobility() const;  ///< mean of dt^2/m [m/N], see kernels/README.md "Mobilities"
+  [[nodiscard]] double mean_stiffness() const;  ///< mean of E r [N/m], the normal stiffness of a grain against its like
+
+  /// Inertial number per strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| * inertial_time(p) for |D| in
+  /// strain per step. @param pressure [Pa]
+  [[nodiscard]] double inertial_time(double pressure) const;
 };
 
-/// dt^2/m and dt^2/J of a grain of radius r, see kernels/README.md "Mobilities".
+/// dt^2/m [m/N] and dt^2/J [rad/(N m)] of a grain, see kernels/README.md "Mobilities".
+/// @param largest_radius of the packing: a small grain that rolls on a large one is the stiffest rotation
 [[nodiscard]] double mobility_of(const GrainMaterial& material, double radius);
-[[nodiscard]] double rotational_mobility_of(const GrainMaterial& material, double radius);
+[[nodiscard]] double rotational_mobility_of(const GrainMaterial& material, double radius, double largest_radius);
 
 /// States of `n` RVEs of at most `grains` grains.
 struct RveStates {
@@ -60,6 +71,7 @@ struct RveStates {
 inline constexpr int max_grains = 65535;  ///< indices of a pair fit one word
 
 /// How an evaluation of one RVE ended. The last three make the increment unusable; `open` and `step_limit` are reported.
+/// `neighbour_overflow` also stands for a cell too narrow for its largest grains.
 enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, overlap_limit, not_finite };
 
 [[nodiscard]] constexpr bool is_failure(RveStatus s) { return s >= RveStatus::neighbour_overflow; }
@@ -82,7 +94,7 @@ struct RveReport {
 /// Candidate contacts of a committed state, kept between evaluations; derived, never stored.
 struct CandidateCache {
   std::vector<std::vector<std::uint32_t>> keys;
-  std::vector<char> valid;
+  std::vector<double> skin;  ///< the skin they were found with [m]; negative: none
 };
 
 struct RveBatch {
@@ -96,10 +108,16 @@ struct RveBatch {
   [[nodiscard]] const Packing& packing(std::size_t rve) const { return packings[static_cast<std::size_t>(packing_of[rve])]; }
 };
 
+/// One RVE's state from one set of states to another of the same shape.
+void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size_t grains);
+
 /// Room for RVEs of the given packings; states are to be filled by the caller.
 [[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of);
 
-/// The trial states become the committed ones.
+/// The trial states become the committed ones; an RVE whose evaluation failed keeps its committed state.
 void commit(RveBatch& batch);
+
+/// To be called after `committed` was written from outside.
+void forget_candidates(RveBatch& batch);
 
 }  // namespace voussoir::kernels

@@ -7,7 +7,7 @@ namespace voussoir::kernels {
 
 enum class Precision { float32, float64 };
 
-/// Numerical settings of a run. Defaults and what they cost: docs of the case file's [engine] table.
+/// Numerical settings of a run. The case file's [engine] table sets them for a mesh; packings are made with these.
 struct EngineSettings {
   Precision precision = Precision::float32;
   double skin = 0.08;              ///< list skin / mean diameter [-]
@@ -16,6 +16,7 @@ struct EngineSettings {
   double overlap_limit = 0.15;     ///< overlap / (r_i + r_j) at which an RVE is given up [-]
   int look_interval = 16;          ///< steps between looks at stress and unbalanced force
   int list_interval = 8;           ///< steps between looks at displacements
+  int guard_interval = 256;        ///< steps between looks at overlaps while straining
 };
 
 /// Given motion of one RVE: F_rel reached in `strain_steps` equal steps, then at most `hold_cap` steps of rest.

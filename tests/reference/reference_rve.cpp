@@ -105,8 +105,9 @@ double damped(double force, double velocity, double a, double lambda)
 void accelerate(Rve& rve, const Forces& sum, double rigid_spin)
 {
   const double lambda = rve.material.damping;
+  const double largest = *std::max_element(rve.radii.begin(), rve.radii.end());
   for (std::size_t i = 0; i < rve.positions.size(); ++i) {
-    const auto [a, ar] = mobility(rve.material, rve.radii[i]);
+    const auto [a, ar] = mobility(rve.material, rve.radii[i], largest);
     const Vec2 f = sum.force[i];
     const double torque = sum.torque[i];
     Vec2& w = rve.velocities[i];
@@ -167,13 +168,13 @@ PairStiffness pair_stiffness(const Material& material, double radius_i, double r
   return {kn, kt, material.rolling_stiffness * kt * radius_i * radius_j};
 }
 
-Mobility mobility(const Material& material, double radius)
+Mobility mobility(const Material& material, double radius, double largest_radius)
 {
   const double kn = material.modulus * radius;
   const double kt = material.stiffness_ratio * kn;
   const double c2 = material.step_safety * material.step_safety;
-  return {4.0 * c2 / (6.0 * kn + 12.0 * kt),
-          4.0 * c2 / ((24.0 * kt + 12.0 * material.rolling_stiffness * kt) * radius * radius)};
+  const double worst_rolling = pair_stiffness(material, radius, largest_radius).rolling;  // beta kt r^2 against its like
+  return {4.0 * c2 / (6.0 * kn + 12.0 * kt), 4.0 * c2 / (24.0 * kt * radius * radius + 12.0 * worst_rolling)};
 }
 
 std::vector<Contact> contacts(const Rve& rve)
@@ -240,8 +241,9 @@ double energy(const Rve& rve)
     sum += 0.5 * c.tangential_force * c.tangential_force / c.tangential_stiffness;
     if (kr > 0) sum += 0.5 * c.moment * c.moment / kr;
   }
+  const double largest = *std::max_element(rve.radii.begin(), rve.radii.end());
   for (std::size_t i = 0; i < rve.velocities.size(); ++i) {
-    const auto [a, ar] = mobility(rve.material, rve.radii[i]);
+    const auto [a, ar] = mobility(rve.material, rve.radii[i], largest);
     sum += 0.5 * dot(rve.velocities[i], rve.velocities[i]) / a + 0.5 * rve.spins[i] * rve.spins[i] / ar;
   }
   return sum;

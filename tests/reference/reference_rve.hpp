@@ -66,7 +66,8 @@ PairStiffness pair_stiffness(const Material& material, double radius_i, double r
 struct Mobility {
   double translation, rotation;
 };
-Mobility mobility(const Material& material, double radius);
+/// A small grain that rolls on the packing's largest one is the stiffest rotation.
+Mobility mobility(const Material& material, double radius, double largest_radius);
 
 /// Contacts at the current positions with the law called once with zero motion (as at the end of an evaluation); the state
 /// is not changed. Ordered by (i, j).

@@ -132,8 +132,8 @@ TEST(ReferencePair, ForcesAndTorquesOnBothGrains)
   const double ft = 1.5, m = 2e-3;
   rve.histories[{0, 1}] = {.tangential = ft, .moment = m};
   step(rve, Mat2{}, Mat2{});
-  const auto [ai, ari] = mobility(rve.material, ri);
-  const auto [aj, arj] = mobility(rve.material, rj);
+  const auto [ai, ari] = mobility(rve.material, ri, rj);
+  const auto [aj, arj] = mobility(rve.material, rj, rj);
   EXPECT_NEAR(rve.velocities[0].x, -ai * fn, 1e-8 * ai * fn);
   EXPECT_NEAR(rve.velocities[0].y, ai * ft, 1e-8 * ai * fn);
   EXPECT_NEAR(rve.velocities[1].x, aj * fn, 1e-8 * aj * fn);
@@ -144,9 +144,11 @@ TEST(ReferencePair, ForcesAndTorquesOnBothGrains)
 
 TEST(ReferencePair, MobilitiesByHand)
 {
-  const auto [a, ar] = mobility(Material{}, 2e-3);  // k_n = 6e6, k_t = 3e6, beta = 1, c = 0.9
+  const auto [a, ar] = mobility(Material{}, 2e-3, 2e-3);  // k_n = 6e6, k_t = 3e6, beta = 1, c = 0.9
   EXPECT_NEAR(a, 0.81 * 4 / (36e6 + 36e6), 1e-20);
   EXPECT_NEAR(ar, 0.81 * 4 / ((72e6 + 36e6) * 4e-6), 1e-14);
+  const double on_largest = 2 * 1.5e9 * 2e-3 * 40e-3 / 42e-3 * 2e-3 * 40e-3;  // on a grain of 20 times its size
+  EXPECT_NEAR(mobility(Material{}, 2e-3, 40e-3).rotation, 0.81 * 4 / (72e6 * 4e-6 + 12 * on_largest), 1e-14);
 }
 
 TEST(ReferencePair, CoulombAndRollingCaps)
@@ -181,7 +183,7 @@ TEST(ReferencePair, LocalDampingCutsWorkDoneAndRaisesWorkAgainst)
     rve.velocities = {{0, 0}, {speed, 0}};
     rve.spins = {0, 0};
     step(rve, Mat2{}, Mat2{});
-    const double a = mobility(rve.material, rj).translation;
+    const double a = mobility(rve.material, rj, rj).translation;
     const double now = kn * (overlap - speed);
     const double gain = (rve.velocities[1].x - speed) / a;
     EXPECT_NEAR(gain, speed > 0 ? 0.7 * now : 1.3 * now, 1e-7 * fn);
@@ -193,8 +195,8 @@ TEST(ReferencePair, MomentumAndAngularMomentumOfACollision)
   Rve rve = two_grains(ri, rj, 1e-8, 0.4, 0.05, undamped());
   rve.velocities = {{3e-7, 1e-7}, {-2e-7, -1e-7}};
   rve.spins = {5e-5, -1e-5};
-  const auto [ai, ari] = mobility(rve.material, ri);
-  const auto [aj, arj] = mobility(rve.material, rj);
+  const auto [ai, ari] = mobility(rve.material, ri, rj);
+  const auto [aj, arj] = mobility(rve.material, rj, rj);
   const auto momentum = [&] { return (1 / ai) * rve.velocities[0] + (1 / aj) * rve.velocities[1]; };
   const auto spin = [&] {
     return dot(left_of(rve.positions[0]), rve.velocities[0]) / ai + dot(left_of(rve.positions[1]), rve.velocities[1]) / aj +

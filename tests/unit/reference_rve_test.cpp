@@ -197,7 +197,7 @@ TEST_F(ReferencePacking, MomentumIsConservedWithoutDamping)
   const auto momentum = [&rve] {
     Vec2 sum;
     for (std::size_t i = 0; i < rve.radii.size(); ++i) {
-      sum = sum + (1 / mobility(rve.material, rve.radii[i]).translation) * rve.velocities[i];
+      sum = sum + (1 / mobility(rve.material, rve.radii[i], rve.radii[i]).translation) * rve.velocities[i];
     }
     return sum;
   };

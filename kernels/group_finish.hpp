@@ -1,0 +1,104 @@
+#pragma once
+/// The end of a group: stress, tangent and report of each lane, and its trial state.
+
+#include <algorithm>
+#include <span>
+
+#include "kernels/group_run.hpp"
+
+namespace voussoir::kernels {
+
+/// The sum of everything an answer is made of: finite if and only if all of it is.
+template <class Run>
+[[nodiscard]] double sum_of_answer(const Run& run, std::size_t l, const RveReport& report) {
+  double all = volume_of(run, l);
+  for (const double s : report.stress) all += s;
+  for (const double d : report.tangent) all += d;
+  for (const auto& g : run.group.grains) all += static_cast<double>(g.u_x[l] + g.u_y[l] + g.rotation[l]);
+  return all;
+}
+
+template <class Run>
+void fill_report(const Run& run, std::size_t l, const Homogenised<typename Run::Value>& h, RveReport& report) {
+  const double v = volume_of(run, l);
+  const double stress[4] = {h.sums.stress_xx[l] / v, h.sums.stress_xy[l] / v, h.sums.stress_yx[l] / v,
+                            h.sums.stress_yy[l] / v};
+  std::copy_n(stress, 4, report.stress);
+  for (std::size_t k = 0; k < 6; ++k) report.tangent[k] = static_cast<double>(h.tangent[k][l]) / v;
+  report.contacts = static_cast<int>(h.contacts[l]);
+  report.largest_overlap = relative_overlap(static_cast<double>(h.sums.largest_overlap[l]));
+  const double p = std::max(report.pressure(), run.settings.pressure_floor);
+  report.inertial_number = run.lanes[l].drive.strain_rate() * run.packing->inertial_time(p);
+  if (!std::isfinite(sum_of_answer(run, l, report)) || !(v > 0)) {
+    report.status = RveStatus::not_finite;
+  } else if (!(report.largest_overlap <= run.settings.overlap_limit)) {
+    report.status = RveStatus::overlap_limit;
+  } else if (report.contacts == 0) {
+    report.status = RveStatus::open;
+  }
+}
+
+/// Contacts at the final positions with the history that is kept.
+template <class Run>
+void store_contacts(const Run& run, std::size_t l, std::size_t rve) {
+  RveStates& to = run.batch->trial;
+  int count = 0;
+  for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
+    const auto& gi = run.group.grains[i];
+    for (auto p = static_cast<std::size_t>(run.group.row[i]); p < static_cast<std::size_t>(run.group.row[i + 1]); ++p) {
+      const int j = run.group.pair_shapes[p].other;
+      const auto& gj = run.group.grains[static_cast<std::size_t>(j)];
+      const auto& pair = run.group.pairs[p];
+      const auto at = geometry_of(pair, run.group.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
+      if (!(at.gap[l] < 0)) continue;
+      to.contact_key(rve, count) = pair_key(static_cast<int>(i), j);
+      to.contact_history(rve, count, 0) = static_cast<double>(pair.tangential[l]);
+      to.contact_history(rve, count, 1) = static_cast<double>(pair.moment[l]);
+      ++count;
+    }
+  }
+  to.contact_count(rve) = count;
+}
+
+/// The lane's final configuration as the RVE's trial state. False where it cannot be stored.
+template <class Run>
+[[nodiscard]] bool store(Run& run, std::size_t l, const RveReport& report) {
+  const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
+  auto& list = run.lists[l];
+  RveStates& to = run.batch->trial;
+  move_positions(run, l, list.position);
+  list.cell = (identity2 + run.lanes[l].f_minus_i) * list.cell;
+  if (report.contacts > to.contact_capacity() || !reduce_cell(run, list)) return false;
+  const double h[4] = {list.cell.xx, list.cell.xy, list.cell.yx, list.cell.yy};
+  std::copy_n(h, 4, &to.cell(rve, 0));
+  std::copy(list.position.begin(), list.position.end(), &to.position(rve, 0, 0));
+  for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
+    to.rotation(rve, i) = run.batch->committed.rotation(rve, i) + run.lanes[l].rotation +
+                          static_cast<double>(run.group.grains[i].rotation[l]);
+  }
+  store_contacts(run, l, rve);
+  return true;
+}
+
+/// The group's answers. An RVE that failed keeps its committed state as trial state.
+template <class Law, class Run>
+void finish(Run& run, std::span<RveReport> reports) {
+  for (std::size_t l = 0; l < Run::width; ++l) round_motion(run, l);
+  const auto sums = homogenise<Law>(run.group);
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    const auto& lane = run.lanes[l];
+    if (lane.rve < 0) continue;
+    RveReport report;
+    report.status = lane.status;
+    report.steps = lane.steps;
+    report.unbalanced = lane.unbalanced;
+    report.largest_overlap = lane.overlap;
+    if (!is_failure(report.status)) fill_report(run, l, sums, report);
+    if (!is_failure(report.status) && !store(run, l, report)) report.status = RveStatus::neighbour_overflow;
+    const auto rve = static_cast<std::size_t>(lane.rve);
+    if (is_failure(report.status)) copy_state(run.batch->committed, run.batch->trial, rve, run.group.grains.size());
+    reports[rve] = report;
+  }
+}
+
+}  // namespace voussoir::kernels

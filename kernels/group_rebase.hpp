@@ -1,0 +1,96 @@
+#pragma once
+/// Keeping neighbour lists valid while the lanes move: each lane by its own displacements, on its own steps.
+
+#include "kernels/group_run.hpp"
+
+namespace voussoir::kernels {
+
+/// Largest displacement and velocity of a group's grains, lane by lane.
+template <class V>
+struct Motion {
+  V largest = V(0), fastest = V(0);  ///< squared [m^2], [m^2/step^2]
+  V finite = V(0);                   ///< 0, or NaN once a displacement is not finite
+};
+
+template <class V>
+[[nodiscard]] Motion<V> motion_of(const GroupState<V>& group) {
+  Motion<V> m;
+  for (const GrainLanes<V>& g : group.grains) {
+    const V squared = fused(g.u_x, g.u_x, g.u_y * g.u_y);
+    m.largest = larger(m.largest, squared);
+    m.fastest = larger(m.fastest, fused(g.w_x, g.w_x, g.w_y * g.w_y));
+    m.finite = fused(squared, V(0), m.finite);
+  }
+  return m;
+}
+
+/// The lane's current configuration becomes its reference; histories are kept.
+template <class Run>
+void rebase(Run& run, std::size_t l) {
+  auto& list = run.lists[l];
+  auto& lane = run.lanes[l];
+  run.kept.clear();
+  for (const auto& p : list.pairs) {
+    if (p.tangential != 0 || p.moment != 0) {
+      run.kept.push_back({p.key, static_cast<double>(p.tangential), static_cast<double>(p.moment)});
+    }
+  }
+  move_positions(run, l, list.position);
+  list.cell = (identity2 + lane.f_minus_i) * list.cell;
+  lane.f_minus_i = Mat2{};
+  for (auto& g : run.group.grains) g.u_x[l] = g.u_y[l] = 0;
+  if (!reduce_cell(run, list)) return discard(run, l, RveStatus::neighbour_overflow);
+  find_candidates(list.position, run.packing->radii, Cell(list.cell), run.skin, run.keys);
+  list_pairs(list, run.packing->radii, run.keys, run.kept);
+}
+
+/// Lists of the stale lanes anew, and the union of all.
+template <class Run>
+void rebuild(Run& run, const std::array<bool, Run::width>& stale) {
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    if (run.lanes[l].rve < 0 || (stale[l] && !run.lanes[l].running)) continue;  // empty, or just discarded
+    gather_lane(run.group, l, run.lists[l].pairs);
+    if (stale[l]) rebase(run, l);
+  }
+  for (std::size_t l = 0; l < Run::width; ++l) round_motion(run, l);
+  run.builder.build(run.group, run.lists, *run.packing);
+}
+
+/// Whether the lane's grains may meet someone it does not list before its next look: with what comes until then,
+/// 2 max|u| + |F - I| (R + skin) reaches the skin. A lane that is lost is discarded, before any binning.
+template <class Run>
+[[nodiscard]] bool is_stale(Run& run, std::size_t l, const Motion<typename Run::Value>& m, int step) {
+  auto& lane = run.lanes[l];
+  const double reach = 2.0 * run.packing->largest_radius() + run.skin;
+  const double u = std::sqrt(static_cast<double>(m.largest[l]));
+  const double per_step = 2.0 * std::sqrt(static_cast<double>(m.fastest[l])) + lane.rate.norm() * reach;
+  const double moved = 2.0 * u + lane.f_minus_i.norm() * reach;
+  const bool finite = m.finite[l] == 0 && std::isfinite(moved + per_step);
+  // Fast grains are looked at every step.
+  const int interval = per_step * run.settings.list_interval > 0.25 * run.skin ? 1 : run.settings.list_interval;
+  lane.next_list_check = step + interval;
+  if (finite && moved + interval * per_step < run.skin) return false;
+  lane.steps = step;
+  if (!finite) discard(run, l, RveStatus::not_finite);
+  if (finite && u > run.packing->mean_diameter()) discard(run, l, RveStatus::overlap_limit);
+  return true;
+}
+
+template <class Run>
+void check_lists(Run& run, int step) {
+  bool due = false;
+  for (const auto& lane : run.lanes) due = due || (lane.running && step >= lane.next_list_check);
+  if (!due) return;
+  const auto motion = motion_of(run.group);
+  std::array<bool, Run::width> stale{};
+  bool any = false;
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    const auto& lane = run.lanes[l];
+    if (!lane.running || step < lane.next_list_check) continue;
+    stale[l] = is_stale(run, l, motion, step);
+    any = any || stale[l];
+  }
+  if (any) rebuild(run, stale);
+}
+
+}  // namespace voussoir::kernels

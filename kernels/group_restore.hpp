@@ -1,0 +1,82 @@
+#pragma once
+/// Committed states into a group's lanes.
+
+#include <numeric>
+#include <span>
+
+#include "kernels/group_run.hpp"
+
+namespace voussoir::kernels {
+
+/// The committed state of the lane's RVE as the lane's reference. False, with the reason as status, for a lane that cannot run;
+/// it stays empty.
+template <class Run>
+[[nodiscard]] bool restore_lane(Run& run, std::size_t l) {
+  auto& lane = run.lanes[l];
+  auto& list = run.lists[l];
+  const auto rve = static_cast<std::size_t>(lane.rve);
+  const RveStates& from = run.batch->committed;
+  const std::size_t n = run.group.grains.size();
+  list.cell = {from.cell(rve, 0), from.cell(rve, 1), from.cell(rve, 2), from.cell(rve, 3)};
+  list.position.assign(&from.position(rve, 0, 0), &from.position(rve, 0, 0) + 2 * n);
+  const double sum = std::accumulate(list.position.begin(), list.position.end(), list.cell.norm());
+  if (!lane.drive.possible() || !std::isfinite(sum) || !(list.cell.det() > 0)) {
+    lane.status = RveStatus::not_finite;
+    return false;
+  }
+  if (!reduce_cell(run, list)) {
+    lane.status = RveStatus::neighbour_overflow;
+    return false;
+  }
+  auto& cached = run.batch->candidates.keys[rve];
+  if (run.batch->candidates.skin[rve] != run.skin) {
+    find_candidates(list.position, run.packing->radii, Cell(list.cell), run.skin, cached);
+    run.batch->candidates.skin[rve] = run.skin;
+  }
+  run.kept.clear();
+  for (std::size_t c = 0; c < static_cast<std::size_t>(from.contact_count(rve)); ++c) {
+    run.kept.push_back({from.contact_key(rve, c), from.contact_history(rve, c, 0), from.contact_history(rve, c, 1)});
+  }
+  list_pairs(list, run.packing->radii, cached, run.kept);
+  set_rate(lane, 0);
+  return true;
+}
+
+/// The grains' constants and zero motion, for all lanes.
+template <class Run>
+void restore_grains(Run& run) {
+  using V = typename Run::Value;
+  using real = typename Run::real;
+  const Packing& packing = *run.packing;
+  const std::size_t n = packing.radii.size();
+  run.group.n_grains = packing.size();
+  run.group.local_damping = packing.local_damping;
+  run.group.grains.assign(n, GrainLanes<V>{V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0)});
+  run.group.shapes.resize(n);
+  run.group.row.resize(n + 1);
+  const double largest = packing.largest_radius();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double r = packing.radii[i];
+    run.group.shapes[i] = {static_cast<real>(r), static_cast<real>(mobility_of(packing.material_of(i), r)),
+                           static_cast<real>(rotational_mobility_of(packing.material_of(i), r, largest))};
+  }
+}
+
+template <class Run>
+void restore(Run& run, const GroupMembers<static_cast<int>(Run::width)>& members,
+             std::span<const typename Run::Drive::Request> requests) {
+  run.skin = run.settings.skin * run.packing->mean_diameter();
+  restore_grains(run);
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    run.lanes[l] = {};
+    run.lists[l].pairs.clear();
+    if (members[l] < 0) continue;
+    run.lanes[l].rve = members[l];
+    run.lanes[l].drive =
+        typename Run::Drive(requests[static_cast<std::size_t>(members[l])], *run.packing, run.settings);
+    run.lanes[l].running = restore_lane(run, l);
+  }
+  run.builder.build(run.group, run.lists, *run.packing);
+}
+
+}  // namespace voussoir::kernels

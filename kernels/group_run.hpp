@@ -1,0 +1,128 @@
+#pragma once
+/// A group on its way from committed to trial states: its lanes, their lists and the working arrays. One per worker, reused.
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "kernels/drives.hpp"
+#include "kernels/group_lists.hpp"
+#include "kernels/homogenise.hpp"
+
+namespace voussoir::kernels {
+
+/// Members of a group by lane; -1 is an empty lane. All share one packing.
+template <int width>
+using GroupMembers = std::array<int, static_cast<std::size_t>(width)>;
+
+/// One RVE of the group.
+template <class Drive>
+struct Lane {
+  int rve = -1;  ///< -1: empty
+  bool running = false;
+  RveStatus status = RveStatus::converged;
+  int steps = 0;
+  int next_list_check = 0;  ///< step of the lane's next look at displacements
+  double unbalanced = 0;
+  double overlap = 0;  ///< largest at the last measuring step [-]
+  Drive drive;
+  Mat2 rate;            ///< velocity gradient per step of the coming motion
+  Mat2 e;               ///< exp(rate) - I
+  Mat2 f_minus_i;       ///< since the last rebase
+  double rotation = 0;  ///< sum of W per step since the committed state [rad]
+};
+
+template <class V, class DriveType>
+struct GroupRun {
+  using Value = V;
+  using Drive = DriveType;
+  using real = real_of<V>;
+  static constexpr std::size_t width = static_cast<std::size_t>(lane_count<V>);
+
+  RveBatch* batch = nullptr;
+  const Packing* packing = nullptr;
+  EngineSettings settings;
+  double skin = 0;  ///< [m]
+  std::array<Lane<Drive>, width> lanes;
+  std::array<LaneList<real>, width> lists;
+  GroupState<V> group;
+  UnionBuilder<V> builder;
+  std::vector<std::uint32_t> keys;  ///< scratch of a rebase
+  std::vector<KeptContact> kept;    ///< scratch of a restore or rebase
+};
+
+/// Current volume of a lane's cell [m^3].
+template <class Run>
+[[nodiscard]] double volume_of(const Run& run, std::size_t l) {
+  return ((identity2 + run.lanes[l].f_minus_i) * run.lists[l].cell).det() * run.packing->thickness;
+}
+
+/// overlap / (r_i + r_j) from e = -g/R^2.
+[[nodiscard]] inline double relative_overlap(double e) { return 1.0 - std::sqrt(1.0 - std::min(1.0, e)); }
+
+/// The lane's velocity gradient of the motion to `step`.
+template <class Drive>
+void set_rate(Lane<Drive>& lane, int step) {
+  const Mat2 rate = lane.drive.rate(step);
+  if (rate == lane.rate) return;
+  lane.rate = rate;
+  lane.e = exp_minus_identity(rate);
+}
+
+/// The lane's numbers of the cell's motion, rounded for the sweep.
+template <class Run>
+void round_motion(Run& run, std::size_t l) {
+  using real = typename Run::real;
+  auto& m = run.group.motion;
+  const auto& lane = run.lanes[l];
+  m.f_xx[l] = static_cast<real>(lane.f_minus_i.xx);
+  m.f_xy[l] = static_cast<real>(lane.f_minus_i.xy);
+  m.f_yx[l] = static_cast<real>(lane.f_minus_i.yx);
+  m.f_yy[l] = static_cast<real>(lane.f_minus_i.yy);
+  m.e_xx[l] = static_cast<real>(lane.e.xx);
+  m.e_xy[l] = static_cast<real>(lane.e.xy);
+  m.e_yx[l] = static_cast<real>(lane.e.yx);
+  m.e_yy[l] = static_cast<real>(lane.e.yy);
+  m.rotation[l] = static_cast<real>(0.5 * (lane.rate.yx - lane.rate.xy));
+  m.alive[l] = lane.running ? real(1) : real(0);
+}
+
+/// The lane stands still from here on: nothing that later steps do can change it.
+template <class Run>
+void freeze(Run& run, std::size_t l, RveStatus status) {
+  run.lanes[l].running = false;
+  run.lanes[l].status = status;
+  for (auto& g : run.group.grains) g.w_x[l] = g.w_y[l] = g.spin[l] = 0;
+}
+
+/// The lane is given up: its numbers leave the group.
+template <class Run>
+void discard(Run& run, std::size_t l, RveStatus status) {
+  freeze(run, l, status);
+  for (auto& g : run.group.grains) g.u_x[l] = g.u_y[l] = g.force_x[l] = g.force_y[l] = g.torque[l] = 0;
+  run.lanes[l].f_minus_i = Mat2{};
+  run.lists[l].pairs.clear();
+}
+
+/// Keeps the cell as wide as its lattice allows (a sheared cell flips back, with the same images); false when nearest images
+/// are not unique even so.
+template <class Run>
+[[nodiscard]] bool reduce_cell(const Run& run, LaneList<typename Run::real>& list) {
+  list.cell = reduced_lattice(list.cell);
+  const Cell cell(list.cell);
+  for (std::size_t i = 0; 2 * i < list.position.size(); ++i) cell.wrap(list.position[2 * i], list.position[2 * i + 1]);
+  return wide_enough(cell, run.packing->largest_radius(), run.skin);
+}
+
+/// x = F X + u of a lane, in place.
+template <class Run>
+void move_positions(const Run& run, std::size_t l, std::vector<double>& position) {
+  const Mat2 f = identity2 + run.lanes[l].f_minus_i;
+  for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
+    const double px = position[2 * i], py = position[2 * i + 1];
+    position[2 * i] = f.xx * px + f.xy * py + static_cast<double>(run.group.grains[i].u_x[l]);
+    position[2 * i + 1] = f.yx * px + f.yy * py + static_cast<double>(run.group.grains[i].u_y[l]);
+  }
+}
+
+}  // namespace voussoir::kernels
