@@ -13,7 +13,7 @@ FIGURES = ["settlement_troughs.png", "displacement.png", "deviatoric_strain.png"
 ONE_PACKING = ["packing.candidates=1", "packing.folder=packings"]
 RUNS = {
     "tunnel_elastic": ([], (), FIGURES),
-    "tunnel_quick": ([*ONE_PACKING, "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m",
+    "tunnel_quick": ([*ONE_PACKING, "packing.seed=7", "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m",
                       "gravity.uniform_step=0.1", "volume_loss.total=1 %", "volume_loss.increments=4"],
                      ("load_parameter", "area_loss", "crown_settlement", "surface_settlement"),
                      [*FIGURES, "void_ratio.png", "grain_rotation.png"]),
