@@ -12,7 +12,8 @@
 namespace voussoir::host {
 namespace {
 
-constexpr std::array<std::pair<CaseKind, const char*>, 4> kind_names{{{CaseKind::pack, "pack"},
+constexpr std::array<std::pair<CaseKind, const char*>, 5> kind_names{{{CaseKind::pack, "pack"},
+                                                                      {CaseKind::biaxial, "biaxial"},
                                                                       {CaseKind::probe, "probe"},
                                                                       {CaseKind::column, "column"},
                                                                       {CaseKind::tunnel, "tunnel"}}};
@@ -33,6 +34,7 @@ void read_grain_tables(const io::Table& root, Case& input) {
   input.packing = read_packing(root.table("packing"));
   input.engine = read_engine(root.table("engine"));
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
+  if (input.kind == CaseKind::biaxial) input.biaxial = read_biaxial(root.table("biaxial"));
 }
 
 void read_ground_tables(const io::Table& root, Case& input) {

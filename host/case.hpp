@@ -10,7 +10,7 @@
 
 namespace voussoir::host {
 
-enum class CaseKind { pack, probe, column, tunnel };
+enum class CaseKind { pack, probe, biaxial, column, tunnel };
 enum class MaterialKind { grains, linear_elastic };
 enum class Precision { single_precision, double_precision };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
@@ -36,6 +36,7 @@ struct PackingCase {
   std::vector<std::int64_t> seeds;      ///< the seeds to make (kind = pack); empty: those of seed and candidates
   int candidates = 1;                   ///< seeds tried; the one with the least |tau_xy|/sigma_yy is taken
   bool mirrored = true;                 ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
+  std::filesystem::path file;           ///< NAME_particles.csv of another code's packing; empty: made from the recipe
   std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
   double consolidation_friction = 0.0;  ///< friction coefficient mu_t during consolidation [-]
   double pressure = 1.0e3;              ///< isotropic pressure of the finished packing [Pa]
@@ -116,6 +117,15 @@ struct ProbeCase {
   double strain = 1.0e-4;       ///< size of each probe [-]
 };
 
+/// [biaxial] Drained biaxial tests: y is compressed at a constant rate, sigma_xx is held.
+struct BiaxialCase {
+  std::vector<double> pressures = {1.0e5, 2.0e5, 4.0e5};  ///< confining pressures [Pa]
+  double strain = 0.20;            ///< logarithmic axial strain at the end [-]
+  double inertial_number = 1.0e-4; ///< of the axial rate at the confining pressure [-]
+  double window = 0.01;            ///< axial strain over which curves are smoothed for strength and dilatancy [-]
+  int samples = 1000;              ///< points of a curve
+};
+
 struct Case {
   CaseKind kind = CaseKind::tunnel;
   MaterialKind material = MaterialKind::grains;
@@ -130,6 +140,7 @@ struct Case {
   OutputCase output;
   ElasticCase elastic;
   ProbeCase probe;
+  BiaxialCase biaxial;
 
   std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
   std::string resolved;     ///< TOML of every value after defaults and overrides

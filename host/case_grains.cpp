@@ -50,6 +50,7 @@ PackingCase read_packing(const io::Table& table) {
   read_quantity(table, "pressure", Dimension::pressure, packing.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
   packing.mirrored = table.boolean("mirrored", packing.mirrored);
   packing.folder = table.text("folder", packing.folder.string());
+  if (table.has("file")) packing.file = table.path("file");
   return packing;
 }
 
@@ -67,6 +68,18 @@ EngineCase read_engine(const io::Table& table) {
   read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
   if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
   return engine;
+}
+
+BiaxialCase read_biaxial(const io::Table& table) {
+  BiaxialCase test;
+  test.pressures = table.quantities("pressures", Dimension::pressure, {.at_least = "100 Pa", .at_most = "10 MPa"},
+                                    std::vector<std::string>{"100 kPa", "200 kPa", "400 kPa"});
+  if (test.pressures.empty()) throw table.error("pressures", "names no pressure");
+  read_quantity(table, "strain", Dimension::none, test.strain, {.at_least = "1e-4", .at_most = "1"});
+  read_quantity(table, "inertial_number", Dimension::none, test.inertial_number, {.at_least = "1e-6", .at_most = "1e-2"});
+  read_quantity(table, "window", Dimension::none, test.window, {.at_least = "1e-5", .at_most = "0.1"});
+  read_integer(table, "samples", test.samples, {.at_least = 20, .at_most = 100'000});
+  return test;
 }
 
 ProbeCase read_probe(const io::Table& table) {

@@ -38,7 +38,7 @@ double steps_per_evaluation(const Case& input, double strain) {
 
 CaseSize case_size(const Case& input) {
   CaseSize size;
-  if (input.kind == CaseKind::pack || input.kind == CaseKind::probe) return size;
+  if (input.kind != CaseKind::column && input.kind != CaseKind::tunnel) return size;
   const bool with_tunnel = input.kind == CaseKind::tunnel;
   const std::size_t gravity = gravity_targets(input).size();
   const auto loss = with_tunnel ? static_cast<std::size_t>(input.volume_loss.increments) : std::size_t{0};

@@ -10,6 +10,7 @@ namespace voussoir::host {
 [[nodiscard]] PackingCase read_packing(const io::Table& table);
 [[nodiscard]] EngineCase read_engine(const io::Table& table);
 [[nodiscard]] ProbeCase read_probe(const io::Table& table);
+[[nodiscard]] BiaxialCase read_biaxial(const io::Table& table);
 [[nodiscard]] ElasticCase read_elastic(const io::Table& table);
 [[nodiscard]] GroundCase read_ground(const io::Table& table, bool with_tunnel);
 [[nodiscard]] ColumnCase read_column(const io::Table& table);

@@ -168,6 +168,14 @@ void measure_bias(const Case& input, std::vector<PackedRve>& rves) {
 }  // namespace
 
 std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note) {
+  if (!input.packing.file.empty()) {
+    PackedRve rve = settle_foreign_packing(input.soil, input.packing);
+    if (rve.status != kernels::RveStatus::converged) {
+      throw std::runtime_error(fmt::format("{} does not come to rest: {}", input.packing.file.string(), kernels::name_of(rve.status)));
+    }
+    if (note) note("packing read:  " + table_line(rve));
+    return {rve};
+  }
   std::vector<std::int64_t> missing;
   for (const std::int64_t seed : seeds) {
     if (!find(input, seed)) missing.push_back(seed);

@@ -15,7 +15,8 @@ using PackingNote = std::function<void(const std::string&)>;
 
 /// The packings of these seeds, in their order: from the case's folder, or made side by side and stored there. A seed that does
 /// not come to rest is noted and left out. Of several packings the bias is measured: the largest |tau_xy|/sigma_yy above 20 kPa
-/// in oedometric compression to 700 kPa. Throws std::runtime_error when no packing is left.
+/// in oedometric compression to 700 kPa. A case that names a file has that one packing. Throws std::runtime_error when no packing
+/// is left.
 [[nodiscard]] std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds,
                                                      const PackingNote& note = {});
 

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/packing_file.hpp"
+
 namespace voussoir::host {
 
 namespace {
@@ -80,6 +82,19 @@ std::vector<kernels::RveReport> consolidate(kernels::RveBatch& batch, double pre
   return reports;
 }
 
+/// States and measures of a consolidated batch.
+void take_results(std::span<PackedRve> rves, const kernels::RveBatch& batch, std::span<const kernels::RveReport> reports) {
+  for (std::size_t k = 0; k < rves.size(); ++k) {
+    PackedRve& rve = rves[k];
+    load_rve(batch.committed, k, rve);
+    rve.void_ratio = void_ratio(rve.cell.det(), rve.packing.solid_area());
+    rve.pressure = reports[k].pressure();
+    rve.coordination = 2.0 * reports[k].contacts / rve.packing.size();
+    rve.unbalanced = reports[k].unbalanced;
+    rve.status = reports[k].status;
+  }
+}
+
 PackedRve loose_packing(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
   PackedRve rve;
   rve.seed = seed;
@@ -127,16 +142,28 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
   consolidate(batch, recipe.pressure, 1.0);
   for (std::size_t k = 0; k < rves.size(); ++k) batch.packings[k].materials = rves[k].packing.materials;
   const std::vector<kernels::RveReport> reports = consolidate(batch, recipe.pressure, 0.1);
-  for (std::size_t k = 0; k < rves.size(); ++k) {
-    PackedRve& rve = rves[k];
-    load_rve(batch.committed, k, rve);
-    rve.void_ratio = void_ratio(rve.cell.det(), rve.packing.solid_area());
-    rve.pressure = reports[k].pressure();
-    rve.coordination = 2.0 * reports[k].contacts / rve.packing.size();
-    rve.unbalanced = reports[k].unbalanced;
-    rve.status = reports[k].status;
-  }
+  take_results(rves, batch, reports);
   return rves;
+}
+
+PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe) {
+  const io::Packing file = io::load_packing_csv(recipe.file);
+  PackedRve rve;
+  rve.packing = {.radii = file.radius,
+                 .materials = {grain_material(soil)},
+                 .class_of = {},
+                 .thickness = file.thickness,
+                 .local_damping = soil.damping};
+  for (std::size_t i = 0; i < file.grains(); ++i) {
+    rve.position.push_back(file.x[i]);
+    rve.position.push_back(file.y[i]);
+  }
+  rve.rotation = file.rotation;
+  rve.cell = {file.cell[0], file.cell[1], file.cell[2], file.cell[3]};
+  kernels::RveBatch batch = batch_of(std::span(&rve, 1));
+  const std::vector<kernels::RveReport> reports = consolidate(batch, recipe.pressure, 0.1);
+  take_results(std::span(&rve, 1), batch, reports);
+  return rve;
 }
 
 kernels::RveBatch batch_of(std::span<const PackedRve> rves) {

@@ -42,6 +42,10 @@ struct PackedRve {
 [[nodiscard]] std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe,
                                                    std::span<const std::int64_t> seeds);
 
+/// The packing of another code (`recipe.file`, see io::load_packing_csv) with this soil's grains: contacts are rebuilt from the
+/// overlaps, without history, then it comes to rest at `recipe.pressure`. Throws std::runtime_error on an unusable file.
+[[nodiscard]] PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe);
+
 /// A batch of one RVE per packing, each in its packing's state.
 [[nodiscard]] kernels::RveBatch batch_of(std::span<const PackedRve> rves);
 

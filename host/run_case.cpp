@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "host/biaxial.hpp"
 #include "host/exit_code.hpp"
 #include "host/packing.hpp"
 #include "host/tunnel.hpp"
@@ -40,6 +41,7 @@ int run_case(const Case& input, const RunOptions& options) {
     case CaseKind::column: return answer(run_column_case(input, options), options);
     case CaseKind::pack: return run_pack(input, options);
     case CaseKind::probe: return run_probe(input, options);
+    case CaseKind::biaxial: return run_biaxial(input, options);
   }
   return exit_machine;
 }

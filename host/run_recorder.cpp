@@ -2,44 +2,14 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <Kokkos_Core.hpp>
 #include <array>
 #include <cstdint>
-#include <ctime>
 #include <utility>
 
-#include "host/build_info.hpp"
+#include "host/provenance.hpp"
 
 namespace voussoir::host {
 namespace {
-
-std::string kokkos_description() {
-  return fmt::format("Kokkos {}.{}.{}, {}", KOKKOS_VERSION / 10000, KOKKOS_VERSION / 100 % 100, KOKKOS_VERSION % 100,
-                     Kokkos::DefaultExecutionSpace::name());
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text.data();
-}
-
-io::Provenance provenance(const RunOptions& options, const Case& input, const std::string& kind) {
-  io::Provenance p;
-  p.case_kind = kind;
-  p.input = input.resolved;
-  p.fingerprint = input.fingerprint;
-  p.version = build_version;
-  p.git_hash = build_revision;
-  p.kokkos = kokkos_description();
-  p.command = options.command;
-  p.date = utc_now();
-  p.threads = options.threads;
-  return p;
-}
 
 std::string duration(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", seconds);
@@ -55,7 +25,7 @@ RunRecorder::RunRecorder(const RunOptions& options, const Case& input, const std
   if (options.resume) loaded_ = store_.load_latest();
   if (!loaded_) {
     store_.clear();
-    writer_ = io::ResultWriter::create(folder_, provenance(options, input, kind), std::move(mesh));
+    writer_ = io::ResultWriter::create(folder_, provenance_of(options, input, kind), std::move(mesh));
     return;
   }
   for (const std::string& skipped : loaded_->skipped) log_.warning(skipped);
@@ -66,7 +36,7 @@ RunRecorder::RunRecorder(const RunOptions& options, const Case& input, const std
   result_index_ = static_cast<int>(record.at(1));
   finished_ = record.at(2) != 0;
   sequence_ = loaded_->increment;
-  writer_ = io::ResultWriter::resume(folder_, provenance(options, input, kind), std::move(mesh), result_index_);
+  writer_ = io::ResultWriter::resume(folder_, provenance_of(options, input, kind), std::move(mesh), result_index_);
 }
 
 const io::Checkpoint* RunRecorder::resumed() const { return loaded_ ? &loaded_->checkpoint : nullptr; }

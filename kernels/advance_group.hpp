@@ -53,7 +53,13 @@ void move_cells(Run& run, int step) {
 template <class Run>
 [[nodiscard]] Measurement measurement_of(const Run& run, std::size_t l, const SweepSums<typename Run::Value>& sums) {
   const double v = volume_of(run, l);
-  Measurement m{sums.stress_xx[l] / v, sums.stress_yy[l] / v, 0.5 * (sums.stress_xy[l] + sums.stress_yx[l]) / v, 0};
+  const Mat2 cell = (identity2 + run.lanes[l].f_minus_i) * run.lists[l].cell;
+  Measurement m;
+  m.stress_xx = sums.stress_xx[l] / v;
+  m.stress_yy = sums.stress_yy[l] / v;
+  m.stress_xy = 0.5 * (sums.stress_xy[l] + sums.stress_yx[l]) / v;
+  m.width = cell.xx;
+  m.height = cell.yy;
   const double p = std::max(-0.5 * (m.stress_xx + m.stress_yy), run.settings.pressure_floor);
   m.unbalanced = std::sqrt(static_cast<double>(sums.force_squared[l]) / run.group.n_grains) /
                  (p * run.packing->thickness * run.packing->mean_diameter());

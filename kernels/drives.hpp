@@ -16,6 +16,7 @@ namespace voussoir::kernels {
 struct Measurement {
   double stress_xx = 0, stress_yy = 0, stress_xy = 0;  ///< tension positive [Pa]
   double unbalanced = 0;                ///< rms|f| / (max(p, floor) t d) [-]
+  double width = 0, height = 0;         ///< of a rectangular cell [m]
 };
 
 enum class Verdict { running, converged, step_limit };
@@ -87,7 +88,14 @@ class ServoDrive {
   Verdict judge(int step, const Measurement& m) {
     const bool x_ok = follow(request_.x, m.stress_xx, rate_x_);
     const bool y_ok = follow(request_.y, m.stress_yy, rate_y_);
-    settled_ = x_ok && y_ok && m.unbalanced < tolerance_ ? settled_ + 1 : 0;
+    if (step == 0) start_ = m;
+    const double strain_y = std::log(m.height / start_.height);
+    if (request_.trace != nullptr && step % request_.trace_interval == 0) {
+      request_.trace->push_back({step, std::log(m.width / start_.width), strain_y, m.stress_xx, m.stress_yy, m.stress_xy, m.unbalanced});
+    }
+    if (std::abs(strain_y) >= request_.end_strain_y) return Verdict::converged;
+    const bool at_rest = request_.x.stress_controlled && request_.y.stress_controlled && m.unbalanced < tolerance_;
+    settled_ = x_ok && y_ok && at_rest ? settled_ + 1 : 0;
     if (settled_ >= request_.settle_steps) return Verdict::converged;
     return step + 1 >= request_.max_steps ? Verdict::step_limit : Verdict::running;
   }
@@ -111,6 +119,7 @@ class ServoDrive {
   }
 
   ServoRequest request_;
+  Measurement start_;
   double tolerance_ = 0;
   double floor_ = 0;
   double modulus_ = 1;

@@ -1,6 +1,9 @@
 #pragma once
 /// What a caller asks of the engine.
 
+#include <limits>
+#include <vector>
+
 #include "kernels/kinematics.hpp"
 
 namespace voussoir::kernels {
@@ -13,7 +16,7 @@ struct EngineSettings {
   double skin = 0.08;              ///< list skin / mean diameter [-]
   double hold_tolerance = 1e-3;    ///< unbalanced ratio that ends a hold [-]
   double pressure_floor = 100.0;   ///< ratios use max(p, floor) [Pa]
-  double overlap_limit = 0.15;     ///< overlap / (r_i + r_j) at which an RVE is given up [-]
+  double overlap_limit = 0.3;      ///< overlap / (r_i + r_j) at which an RVE is given up [-]
   int look_interval = 16;          ///< steps between looks at stress and unbalanced force
   int list_interval = 8;           ///< steps between looks at displacements
   int guard_interval = 256;        ///< steps between looks at overlaps while straining
@@ -32,6 +35,14 @@ struct ServoAxis {
   double target = 0;  ///< stress, tension positive [Pa], or rate per step [-] when not stress controlled
 };
 
+/// What a stress-controlled cell did, seen at one step.
+struct ServoSample {
+  int step;
+  double strain_x, strain_y;                   ///< logarithmic since the request's start, extension positive [-]
+  double stress_xx, stress_yy, stress_xy;      ///< tension positive [Pa]
+  double unbalanced;                           ///< [-]
+};
+
 /// Rectangular cell whose axes follow a stress (PI control) or a rate.
 struct ServoRequest {
   ServoAxis x, y;
@@ -39,6 +50,9 @@ struct ServoRequest {
   double stress_tolerance = 1e-3;///< |sigma - target| / max(|target|, floor) that counts as reached [-]
   int max_steps = 100000;        ///< ends as step_limit
   int settle_steps = 200;        ///< steps that stress and unbalanced ratio must stay within tolerance
+  double end_strain_y = std::numeric_limits<double>::infinity();  ///< |strain_y| at which the request is done [-]
+  std::vector<ServoSample>* trace = nullptr;  ///< the caller's, one per RVE; samples are appended
+  int trace_interval = 100;                   ///< steps between samples
 };
 
 }  // namespace voussoir::kernels

@@ -18,6 +18,8 @@ RUNS = {
                      ("load_parameter", "area_loss", "crown_settlement", "surface_settlement"),
                      [*FIGURES, "void_ratio.png", "grain_rotation.png"]),
     "column": (["packing.grains=300", *ONE_PACKING, "column.elements=6"], (), []),
+    "biaxial": (["packing.grains=300", "packing.seeds=[1]", "packing.folder=packings", 'biaxial.pressures=["100 kPa"]',
+                 "biaxial.strain=6 %"], ("peak_angle", "peak_strain", "contraction"), []),
     "pack": (["packing.grains=100", "packing.seeds=[1]", "packing.folder=packings"], None, []),
 }
 ESTIMATE = 3  # factor within which `check` must foretell a shrunk run's work; 2 is what it promises of whole ones

@@ -1,0 +1,59 @@
+#pragma once
+/// Drained biaxial tests of packings, and what soil mechanics reads from their curves (method.md §3).
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/packing.hpp"
+
+namespace voussoir::host {
+
+/// One point of a test; soil mechanics' signs: compression positive.
+struct BiaxialPoint {
+  double axial_strain;       ///< logarithmic [-]
+  double lateral_strain;     ///< logarithmic [-]
+  double stress_xx, stress_yy, stress_xy;  ///< [Pa]
+  double unbalanced;         ///< [-]
+
+  [[nodiscard]] double p() const { return 0.5 * (stress_xx + stress_yy); }
+  [[nodiscard]] double q() const;  ///< radius of Mohr's circle [Pa]
+  [[nodiscard]] double volumetric_strain() const { return axial_strain + lateral_strain; }  ///< contraction positive [-]
+  [[nodiscard]] double shear_strain() const;  ///< eps_q of eq. (11) [-]
+};
+
+struct BiaxialCurve {
+  std::int64_t seed = 0;
+  double pressure = 0;         ///< confining [Pa]
+  double inertial_number = 0;  ///< of the axial rate at the confining pressure [-]
+  kernels::RveStatus status = kernels::RveStatus::converged;
+  std::vector<BiaxialPoint> points;
+};
+
+/// Strength and dilatancy of one curve.
+struct Strength {
+  double peak_angle = 0;      ///< phi_p, sin phi = q/p at its largest [rad]
+  double peak_strain = 0;     ///< axial strain there [-]
+  double critical_angle = 0;  ///< phi_cs, mean of q/p over the last quarter of the axial strain [rad]
+  double dilatancy = 0;       ///< psi_max, sin psi = max(-d eps_v / d eps_q) [rad]
+  double contraction = 0;     ///< largest eps_v [-]
+  double lateral_error = 0;   ///< |mean of sigma_xx / pressure - 1| [-]
+};
+
+/// All packings in one batch, each compressed along y from its own state, its own pressure held on x. The packing must rest
+/// at that pressure already.
+/// @param strain axial, logarithmic [-]; @param inertial_number sets the rate; @param samples points of a curve
+[[nodiscard]] std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double strain, double inertial_number,
+                                                      int samples, const kernels::EngineSettings& settings);
+
+/// q/p and the slope of eps_v against eps_q are taken over a moving window of axial strain (mean and least-squares line).
+[[nodiscard]] Strength strength_of(const BiaxialCurve& curve, double window);
+
+/// Friction angle of several tests: sin phi is the slope of q against p through the origin, from the angle of each test and
+/// its p there.
+[[nodiscard]] double common_angle(std::span<const double> angles, std::span<const double> p);
+
+/// `kind = "biaxial"`: curves and strength to run.h5:/tables, a summary to standard output. Returns an exit code.
+[[nodiscard]] int run_biaxial(const Case& input, const RunOptions& options);
+
+}  // namespace voussoir::host

@@ -1,0 +1,114 @@
+// The case kind "biaxial".
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+
+#include "host/biaxial.hpp"
+#include "host/exit_code.hpp"
+#include "host/provenance.hpp"
+#include "io/result_file.hpp"
+
+namespace voussoir::host {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+template <class Value>
+io::TableColumn column(const char* name, const char* unit, const std::vector<BiaxialPoint>& points, const Value& value) {
+  io::TableColumn out{name, unit, {}};
+  for (const BiaxialPoint& point : points) out.values.push_back(value(point));
+  return out;
+}
+
+std::vector<io::TableColumn> curve_table(const BiaxialCurve& curve) {
+  const auto& points = curve.points;
+  return {column("axial_strain", "-", points, [](const BiaxialPoint& x) { return x.axial_strain; }),
+          column("lateral_strain", "-", points, [](const BiaxialPoint& x) { return x.lateral_strain; }),
+          column("volumetric_strain", "-", points, [](const BiaxialPoint& x) { return x.volumetric_strain(); }),
+          column("stress_xx", "Pa", points, [](const BiaxialPoint& x) { return x.stress_xx; }),
+          column("stress_yy", "Pa", points, [](const BiaxialPoint& x) { return x.stress_yy; }),
+          column("stress_xy", "Pa", points, [](const BiaxialPoint& x) { return x.stress_xy; }),
+          column("p", "Pa", points, [](const BiaxialPoint& x) { return x.p(); }),
+          column("q", "Pa", points, [](const BiaxialPoint& x) { return x.q(); }),
+          column("unbalanced_ratio", "-", points, [](const BiaxialPoint& x) { return x.unbalanced; })};
+}
+
+/// All tests of a case: every seed at every pressure, each packing consolidated at its test's pressure.
+std::vector<PackedRve> packings_of(const Case& input, const PackingNote& note) {
+  std::vector<PackedRve> all;
+  for (const double pressure : input.biaxial.pressures) {
+    Case at_pressure = input;
+    at_pressure.packing.pressure = pressure;
+    for (PackedRve& rve : obtain_packings(at_pressure, seeds_of(input.packing), note)) all.push_back(std::move(rve));
+  }
+  return all;
+}
+
+void print(const BiaxialCurve& curve, const Strength& s) {
+  std::printf("seed %4lld  %7.1f kPa  phi_p %5.1f deg at %4.1f %%  phi_cs %5.1f deg  psi_max %5.1f deg  contraction %.3f %%  "
+              "sigma_xx off by %.2f %%  I %.1e  %s\n",
+              static_cast<long long>(curve.seed), curve.pressure * 1e-3, s.peak_angle / degree, s.peak_strain * 100.0,
+              s.critical_angle / degree, s.dilatancy / degree, s.contraction * 100.0, s.lateral_error * 100.0,
+              curve.inertial_number, kernels::name_of(curve.status));
+}
+
+struct Summary {
+  std::vector<double> seed, pressure, peak, peak_p, peak_strain, critical, critical_p, dilatancy, contraction, lateral, inertial;
+
+  void add(const BiaxialCurve& curve, const Strength& s) {
+    // sigma_xx is held, so p = sigma_xx / (1 - q/p) at any q/p.
+    const auto p_at = [&](double angle) { return curve.pressure / (1.0 - std::sin(angle)); };
+    seed.push_back(static_cast<double>(curve.seed));
+    pressure.push_back(curve.pressure);
+    peak.push_back(s.peak_angle);
+    peak_p.push_back(p_at(s.peak_angle));
+    peak_strain.push_back(s.peak_strain);
+    critical.push_back(s.critical_angle);
+    critical_p.push_back(p_at(s.critical_angle));
+    dilatancy.push_back(s.dilatancy);
+    contraction.push_back(s.contraction);
+    lateral.push_back(s.lateral_error);
+    inertial.push_back(curve.inertial_number);
+  }
+
+  [[nodiscard]] std::vector<io::TableColumn> table() const {
+    return {{"seed", "-", seed},           {"pressure", "Pa", pressure},       {"peak_angle", "rad", peak},
+            {"peak_strain", "-", peak_strain}, {"critical_angle", "rad", critical}, {"dilatancy_angle", "rad", dilatancy},
+            {"contraction", "-", contraction}, {"lateral_error", "-", lateral},     {"inertial_number", "-", inertial}};
+  }
+};
+
+}  // namespace
+
+int run_biaxial(const Case& input, const RunOptions& options) {
+  const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
+  const std::vector<PackedRve> rves = packings_of(input, note);
+  const kernels::EngineSettings settings{.precision = input.engine.precision == Precision::single_precision
+                                                          ? kernels::Precision::float32
+                                                          : kernels::Precision::float64,
+                                         .skin = input.engine.skin};
+  const BiaxialCase& test = input.biaxial;
+  const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings);
+  auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});
+  Summary summary;
+  bool failed = false;
+  for (const BiaxialCurve& curve : curves) {
+    const Strength s = strength_of(curve, test.window);
+    print(curve, s);
+    summary.add(curve, s);
+    failed = failed || curve.status != kernels::RveStatus::converged;
+    writer.set_table(fmt::format("seed_{}_{:.0f}_kPa", curve.seed, curve.pressure * 1e-3), curve_table(curve));
+  }
+  writer.set_table("strength", summary.table());
+  std::printf("all tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f deg (smoothed over %.1f %% of axial strain)\n",
+              common_angle(summary.peak, summary.peak_p) / degree, common_angle(summary.critical, summary.critical_p) / degree,
+              *std::max_element(summary.dilatancy.begin(), summary.dilatancy.end()) / degree, test.window * 100.0);
+  return failed ? exit_numerical : exit_ok;
+}
+
+}  // namespace voussoir::host
