@@ -61,10 +61,9 @@ void rebuild(Run& run, const std::array<bool, Run::width>& stale) {
 template <class Run>
 [[nodiscard]] bool is_stale(Run& run, std::size_t l, const Motion<typename Run::Value>& m, int step) {
   auto& lane = run.lanes[l];
-  const double reach = 2.0 * run.packing->largest_radius() + run.skin;
   const double u = std::sqrt(static_cast<double>(m.largest[l]));
-  const double per_step = 2.0 * std::sqrt(static_cast<double>(m.fastest[l])) + lane.rate.norm() * reach;
-  const double moved = 2.0 * u + lane.f_minus_i.norm() * reach;
+  const double per_step = 2.0 * std::sqrt(static_cast<double>(m.fastest[l])) + lane.rate.norm() * run.reach;
+  const double moved = 2.0 * u + lane.f_minus_i.norm() * run.reach;
   const bool finite = m.finite[l] == 0 && std::isfinite(moved + per_step);
   // Fast grains are looked at every step.
   const int interval = per_step * run.settings.list_interval > 0.25 * run.skin ? 1 : run.settings.list_interval;

@@ -66,6 +66,7 @@ template <class Run>
 void restore(Run& run, const GroupMembers<static_cast<int>(Run::width)>& members,
              std::span<const typename Run::Drive::Request> requests) {
   run.skin = run.settings.skin * run.packing->mean_diameter();
+  run.reach = 2.0 * run.packing->largest_radius() + run.skin;
   restore_grains(run);
   for (std::size_t l = 0; l < Run::width; ++l) {
     run.lanes[l] = {};

@@ -42,7 +42,8 @@ struct GroupRun {
   RveBatch* batch = nullptr;
   const Packing* packing = nullptr;
   EngineSettings settings;
-  double skin = 0;  ///< [m]
+  double skin = 0;   ///< [m]
+  double reach = 0;  ///< of the longest listed branch, 2 r_max + skin [m]
   std::array<Lane<Drive>, width> lanes;
   std::array<LaneList<real>, width> lists;
   GroupState<V> group;

@@ -1,14 +1,34 @@
-// main of every benchmark program: Kokkos lives around all benchmarks, and its settings go into the report, because a
-// rate without the backend and the thread count cannot be compared with another.
+// main of every benchmark program: Kokkos lives around all benchmarks, and device, backend and thread count go into the
+// report, because a rate without them cannot be compared with another.
 #include <benchmark/benchmark.h>
 
 #include <Kokkos_Core.hpp>
+#include <fstream>
 #include <string>
+
+#include "kernels/lane.hpp"
+
+namespace {
+
+/// The processor's name as Linux gives it.
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   const Kokkos::ScopeGuard kokkos(argc, argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  using namespace voussoir::kernels;
+  benchmark::AddCustomContext("device", processor());
+  benchmark::AddCustomContext("lanes", std::to_string(lane_count<WideLane<float>>) + " floats, " +
+                                           std::to_string(lane_count<WideLane<double>>) + " doubles");
   benchmark::AddCustomContext("backend", Kokkos::DefaultExecutionSpace::name());
   benchmark::AddCustomContext("concurrency", std::to_string(Kokkos::DefaultExecutionSpace().concurrency()));
   benchmark::RunSpecifiedBenchmarks();
