@@ -15,10 +15,23 @@ enum class MaterialKind { grains, linear_elastic };
 enum class Precision { single_precision, double_precision };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
 
+/// [[soil.class]] Grains up to a size, made of one stuff (Table 1). Keys that are not given are those of [soil].
+struct GrainClassCase {
+  double size_to = 0;  ///< largest diameter of the class [m]
+  double modulus = 0, stiffness_ratio = 0, friction = 0, rolling_stiffness = 0, rolling_limit = 0;  ///< as in SoilCase
+};
+
+/// How the entries of `passing` count grains.
+enum class GradingMeasure { number, area };
+
 /// [soil] The grains and their contacts (method.md, section 3).
 struct SoilCase {
   double size_minimum = 2.0e-3;     ///< smallest grain diameter [m]
-  double size_maximum = 4.75e-3;    ///< largest grain diameter [m]; radii are uniform by number in between
+  double size_maximum = 4.75e-3;    ///< largest grain diameter [m]
+  std::vector<double> sizes;        ///< grading curve: diameters, ascending [m]; empty: uniform by number in between
+  std::vector<double> passing;      ///< share of grains below each size, ascending from 0 to 1 [-]
+  GradingMeasure passing_by = GradingMeasure::area;  ///< shares of the grains' area (the mass in 2D) or of their number
+  std::vector<GrainClassCase> classes;               ///< by ascending size; empty: one class
   double modulus = 3.0e9;           ///< contact modulus E [Pa]
   double stiffness_ratio = 0.5;     ///< k_t / k_n [-]
   double friction = 0.43633231299858238;  ///< contact friction angle [rad], 25 deg

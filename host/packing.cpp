@@ -54,11 +54,7 @@ std::optional<PackedRve> from_file(const io::Packing& file, const Case& input) {
     return found == file.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
   };
   PackedRve rve;
-  rve.packing = {.radii = file.radius,
-                 .materials = {grain_material(input.soil)},
-                 .class_of = {},
-                 .thickness = file.thickness,
-                 .local_damping = input.soil.damping};
+  rve.packing = packing_of(input.soil, file.radius, file.thickness);
   for (std::size_t i = 0; i < file.grains(); ++i) {
     rve.position.push_back(file.x[i]);
     rve.position.push_back(file.y[i]);

@@ -28,6 +28,36 @@ class Uniform {
   std::mt19937_64 engine_;
 };
 
+/// The grading curve as shares of the number of grains. Between two points of a curve by area the area is spread evenly over
+/// sizes, so the number of grains between d1 and d goes with 1/d1 - 1/d.
+class GradingByNumber {
+ public:
+  explicit GradingByNumber(const SoilCase& soil) : by_area_(!soil.sizes.empty() && soil.passing_by == GradingMeasure::area) {
+    sizes_ = soil.sizes.empty() ? std::vector<double>{soil.size_minimum, soil.size_maximum} : soil.sizes;
+    const std::vector<double> passing = soil.sizes.empty() ? std::vector<double>{0.0, 1.0} : soil.passing;
+    below_.assign(1, 0.0);
+    for (std::size_t k = 1; k < sizes_.size(); ++k) {
+      const double share = passing[k] - passing[k - 1];
+      below_.push_back(below_.back() + (by_area_ ? share / (sizes_[k - 1] * sizes_[k]) : share));
+    }
+    for (double& n : below_) n /= below_.back();
+  }
+
+  /// The size that a share `u` of all grains, 0 <= u <= 1, is smaller than [m].
+  [[nodiscard]] double size_at(double u) const {
+    std::size_t k = 1;
+    while (k + 1 < below_.size() && below_[k] <= u) ++k;
+    const double part = (u - below_[k - 1]) / (below_[k] - below_[k - 1]);
+    if (!by_area_) return sizes_[k - 1] + part * (sizes_[k] - sizes_[k - 1]);
+    return 1.0 / (1.0 / sizes_[k - 1] - part * (1.0 / sizes_[k - 1] - 1.0 / sizes_[k]));
+  }
+
+ private:
+  bool by_area_;
+  std::vector<double> sizes_;
+  std::vector<double> below_;  ///< share of the number of grains below each size
+};
+
 bool overlaps(const PackedRve& rve, std::size_t placed, double x, double y, double side) {
   for (std::size_t j = 0; j < placed; ++j) {
     double dx = x - rve.position[2 * j], dy = y - rve.position[2 * j + 1];
@@ -98,11 +128,7 @@ void take_results(std::span<PackedRve> rves, const kernels::RveBatch& batch, std
 PackedRve loose_packing(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
   PackedRve rve;
   rve.seed = seed;
-  rve.packing = {.radii = sample_radii(soil, recipe.grains, seed),
-                 .materials = {grain_material(soil)},
-                 .class_of = {},
-                 .thickness = soil.thickness,
-                 .local_damping = soil.damping};
+  rve.packing = packing_of(soil, sample_radii(soil, recipe.grains, seed), soil.thickness);
   Uniform uniform(seed + 1000003);
   place_loose(rve, uniform);
   return rve;
@@ -110,22 +136,46 @@ PackedRve loose_packing(const SoilCase& soil, const PackingCase& recipe, std::in
 
 }  // namespace
 
-kernels::GrainMaterial grain_material(const SoilCase& soil) {
-  return {.modulus = soil.modulus,
-          .stiffness_ratio = soil.stiffness_ratio,
-          .friction = std::tan(soil.friction),
-          .rolling_stiffness = soil.rolling_stiffness,
-          .rolling_limit = soil.rolling_limit};
+std::vector<kernels::GrainMaterial> grain_materials(const SoilCase& soil) {
+  const auto material = [](const auto& from) {
+    return kernels::GrainMaterial{.modulus = from.modulus,
+                                  .stiffness_ratio = from.stiffness_ratio,
+                                  .friction = std::tan(from.friction),
+                                  .rolling_stiffness = from.rolling_stiffness,
+                                  .rolling_limit = from.rolling_limit};
+  };
+  if (soil.classes.empty()) return {material(soil)};
+  std::vector<kernels::GrainMaterial> out;
+  for (const GrainClassCase& grains : soil.classes) out.push_back(material(grains));
+  return out;
+}
+
+std::vector<std::uint8_t> classes_of(const SoilCase& soil, std::span<const double> radii) {
+  std::vector<std::uint8_t> out;
+  for (std::size_t i = 0; i < radii.size() && soil.classes.size() > 1; ++i) {
+    std::size_t k = 0;
+    while (k + 1 < soil.classes.size() && 2.0 * radii[i] > soil.classes[k].size_to) ++k;
+    out.push_back(static_cast<std::uint8_t>(k));
+  }
+  return out;
+}
+
+kernels::Packing packing_of(const SoilCase& soil, std::vector<double> radii, double thickness) {
+  return {.radii = radii,
+          .materials = grain_materials(soil),
+          .class_of = classes_of(soil, radii),
+          .thickness = thickness,
+          .local_damping = soil.damping};
 }
 
 double void_ratio(double cell_area, double solid_area) { return cell_area / solid_area - 1.0; }
 
 std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t seed) {
+  const GradingByNumber grading(soil);
   Uniform uniform(seed);
   std::vector<double> radii(static_cast<std::size_t>(grains));
-  const double smallest = 0.5 * soil.size_minimum, range = 0.5 * (soil.size_maximum - soil.size_minimum);
   for (std::size_t k = 0; k < radii.size(); ++k) {
-    radii[k] = smallest + range * (static_cast<double>(k) + uniform()) / grains;
+    radii[k] = 0.5 * grading.size_at((static_cast<double>(k) + uniform()) / grains);
   }
   std::sort(radii.rbegin(), radii.rend());
   return radii;
@@ -149,11 +199,7 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
 PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe) {
   const io::Packing file = io::load_packing_csv(recipe.file);
   PackedRve rve;
-  rve.packing = {.radii = file.radius,
-                 .materials = {grain_material(soil)},
-                 .class_of = {},
-                 .thickness = file.thickness,
-                 .local_damping = soil.damping};
+  rve.packing = packing_of(soil, file.radius, file.thickness);
   for (std::size_t i = 0; i < file.grains(); ++i) {
     rve.position.push_back(file.x[i]);
     rve.position.push_back(file.y[i]);
@@ -179,10 +225,16 @@ kernels::RveBatch batch_of(std::span<const PackedRve> rves) {
 }
 
 std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
-  return fmt::format("recipe {} d {} {} E {} kt/kn {} phi {} beta {} eta {} damping {} t {} grains {} mu_t {} p {} seed {}",
-                     recipe_version, soil.size_minimum, soil.size_maximum, soil.modulus, soil.stiffness_ratio, soil.friction,
-                     soil.rolling_stiffness, soil.rolling_limit, soil.damping, soil.thickness, recipe.grains,
-                     recipe.consolidation_friction, recipe.pressure, seed);
+  std::string text = fmt::format("recipe {} d {} {} damping {} t {} grains {} mu_t {} p {} seed {}", recipe_version,
+                                 soil.size_minimum, soil.size_maximum, soil.damping, soil.thickness, recipe.grains,
+                                 recipe.consolidation_friction, recipe.pressure, seed);
+  for (const kernels::GrainMaterial& m : grain_materials(soil)) {
+    text += fmt::format(" E {} kt/kn {} mu {} beta {} eta {}", m.modulus, m.stiffness_ratio, m.friction, m.rolling_stiffness,
+                        m.rolling_limit);
+  }
+  for (const GrainClassCase& grains : soil.classes) text += fmt::format(" to {}", grains.size_to);
+  for (std::size_t k = 0; k < soil.sizes.size(); ++k) text += fmt::format(" {}:{}", soil.sizes[k], soil.passing[k]);
+  return text + (soil.passing_by == GradingMeasure::area ? " by area" : " by number");
 }
 
 void store_rve(const PackedRve& from, kernels::RveBatch& batch, std::size_t rve) {

@@ -30,12 +30,16 @@ struct PackedRve {
   kernels::RveStatus status = kernels::RveStatus::converged;  ///< of the consolidation
 };
 
-/// The grain material of a soil.
-[[nodiscard]] kernels::GrainMaterial grain_material(const SoilCase& soil);
+/// The materials of a soil's classes, and the class of each grain (empty for a soil of one class).
+[[nodiscard]] std::vector<kernels::GrainMaterial> grain_materials(const SoilCase& soil);
+[[nodiscard]] std::vector<std::uint8_t> classes_of(const SoilCase& soil, std::span<const double> radii);
 
-/// Radii [m] of `grains` discs, descending: uniform by number between the soil's sizes, stratified so that a small packing has the
-/// same grading as a large one, in random order of placement.
+/// Radii [m] of `grains` discs, descending, from the soil's grading curve (linear in size between its points), stratified: a small
+/// packing has the same grading as a large one.
 [[nodiscard]] std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t seed);
+
+/// What a packing of these radii [m] is made of.
+[[nodiscard]] kernels::Packing packing_of(const SoilCase& soil, std::vector<double> radii, double thickness);
 
 /// The packings of several seeds, side by side in one batch; each is the same whatever other seeds it is made with. One that
 /// does not come to rest says so in its status.

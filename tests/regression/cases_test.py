@@ -13,13 +13,14 @@ FIGURES = ["settlement_troughs.png", "displacement.png", "deviatoric_strain.png"
 ONE_PACKING = ["packing.candidates=1", "packing.folder=packings"]
 RUNS = {
     "tunnel_elastic": ([], (), FIGURES),
-    "tunnel_quick": ([*ONE_PACKING, "packing.seed=7", "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m",
+    "tunnel_quick": (["packing.folder=packings", "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m",
                       "gravity.uniform_step=0.1", "volume_loss.total=1 %", "volume_loss.increments=4"],
                      ("load_parameter", "area_loss", "crown_settlement", "surface_settlement"),
                      [*FIGURES, "void_ratio.png", "grain_rotation.png"]),
     "column": (["packing.grains=300", *ONE_PACKING, "column.elements=6"], (), []),
     "biaxial": (["packing.grains=300", "packing.seeds=[1]", "packing.folder=packings", 'biaxial.pressures=["100 kPa"]',
                  "biaxial.strain=6 %"], ("peak_angle", "peak_strain", "contraction"), []),
+    "pack_gravel": (["packing.grains=300", "packing.folder=packings"], None, []),
     "pack": (["packing.grains=100", "packing.seeds=[1]", "packing.folder=packings"], None, []),
 }
 ESTIMATE = 3  # factor within which `check` must foretell a shrunk run's work; 2 is what it promises of whole ones
