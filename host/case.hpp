@@ -52,6 +52,7 @@ struct PackingCase {
   std::filesystem::path file;           ///< NAME_particles.csv of another code's packing; empty: made from the recipe
   std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
   double consolidation_friction = 0.0;  ///< friction coefficient mu_t during consolidation [-]
+  double void_ratio = 0.0;              ///< wanted at `pressure` [-]: mu_t is found for it; 0: consolidation_friction holds
   double pressure = 1.0e3;              ///< isotropic pressure of the finished packing [Pa]
 };
 

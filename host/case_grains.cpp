@@ -97,6 +97,7 @@ PackingCase read_packing(const io::Table& table) {
   read_integer(table, "candidates", packing.candidates, {.at_least = 1, .at_most = 1000});
   read_quantity(table, "consolidation_friction", Dimension::none, packing.consolidation_friction,
                 {.at_least = "0", .at_most = "2"});
+  read_quantity(table, "void_ratio", Dimension::none, packing.void_ratio, {.at_least = "0", .at_most = "1"});
   read_quantity(table, "pressure", Dimension::pressure, packing.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
   packing.mirrored = table.boolean("mirrored", packing.mirrored);
   packing.folder = table.text("folder", packing.folder.string());

@@ -41,7 +41,7 @@ io::Packing to_file(const PackedRve& rve, const std::string& recipe, const std::
   file.history_names = {"tangential_force", "rolling_moment"};
   file.history = rve.contact_history;
   file.numbers = {{"void_ratio", rve.void_ratio},     {"pressure", rve.pressure}, {"coordination", rve.coordination},
-                  {"unbalanced_ratio", rve.unbalanced}, {"bias", rve.bias},         {"seed", static_cast<double>(rve.seed)}};
+                  {"unbalanced_ratio", rve.unbalanced}, {"consolidation_friction", rve.consolidation_friction}, {"bias", rve.bias},         {"seed", static_cast<double>(rve.seed)}};
   file.labels = {{"recipe", recipe}, {"recipe_fingerprint", fingerprint}};
   return file;
 }
@@ -73,6 +73,7 @@ std::optional<PackedRve> from_file(const io::Packing& file, const Case& input) {
   rve.coordination = number("coordination");
   rve.unbalanced = number("unbalanced_ratio");
   rve.bias = number("bias");
+  rve.consolidation_friction = number("consolidation_friction");
   const double seed = number("seed");
   if (!ascending || !finite || file.history_names != histories || static_cast<int>(file.grains()) != input.packing.grains ||
       !(rve.cell.det() > 0) || !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {
@@ -93,8 +94,8 @@ double bias_of(const std::vector<OedometricPoint>& curve) {
 
 std::string table_line(const PackedRve& rve) {
   const std::string bias = std::isnan(rve.bias) ? "" : fmt::format("  bias {:.4f}", rve.bias);
-  return fmt::format("seed {:5d}  grains {:5d}  void ratio {:.4f}  p {:.1f} Pa  coordination {:.3f}  unbalanced {:.1e}{}",
-                     rve.seed, rve.packing.size(), rve.void_ratio, rve.pressure, rve.coordination, rve.unbalanced, bias);
+  return fmt::format("seed {:5d}  grains {:5d}  mu_t {:.3f}  void ratio {:.4f}  p {:.1f} Pa  coordination {:.3f}  unbalanced {:.1e}{}",
+                     rve.seed, rve.packing.size(), rve.consolidation_friction, rve.void_ratio, rve.pressure, rve.coordination, rve.unbalanced, bias);
 }
 
 }  // namespace

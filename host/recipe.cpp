@@ -17,6 +17,8 @@ namespace {
 constexpr int recipe_version = 2;  ///< raise when a change here or in the engine changes packings
 constexpr double loose_solid_fraction = 0.45;
 constexpr int placement_tries = 20000;
+constexpr int void_ratio_rounds = 8;             ///< of the bisection on the temporary friction
+constexpr double void_ratio_tolerance = 0.01;    ///< of a wanted void ratio [-]
 
 /// Uniform in [0, 1): the standard's distributions differ between libraries, the engine's bits do not.
 class Uniform {
@@ -134,6 +136,41 @@ PackedRve loose_packing(const SoilCase& soil, const PackingCase& recipe, std::in
   return rve;
 }
 
+/// Loose packings to rest: with each one's temporary friction, then with the working one at the same pressure.
+std::vector<PackedRve> settle(std::span<const PackedRve> loose, const PackingCase& recipe) {
+  std::vector<PackedRve> rves(loose.begin(), loose.end());
+  kernels::RveBatch batch = batch_of(rves);
+  for (std::size_t k = 0; k < rves.size(); ++k) {
+    for (kernels::GrainMaterial& material : batch.packings[k].materials) material.friction = rves[k].consolidation_friction;
+  }
+  consolidate(batch, recipe.pressure, 1.0);
+  for (std::size_t k = 0; k < rves.size(); ++k) batch.packings[k].materials = rves[k].packing.materials;
+  const std::vector<kernels::RveReport> reports = consolidate(batch, recipe.pressure, 0.1);
+  take_results(rves, batch, reports);
+  return rves;
+}
+
+/// Each packing with the temporary friction that gives it the wanted void ratio, by bisection: more friction, looser packing.
+/// The nearest packing seen is taken; one that misses by more than `void_ratio_tolerance` ends as step_limit.
+std::vector<PackedRve> find_void_ratio(std::vector<PackedRve> loose, const PackingCase& recipe) {
+  std::vector<double> low(loose.size(), 0.0), high(loose.size(), 1.0);
+  std::vector<PackedRve> best;
+  for (int round = 0; round < void_ratio_rounds; ++round) {
+    for (std::size_t k = 0; k < loose.size(); ++k) loose[k].consolidation_friction = round == 0 ? 0.25 : 0.5 * (low[k] + high[k]);
+    const std::vector<PackedRve> tried = settle(loose, recipe);
+    if (best.empty()) best = tried;
+    for (std::size_t k = 0; k < loose.size(); ++k) {
+      const double miss = tried[k].void_ratio - recipe.void_ratio;
+      (miss > 0 ? high : low)[k] = loose[k].consolidation_friction;
+      if (std::abs(miss) < std::abs(best[k].void_ratio - recipe.void_ratio)) best[k] = tried[k];
+    }
+  }
+  for (PackedRve& rve : best) {
+    if (std::abs(rve.void_ratio - recipe.void_ratio) > void_ratio_tolerance) rve.status = kernels::RveStatus::step_limit;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<kernels::GrainMaterial> grain_materials(const SoilCase& soil) {
@@ -182,18 +219,13 @@ std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t 
 }
 
 std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe, std::span<const std::int64_t> seeds) {
-  std::vector<PackedRve> rves(seeds.size());
-  for (std::size_t k = 0; k < seeds.size(); ++k) rves[k] = loose_packing(soil, recipe, seeds[k]);
-  if (rves.empty()) return rves;
-  kernels::RveBatch batch = batch_of(rves);
-  for (kernels::Packing& packing : batch.packings) {
-    for (kernels::GrainMaterial& material : packing.materials) material.friction = recipe.consolidation_friction;
+  std::vector<PackedRve> loose(seeds.size());
+  for (std::size_t k = 0; k < seeds.size(); ++k) {
+    loose[k] = loose_packing(soil, recipe, seeds[k]);
+    loose[k].consolidation_friction = recipe.consolidation_friction;
   }
-  consolidate(batch, recipe.pressure, 1.0);
-  for (std::size_t k = 0; k < rves.size(); ++k) batch.packings[k].materials = rves[k].packing.materials;
-  const std::vector<kernels::RveReport> reports = consolidate(batch, recipe.pressure, 0.1);
-  take_results(rves, batch, reports);
-  return rves;
+  if (loose.empty()) return loose;
+  return recipe.void_ratio > 0 ? find_void_ratio(loose, recipe) : settle(loose, recipe);
 }
 
 PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe) {
@@ -228,6 +260,7 @@ std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::in
   std::string text = fmt::format("recipe {} d {} {} damping {} t {} grains {} mu_t {} p {} seed {}", recipe_version,
                                  soil.size_minimum, soil.size_maximum, soil.damping, soil.thickness, recipe.grains,
                                  recipe.consolidation_friction, recipe.pressure, seed);
+  if (recipe.void_ratio > 0) text += fmt::format(" e {}", recipe.void_ratio);
   for (const kernels::GrainMaterial& m : grain_materials(soil)) {
     text += fmt::format(" E {} kt/kn {} mu {} beta {} eta {}", m.modulus, m.stiffness_ratio, m.friction, m.rolling_stiffness,
                         m.rolling_limit);

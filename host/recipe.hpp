@@ -22,6 +22,7 @@ struct PackedRve {
   std::vector<std::uint32_t> contact_key;
   std::vector<double> contact_history;  ///< (contact, 2): tangential force [N], rolling moment [N m]
   std::int64_t seed = 0;
+  double consolidation_friction = 0;  ///< temporary friction coefficient that made it [-]
   double void_ratio = 0;    ///< area of voids / area of grains [-]
   double pressure = 0;      ///< [Pa]
   double coordination = 0;  ///< 2 contacts / grains [-]

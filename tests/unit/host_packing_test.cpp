@@ -46,6 +46,19 @@ TEST_F(HostPacking, RestsAtItsPressureWithTheRecipesGrains) {
   EXPECT_NEAR(rve.packing.materials[0].friction, std::tan(input_.soil.friction), 1e-15) << "the working friction";
 }
 
+TEST_F(HostPacking, AWantedVoidRatioIsFoundThroughTheTemporaryFriction) {
+  const std::int64_t seeds[] = {1, 2};
+  input_.packing.void_ratio = 0.25;
+  for (const PackedRve& rve : make_packings(input_.soil, input_.packing, seeds)) {
+    EXPECT_EQ(rve.status, kernels::RveStatus::converged);
+    EXPECT_NEAR(rve.void_ratio, 0.25, 0.01);
+    EXPECT_GT(rve.consolidation_friction, 0.01);
+    EXPECT_NEAR(rve.packing.materials[0].friction, std::tan(input_.soil.friction), 1e-15);
+  }
+  input_.packing.void_ratio = 0.9;  // no packing is that loose
+  EXPECT_NE(make_packings(input_.soil, input_.packing, seeds).front().status, kernels::RveStatus::converged);
+}
+
 TEST_F(HostPacking, ASeedsPackingDoesNotDependOnTheOthers) {
   const std::int64_t both[] = {1, 2}, alone[] = {2};
   const PackedRve beside = make_packings(input_.soil, input_.packing, both)[1];
