@@ -74,7 +74,7 @@ PairShape<real_of<V>> shape_of(const Packing& packing, int i, int j) {
           .active = 1,
           .sum_radii = r(ri + rj),
           .inverse_sum = r(1.0 / (ri + rj)),
-          .inverse_sum_squared = r(1.0 / ((ri + rj) * (ri + rj))),
+          .minus_inverse_sum_squared = r(-1.0 / ((ri + rj) * (ri + rj))),
           .radius_other = r(rj),
           .normal_stiffness = r(c.normal_stiffness),
           .tangential_stiffness = r(c.tangential_stiffness),
@@ -102,6 +102,9 @@ class UnionBuilder {
       count = append_row(group, lanes, packing, i, count);
     }
     group.row[static_cast<std::size_t>(n)] = count;
+    const auto used = static_cast<std::size_t>(count);
+    group.pair_shapes.resize(std::max(group.pair_shapes.size(), used + pairs_ahead));
+    for (std::size_t k = 0; k < pairs_ahead; ++k) group.pair_shapes[used + k].other = 0;
   }
 
  private:
@@ -126,7 +129,7 @@ class UnionBuilder {
         const auto at = static_cast<std::size_t>(count);
         if (at == group.pairs.size()) {
           group.pairs.resize(2 * at + 64);
-          group.pair_shapes.resize(2 * at + 64);
+          group.pair_shapes.resize(2 * at + 64 + pairs_ahead);
         }
         group.pair_shapes[at] = shape_of<V>(packing, i, j);
         fill(group.pairs[at], lanes, pair_key(i, j), packing);

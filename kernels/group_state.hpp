@@ -45,7 +45,7 @@ struct PairShape {
   std::int32_t active;  ///< 1 while any lane may hold history; a pair is skipped only when no lane touches and this is 0
   real sum_radii;       ///< R [m]
   real inverse_sum;     ///< 1/R
-  real inverse_sum_squared;
+  real minus_inverse_sum_squared;  ///< -1/R^2
   real radius_other;
   real normal_stiffness, tangential_stiffness, rolling_stiffness, friction, rolling_arm;
 };
@@ -68,6 +68,8 @@ struct SweepSums {
   V largest_overlap = V(0);  ///< largest e = -g/R^2 over contacts [-]
 };
 
+inline constexpr int pairs_ahead = 2;  ///< how far a sweep looks ahead in the list
+
 /// Plain vectors, not views: a group grows its arrays inside the parallel region, where a view may not be made.
 template <class V>
 struct GroupState {
@@ -77,7 +79,7 @@ struct GroupState {
   std::vector<GrainShape<real_of<V>>> shapes;
   std::vector<int> row;  ///< pairs of grain i: row[i] .. row[i + 1]
   std::vector<PairLanes<V>> pairs;  ///< the first row.back() are in use
-  std::vector<PairShape<real_of<V>>> pair_shapes;
+  std::vector<PairShape<real_of<V>>> pair_shapes;  ///< `pairs_ahead` more follow those in use, of grain 0
   CellMotion<V> motion;
 };
 

@@ -110,7 +110,7 @@ int ranges_along(int at, int n, std::pair<int, int> out[2]) {
 std::vector<std::vector<int>> sort_by_size(std::span<const double> radii, double largest) {
   std::vector<std::vector<int>> levels;
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    const auto level = static_cast<std::size_t>(std::max(0.0, std::floor(std::log2(largest / radii[i]))));
+    const auto level = static_cast<std::size_t>(std::max(0, std::ilogb(largest / radii[i])));
     if (level >= levels.size()) levels.resize(level + 1);
     levels[level].push_back(static_cast<int>(i));
   }

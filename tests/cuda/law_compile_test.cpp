@@ -116,7 +116,7 @@ auto shear_row() {
   PairShape<real> pair{};
   pair.sum_radii = real(2.0 * radius);
   pair.inverse_sum = real(0.5 / radius);
-  pair.inverse_sum_squared = real(0.25 / (radius * radius));
+  pair.minus_inverse_sum_squared = real(-0.25 / (radius * radius));
   pair.radius_other = real(radius);
   pair.normal_stiffness = real(k.normal_stiffness);
   pair.tangential_stiffness = real(k.tangential_stiffness);
