@@ -13,6 +13,7 @@ namespace voussoir::host {
 enum class CaseKind { pack, probe, biaxial, column, tunnel };
 enum class MaterialKind { grains, linear_elastic };
 enum class Precision { single_precision, double_precision };
+enum class TangentChoice { contact, elastic, static_ };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
 
 /// [[soil.class]] Grains up to a size, made of one stuff (Table 1). Keys that are not given are those of [soil].
@@ -109,6 +110,7 @@ struct NewtonCase {
   double displacement_tolerance = 1.0e-2;  ///< of the last correction, relative to the increment [-]
   int maximum_iterations = 40;
   int anderson_depth = 5;                  ///< 0: plain Newton
+  TangentChoice tangent = TangentChoice::contact;  ///< of the RVEs; kernels/README.md, "Static tangent"
   double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
   double smallest_cut = 1.0 / 64.0;        ///< smallest share of a planned step that cutting tries [-]
 };

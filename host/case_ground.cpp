@@ -70,6 +70,10 @@ NewtonCase read_newton(const io::Table& table) {
                 {.at_most = "1", .positive = true});
   read_integer(table, "maximum_iterations", newton.maximum_iterations, {.at_least = 1, .at_most = 10000});
   read_integer(table, "anderson_depth", newton.anderson_depth, {.at_least = 0, .at_most = 50});
+  const std::string tangent = table.choice("tangent", {"contact", "elastic", "static"}, "contact");
+  newton.tangent = tangent == "contact"   ? TangentChoice::contact
+                   : tangent == "elastic" ? TangentChoice::elastic
+                                          : TangentChoice::static_;
   read_quantity(table, "initial_tangent_fraction", Dimension::none, newton.initial_tangent_fraction,
                 {.at_least = "0", .at_most = "10"});
   read_quantity(table, "smallest_cut", Dimension::none, newton.smallest_cut, {.at_most = "1", .positive = true});

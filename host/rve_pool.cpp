@@ -36,6 +36,15 @@ void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::St
   }
 }
 
+kernels::TangentKind kernel_tangent(TangentChoice choice) {
+  switch (choice) {
+    case TangentChoice::elastic: return kernels::TangentKind::elastic;
+    case TangentChoice::static_: return kernels::TangentKind::static_;
+    case TangentChoice::contact: break;
+  }
+  return kernels::TangentKind::contact;
+}
+
 kernels::Mat2 relative_gradient(const fem::Gradient& h) { return {1.0 + h(0, 0), h(0, 1), h(1, 0), 1.0 + h(1, 1)}; }
 
 /// Next number of the series 1.25^k: counts on a coarse grid, so that a predictor's rounding does not change them.
@@ -45,12 +54,13 @@ int round_up(double steps) {
 
 }  // namespace
 
-RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n)
+RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent)
     : engine_(engine),
       settings_{.precision = engine.precision == Precision::single_precision ? kernels::Precision::float32
                                                                              : kernels::Precision::float64,
                 .skin = engine.skin,
-                .hold_tolerance = engine.hold_tolerance},
+                .hold_tolerance = engine.hold_tolerance,
+                .tangent = kernel_tangent(tangent)},
       batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
       requests_(n),
       trial_reports_(n),
@@ -202,7 +212,7 @@ std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> po
 }
 
 std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points, const PackingNote& note) {
-  return std::make_unique<RvePool>(choose_packing(input, note), input.engine, n_points);
+  return std::make_unique<RvePool>(choose_packing(input, note), input.engine, n_points, input.newton.tangent);
 }
 
 }  // namespace voussoir::host

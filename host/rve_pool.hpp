@@ -12,7 +12,7 @@ namespace voussoir::host {
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
   /// `n` clones of `rve`.
-  RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n);
+  RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent = TangentChoice::contact);
 
   [[nodiscard]] std::size_t size() const override { return batch_.size(); }
   void begin_increment() override;

@@ -57,6 +57,12 @@ struct ContactForce {
   V moment;      ///< m on i [N m]
 };
 
+/// The law's springs at its state.
+template <class V>
+struct ContactStiffness {
+  V normal, tangential, rolling;  ///< [N/m], [N/m], [N m/rad]
+};
+
 /// Linear normal spring, tangential spring with Coulomb cap, rolling spring with plastic cap (Iwashita and Oda 1998).
 template <class V, bool Rolling>
 struct LinearContactLaw {
@@ -80,6 +86,24 @@ struct LinearContactLaw {
     } else {
       return {fn, history.tangential, V(0)};
     }
+  }
+
+  /// Its derivative by the motion, with the springs that have yielded left out (their force follows f_n only, which has no
+  /// potential and is neglected). @param history within the caps, as the call above leaves it
+  /// @param elastic_share share of its cap below which a spring holds; above 1, all do that have a cap
+  KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> stiffness(const V& overlap, const History& history,
+                                                            const V& elastic_share) const {
+    const V zero(0);
+    const auto touches = zero < overlap;
+    const V fn = larger(normal_stiffness * overlap, zero);
+    const auto sticks = Kokkos::abs(history.tangential) < elastic_share * (friction * fn);
+    ContactStiffness<V> k{Kokkos::Experimental::condition(touches, normal_stiffness, zero),
+                          Kokkos::Experimental::condition(sticks, tangential_stiffness, zero), zero};
+    if constexpr (Rolling) {
+      const auto holds = Kokkos::abs(history.moment) < elastic_share * (rolling_arm * fn);
+      k.rolling = Kokkos::Experimental::condition(holds, rolling_stiffness, zero);
+    }
+    return k;
   }
 };
 

@@ -8,6 +8,7 @@
 #include "kernels/drives.hpp"
 #include "kernels/group_lists.hpp"
 #include "kernels/homogenise.hpp"
+#include "kernels/static_tangent.hpp"
 
 namespace voussoir::kernels {
 
@@ -48,6 +49,7 @@ struct GroupRun {
   std::array<LaneList<real>, width> lists;
   GroupState<V> group;
   UnionBuilder<V> builder;
+  SpringSystem<V> springs;          ///< empty unless the static tangent is asked for
   std::vector<std::uint32_t> keys;  ///< scratch of a rebase
   std::vector<KeptContact> kept;    ///< scratch of a restore or rebase
 };

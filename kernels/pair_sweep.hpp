@@ -66,6 +66,12 @@ KOKKOS_FORCEINLINE_FUNCTION V overlap_measure(const PairGeometry<V>& at, const P
   return Kokkos::Experimental::condition(at.gap < V(0), at.gap * V(shape.minus_inverse_sum_squared), V(0));
 }
 
+template <class Law, class V, class real>
+KOKKOS_FORCEINLINE_FUNCTION Law law_of(const PairShape<real>& shape) {
+  return {V(shape.normal_stiffness), V(shape.tangential_stiffness), V(shape.rolling_stiffness), V(shape.friction),
+          V(shape.rolling_arm)};
+}
+
 /// Law and forces of a pair that touches in at least one lane. (dw_x, dw_y) is w_j - w_i.
 template <class Law, class V, class real>
 KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShape<real>& shape, const PairGeometry<V>& at,
@@ -82,8 +88,7 @@ KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShap
   const V radius_j = V(shape.radius_other);
   const V sliding = fused(distance.inverse_ratio, along, -fused(radius_i, spin_i, radius_j * spin_j));
 
-  const Law law{V(shape.normal_stiffness), V(shape.tangential_stiffness), V(shape.rolling_stiffness), V(shape.friction),
-                V(shape.rolling_arm)};
+  const Law law = law_of<Law, V>(shape);
   typename Law::History history{pair.tangential, pair.moment};
   const ContactForce<V> f = law({distance.overlap, sliding, spin_j - spin_i}, history);
   pair.tangential = history.tangential;

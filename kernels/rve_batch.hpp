@@ -13,6 +13,7 @@
 
 #include "kernels/contact_law.hpp"
 #include "kernels/kinematics.hpp"
+#include "kernels/settings.hpp"
 
 namespace voussoir::kernels {
 
@@ -83,7 +84,10 @@ struct RveReport {
   int steps = 0;                ///< executed, hold included
   int contacts = 0;
   double stress[4] = {};        ///< Love-Weber, xx xy yx yy, tension positive [Pa]
-  double tangent[6] = {};       ///< eq. (4) symmetrised, xxxx xxyy xxxy yyyy yyxy xyxy [Pa]
+  double tangent[6] = {};       ///< symmetrised, xxxx xxyy xxxy yyyy yyxy xyxy [Pa]
+  TangentKind tangent_kind = TangentKind::contact;
+  int tangent_iterations = 0;   ///< of a static tangent
+  bool tangent_capped = false;  ///< they reached their limit: the tangent is too stiff, by less than eq. (4)
   double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
   double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
   double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]

@@ -10,6 +10,10 @@ namespace voussoir::kernels {
 
 enum class Precision { float32, float64 };
 
+/// Contact tangent, eq. (4), or the packing's own static one (static_tangent.hpp): with every contact stuck, or without
+/// the springs that have yielded.
+enum class TangentKind { contact, elastic, static_ };
+
 /// Numerical settings of a run. The case file's [engine] table sets them for a mesh; packings are made with these.
 struct EngineSettings {
   Precision precision = Precision::float32;
@@ -20,6 +24,9 @@ struct EngineSettings {
   int look_interval = 16;          ///< steps between looks at stress and unbalanced force
   int list_interval = 8;           ///< steps between looks at displacements
   int guard_interval = 256;        ///< steps between looks at overlaps while straining
+  TangentKind tangent = TangentKind::contact;
+  double tangent_tolerance = 2e-3; ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
+  int tangent_iterations = 800;    ///< limit
 };
 
 /// Given motion of one RVE: F_rel reached in `strain_steps` equal steps, then at most `hold_cap` steps of rest.

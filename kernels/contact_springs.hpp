@@ -1,0 +1,231 @@
+#pragma once
+/// The contacts of a group as springs at rest: what the law's linearisation makes of them, and what they do when grains
+/// move.
+///
+/// One symmetric operator per contact: k_n, k_t / y and k_r on the changes of length of kernels/README.md "One step",
+/// 3. The force is the engine's own; its torque arms r - delta/2 are taken as r/y, and the rotation of the forces
+/// already carried is left out (both of the order of overlap / diameter).
+
+#include <array>
+#include <vector>
+
+#include "kernels/pair_sweep.hpp"
+#include "kernels/settings.hpp"
+
+namespace voussoir::kernels {
+
+inline constexpr int unit_strains = 3;  ///< xx, yy, gamma_xy
+
+/// Motion of a grain under one unit strain, or a force and torque in the same places.
+template <class V>
+struct GrainDofs {
+  V x, y, spin;
+};
+
+/// A contact as springs; all stiffnesses are 0 in lanes where the pair does not touch.
+template <class V>
+struct SpringLanes {
+  V normal_x, normal_y, branch;   ///< n [-], |b| [m]
+  V ratio;                        ///< y = R/|b|
+  V normal, tangential, rolling;  ///< k_n, k_t / y [N/m], k_r [N m/rad]
+};
+
+/// A contact, the same in all lanes.
+template <class real>
+struct SpringShape {
+  int other;
+  real radius_other;
+};
+
+/// Working arrays of one grain in the conjugate gradients.
+template <class V>
+struct SolverGrain {
+  std::array<GrainDofs<V>, unit_strains> motion, residual, direction, image;
+  GrainDofs<V> inverse_diagonal;  ///< of K; 0 where the grain has no stiffness
+};
+
+/// K of a group, matrix-free. Reused from group to group.
+template <class V>
+struct SpringSystem {
+  std::vector<int> row;  ///< springs of grain i: row[i] .. row[i + 1]
+  std::vector<SpringLanes<V>> springs;
+  std::vector<SpringShape<real_of<V>>> shapes;
+  std::vector<real_of<V>> radii;
+  std::vector<SolverGrain<V>> grains;
+};
+
+/// Displacement of a branch's far end under unit strain `a`.
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION void add_unit_strain(int a, const SpringLanes<V>& s, V& dx, V& dy) {
+  const V bx = s.branch * s.normal_x, by = s.branch * s.normal_y;
+  const V half(real_of<V>(0.5));
+  if (a == 0) dx = dx + bx;
+  if (a == 1) dy = dy + by;
+  if (a == 2) {
+    dx = fused(half, by, dx);
+    dy = fused(half, bx, dy);
+  }
+}
+
+/// Changes of length of a contact's springs; kernels/README.md "One step", 3.
+template <class V>
+struct SpringStrain {
+  V normal, sliding, rolling;
+};
+
+/// @param dx, dy displacement of grain j against i
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION SpringStrain<V> spring_strain(const SpringLanes<V>& s, const V& dx, const V& dy,
+                                                          const V& radius_i, const V& spin_i, const V& radius_j,
+                                                          const V& spin_j) {
+  const V along = fused(dy, s.normal_x, -(dx * s.normal_y));
+  return {fused(dx, s.normal_x, dy * s.normal_y), fused(s.ratio, along, -fused(radius_i, spin_i, radius_j * spin_j)),
+          spin_j - spin_i};
+}
+
+/// Adds to `on_i` and `on_j` what the stretched springs do to the two grains.
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION void pull(const SpringLanes<V>& s, const SpringStrain<V>& e, const V& radius_i,
+                                      const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) {
+  const V fn = s.normal * e.normal;
+  const V shear = s.tangential * e.sliding;
+  const V ft = s.ratio * shear;
+  const V m = s.rolling * e.rolling;
+  const V fx = fused(fn, s.normal_x, -(ft * s.normal_y));
+  const V fy = fused(fn, s.normal_y, ft * s.normal_x);
+  on_i = {on_i.x + fx, on_i.y + fy, fused(radius_i, shear, on_i.spin) + m};
+  on_j = {on_j.x - fx, on_j.y - fy, fused(radius_j, shear, on_j.spin) - m};
+}
+
+/// Share of its cap at which a spring counts as yielded. @param kind elastic: none does
+[[nodiscard]] inline double elastic_share(TangentKind kind) {
+  return kind == TangentKind::elastic ? 2.0 : 1.0 - 1e-4;
+}
+
+/// The springs of every pair that touches in some lane.
+template <class Law, class V>
+void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<V>& system) {
+  using real = real_of<V>;
+  const V zero(0), share(static_cast<real>(elastic_share(kind)));
+  const auto n = static_cast<std::size_t>(group.n_grains);
+  const GrainDofs<V> none{zero, zero, zero};
+  system.row.assign(n + 1, 0);
+  system.radii.resize(n);
+  system.grains.assign(n, {{none, none, none}, {none, none, none}, {none, none, none}, {none, none, none}, none});
+  system.springs.clear();
+  system.shapes.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    system.radii[i] = group.shapes[i].radius;
+    for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
+      const PairLanes<V>& pair = group.pairs[p];
+      const PairShape<real>& shape = group.pair_shapes[p];
+      const GrainLanes<V>& gj = group.grains[static_cast<std::size_t>(shape.other)];
+      const auto at = geometry_of(pair, group.motion, gj.u_x - group.grains[i].u_x, gj.u_y - group.grains[i].u_y);
+      if (!Kokkos::Experimental::any_of(at.gap < zero)) continue;
+      const PairDistance<V> distance = distance_of(overlap_measure(at, shape), V(shape.sum_radii));
+      const V to_unit = distance.inverse_ratio * V(shape.inverse_sum);
+      const ContactStiffness<V> k =
+          law_of<Law, V>(shape).stiffness(distance.overlap, {pair.tangential, pair.moment}, share);
+      const V y = distance.inverse_ratio;
+      system.springs.push_back(
+          {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling});
+      system.shapes.push_back({shape.other, shape.radius_other});
+    }
+    system.row[i + 1] = static_cast<int>(system.springs.size());
+  }
+}
+
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION void add_diagonal(const SpringLanes<V>& s, const V& radius, GrainDofs<V>& on) {
+  const V kt = s.tangential * s.ratio * s.ratio;
+  on.x = on.x + fused(s.normal * s.normal_x, s.normal_x, kt * s.normal_y * s.normal_y);
+  on.y = on.y + fused(s.normal * s.normal_y, s.normal_y, kt * s.normal_x * s.normal_x);
+  on.spin = on.spin + fused(s.tangential * radius, radius, s.rolling);
+}
+
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION V inverse_or_zero(const V& x) {
+  return Kokkos::Experimental::condition(V(0) < x, V(1) / x, V(0));
+}
+
+/// Calls body(spring, i, j, radius_i, radius_j) for all springs, in the order of the lists.
+template <class V, class Body>
+void for_each_spring(SpringSystem<V>& system, const Body& body) {
+  for (std::size_t i = 0; i + 1 < system.row.size(); ++i) {
+    for (auto c = static_cast<std::size_t>(system.row[i]); c < static_cast<std::size_t>(system.row[i + 1]); ++c) {
+      const auto& shape = system.shapes[c];
+      body(system.springs[c], system.grains[i], system.grains[static_cast<std::size_t>(shape.other)],
+           V(system.radii[i]), V(shape.radius_other));
+    }
+  }
+}
+
+template <class V>
+using PerStrain = std::array<V, unit_strains>;
+
+/// Residuals under the unit strains, the inverse diagonal, and the energies (twice) of the affine motion.
+template <class V>
+void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
+  const V zero(0);
+  for_each_spring(
+      system, [&](const SpringLanes<V>& s, SolverGrain<V>& gi, SolverGrain<V>& gj, const V& ri, const V& rj) {
+        add_diagonal(s, ri, gi.inverse_diagonal);
+        add_diagonal(s, rj, gj.inverse_diagonal);
+        for (std::size_t a = 0; a < unit_strains; ++a) {
+          V dx = zero, dy = zero;
+          add_unit_strain(static_cast<int>(a), s, dx, dy);
+          const SpringStrain<V> e = spring_strain(s, dx, dy, ri, zero, rj, zero);
+          pull(s, e, ri, rj, gi.residual[a], gj.residual[a]);
+          energy[a] = fused(s.normal * e.normal, e.normal, fused(s.tangential * e.sliding, e.sliding, energy[a]));
+        }
+      });
+  for (SolverGrain<V>& g : system.grains) {
+    auto& d = g.inverse_diagonal;
+    d = {inverse_or_zero(d.x), inverse_or_zero(d.y), inverse_or_zero(d.spin)};
+  }
+}
+
+/// image = -K direction. Rows gather grain i's part in registers.
+template <class V>
+void apply_springs(SpringSystem<V>& system) {
+  for (std::size_t i = 0; i + 1 < system.row.size(); ++i) {
+    SolverGrain<V>& gi = system.grains[i];
+    const auto from = gi.direction;
+    auto on = gi.image;
+    const V ri(system.radii[i]);
+    for (auto c = static_cast<std::size_t>(system.row[i]); c < static_cast<std::size_t>(system.row[i + 1]); ++c) {
+      const SpringLanes<V>& s = system.springs[c];
+      SolverGrain<V>& gj = system.grains[static_cast<std::size_t>(system.shapes[c].other)];
+      const V rj(system.shapes[c].radius_other);
+      for (std::size_t a = 0; a < unit_strains; ++a) {
+        const GrainDofs<V>& to = gj.direction[a];
+        const SpringStrain<V> e = spring_strain(s, to.x - from[a].x, to.y - from[a].y, ri, from[a].spin, rj, to.spin);
+        pull(s, e, ri, rj, on[a], gj.image[a]);
+      }
+    }
+    gi.image = on;
+  }
+}
+
+/// Twice the mixed energies of the three motions.
+template <class V>
+void add_energies(SpringSystem<V>& system, V* tangent) {
+  for_each_spring(system, [&](const SpringLanes<V>& s, const SolverGrain<V>& gi, const SolverGrain<V>& gj, const V& ri,
+                              const V& rj) {
+    std::array<SpringStrain<V>, unit_strains> e;
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      V dx = gj.motion[a].x - gi.motion[a].x, dy = gj.motion[a].y - gi.motion[a].y;
+      add_unit_strain(static_cast<int>(a), s, dx, dy);
+      e[a] = spring_strain(s, dx, dy, ri, gi.motion[a].spin, rj, gj.motion[a].spin);
+    }
+    std::size_t entry = 0;
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      const V fn = s.normal * e[a].normal, ft = s.tangential * e[a].sliding, m = s.rolling * e[a].rolling;
+      for (std::size_t b = a; b < unit_strains; ++b, ++entry) {
+        tangent[entry] = fused(fn, e[b].normal, fused(ft, e[b].sliding, fused(m, e[b].rolling, tangent[entry])));
+      }
+    }
+  });
+}
+
+}  // namespace voussoir::kernels

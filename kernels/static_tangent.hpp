@@ -1,0 +1,184 @@
+#pragma once
+/// Static tangent of all lanes at rest: the packing's own stiffness with the grains' motion condensed out.
+///
+/// Every contact is replaced by the springs of the law at its state (a sliding or rolling contact has lost that
+/// spring). Under a unit strain the grains move and spin until the springs balance:  K x = -B,  D = (1/V)(A - B^T K^+
+/// B)  with A the springs' affine stiffness. K is never formed: preconditioned conjugate gradients (Hestenes and
+/// Stiefel 1952) for the three unit strains at once, one RVE per lane. D is taken as the energy of the motion found,
+/// sum k e_a e_b / V: symmetric and positive semidefinite whatever the iterations left, its error of second order,
+/// never below the exact one (Ritz).
+///
+/// K is singular (rigid translations, rattlers, mechanisms of sliding contacts), but the loads come from the same
+/// springs, so the system is consistent and the iterations stay in the range of K.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "kernels/contact_springs.hpp"
+
+namespace voussoir::kernels {
+
+inline constexpr int tangent_look_interval = 16;  ///< iterations between looks at the energies
+inline constexpr double softest =
+    1e-2;  ///< energies are resolved down to this share of the affine one: mechanisms have none
+
+/// Answer of a group: sums over contacts, to be divided by the volume.
+template <class V>
+struct StaticTangent {
+  V tangent[6] = {V(0), V(0), V(0), V(0), V(0), V(0)};  ///< as Homogenised::tangent [N m]
+  std::array<int, V::size()> iterations{};
+  std::array<bool, V::size()> converged{};
+};
+
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION V dot(const GrainDofs<V>& a, const GrainDofs<V>& b, const V& sum) {
+  return fused(a.x, b.x, fused(a.y, b.y, fused(a.spin, b.spin, sum)));
+}
+
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> scaled(const GrainDofs<V>& factor, const GrainDofs<V>& a) {
+  return {factor.x * a.x, factor.y * a.y, factor.spin * a.spin};
+}
+
+/// a + s b
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> plus(const GrainDofs<V>& a, const V& s, const GrainDofs<V>& b) {
+  return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.spin, a.spin)};
+}
+
+/// residual . (preconditioner residual), by unit strain.
+template <class V>
+[[nodiscard]] PerStrain<V> preconditioned_norms(const SpringSystem<V>& system) {
+  PerStrain<V> norm{V(0), V(0), V(0)};
+  for (const SolverGrain<V>& g : system.grains) {
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      norm[a] = dot(g.residual[a], scaled(g.inverse_diagonal, g.residual[a]), norm[a]);
+    }
+  }
+  return norm;
+}
+
+/// direction = preconditioned residual + beta direction; clears the images.
+template <class V>
+void turn_directions(SpringSystem<V>& system, const PerStrain<V>& beta) {
+  const V zero(0);
+  for (SolverGrain<V>& g : system.grains) {
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      g.direction[a] = plus(scaled(g.inverse_diagonal, g.residual[a]), beta[a], g.direction[a]);
+      g.image[a] = {zero, zero, zero};
+    }
+  }
+}
+
+/// Which solutions of which lanes go on, and what their energies are.
+template <class V>
+struct Progress {
+  PerStrain<V> running;
+  PerStrain<V> energy;                    ///< twice the energy of the motion so far: the diagonal of V D
+  PerStrain<V> affine;                    ///< the same of the affine motion
+  PerStrain<V> rounding;                  ///< preconditioned residual norm that is rounding
+  PerStrain<V> gained{V(0), V(0), V(0)};  ///< its decrease since the last look
+};
+
+/// Step lengths: rho / (direction . K direction), 0 where a solution is frozen or its residual is down to rounding (on
+/// an exact solution of a mechanism the next step would be noise over noise).
+template <class V>
+[[nodiscard]] PerStrain<V> step_lengths(const SpringSystem<V>& system, const PerStrain<V>& rho,
+                                        const Progress<V>& progress) {
+  const V zero(0);
+  PerStrain<V> work{zero, zero, zero}, alpha;
+  for (const SolverGrain<V>& g : system.grains) {
+    for (std::size_t a = 0; a < unit_strains; ++a) work[a] = dot(g.direction[a], g.image[a], work[a]);
+  }
+  for (std::size_t a = 0; a < unit_strains; ++a) {
+    const auto goes_on = (work[a] < zero) && (zero < progress.running[a]) && (progress.rounding[a] < rho[a]);
+    alpha[a] = Kokkos::Experimental::condition(goes_on, -(rho[a] / work[a]), zero);
+  }
+  return alpha;
+}
+
+template <class V>
+void advance_motions(SpringSystem<V>& system, const PerStrain<V>& alpha) {
+  for (SolverGrain<V>& g : system.grains) {
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      g.motion[a] = plus(g.motion[a], alpha[a], g.direction[a]);
+      g.residual[a] = plus(g.residual[a], alpha[a], g.image[a]);
+    }
+  }
+}
+
+/// Freezes what changed its diagonal entry by less than the tolerance since the last look (the decrease of the energy
+/// over the last iterations estimates the error: Hestenes and Stiefel; Strakos and Tichy 2002); false when nothing is
+/// left.
+template <class V>
+[[nodiscard]] bool look_at(Progress<V>& progress, StaticTangent<V>& out, int iteration, double tolerance) {
+  bool any = false;
+  for (std::size_t l = 0; l < V::size(); ++l) {
+    bool lane_runs = false;
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      const double floor = softest * static_cast<double>(progress.affine[a][l]);
+      const double energy = std::max(static_cast<double>(progress.energy[a][l]), floor);
+      const auto gained = static_cast<double>(progress.gained[a][l]);
+      if (!(gained > tolerance * energy)) progress.running[a][l] = 0;  // NaN ends here too
+      lane_runs = lane_runs || progress.running[a][l] > 0;
+      progress.gained[a][l] = 0;
+    }
+    if (!lane_runs && !out.converged[l]) {
+      out.converged[l] = true;
+      out.iterations[l] = iteration;
+    }
+    any = any || lane_runs;
+  }
+  return any;
+}
+
+/// The conjugate gradients. On return system.grains[i].motion holds the grains' motions.
+template <class V>
+void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent<V>& out,
+                   const EngineSettings& settings) {
+  const V zero(0);
+  PerStrain<V> beta{zero, zero, zero};
+  PerStrain<V> rho = preconditioned_norms(system);
+  constexpr real_of<V> resolution = 8 * std::numeric_limits<real_of<V>>::epsilon();
+  for (std::size_t a = 0; a < unit_strains; ++a) progress.rounding[a] = V(resolution * resolution) * rho[a];
+  for (int k = 1; k <= settings.tangent_iterations; ++k) {
+    turn_directions(system, beta);
+    apply_springs(system);
+    const PerStrain<V> alpha = step_lengths(system, rho, progress);
+    advance_motions(system, alpha);
+    const PerStrain<V> next = preconditioned_norms(system);
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      const V gain = alpha[a] * rho[a];
+      progress.energy[a] = progress.energy[a] - gain;
+      progress.gained[a] = progress.gained[a] + gain;
+      beta[a] = Kokkos::Experimental::condition((zero < alpha[a]) && (zero < rho[a]), next[a] / rho[a], zero);
+    }
+    rho = next;
+    if (k % tangent_look_interval == 0 && !look_at(progress, out, k, settings.tangent_tolerance)) return;
+  }
+  for (std::size_t l = 0; l < V::size(); ++l) {
+    if (!out.converged[l]) out.iterations[l] = settings.tangent_iterations;
+  }
+}
+
+/// @param live lanes whose answer is wanted; the others do not prolong the iterations
+/// Call after homogenise(), which brings the contacts' histories to the final positions.
+template <class Law, class V>
+StaticTangent<V> static_tangent(const GroupState<V>& group, SpringSystem<V>& system,
+                                const std::array<bool, V::size()>& live, const EngineSettings& settings) {
+  StaticTangent<V> out;
+  Progress<V> progress;
+  for (std::size_t a = 0; a < unit_strains; ++a) {
+    progress.energy[a] = V(0);
+    for (std::size_t l = 0; l < V::size(); ++l) progress.running[a][l] = live[l] ? real_of<V>(1) : real_of<V>(0);
+  }
+  collect_springs<Law>(group, settings.tangent, system);
+  load_springs(system, progress.energy);
+  progress.affine = progress.energy;
+  relax_springs(system, progress, out, settings);
+  add_energies(system, out.tangent);
+  return out;
+}
+
+}  // namespace voussoir::kernels
