@@ -1,6 +1,7 @@
 """Runs the peers on the benchmark's packing and sets their rates beside ours: compare.py BENCHMARK.json PACKING_FOLDER."""
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -55,6 +56,8 @@ def yade(packing):
 
 
 def main():
+    if os.getloadavg()[0] > 1.5:  # the benchmark before this is one of them
+        print(f"the machine is not idle (load {os.getloadavg()[0]:.1f}): no rate below is to be trusted")
     ours = our_rates(sys.argv[1])
     packing = read_packing(sys.argv[2])
     rates = {"float": ours["alike/float"], "double": ours["alike/double"]}
