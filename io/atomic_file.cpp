@@ -2,9 +2,11 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -28,10 +30,23 @@ void sync(const std::filesystem::path& path) {
   }
 }
 
+/// Whether another process that still runs on this machine is writing the temporary file NAME.PID.tmp.
+bool is_being_written(const std::filesystem::path& temporary) {
+  const std::string number = temporary.stem().extension().string();  // ".PID"
+  pid_t process = 0;
+  const char* const end = number.data() + number.size();
+  const bool named =
+      number.size() > 1 && std::from_chars(number.data() + 1, end, process) == std::from_chars_result{end, std::errc{}};
+  if (!named || process <= 0 || process == ::getpid()) {
+    return false;
+  }
+  return ::kill(process, 0) == 0 || errno == EPERM;  // EPERM: it lives, but belongs to another user
+}
+
 }  // namespace
 
 std::filesystem::path temporary_name(const std::filesystem::path& target) {
-  return target.string() + ".tmp";
+  return fmt::format("{}.{}.tmp", target.string(), ::getpid());
 }
 
 void publish(const std::filesystem::path& target) {
@@ -62,7 +77,7 @@ void write_text(const std::filesystem::path& target, const std::string& text) {
 void remove_leftovers(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> leftovers;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".tmp") {
+    if (entry.path().extension() == ".tmp" && !is_being_written(entry.path())) {
       leftovers.push_back(entry.path());
     }
   }

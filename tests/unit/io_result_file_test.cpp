@@ -1,10 +1,12 @@
 /// Results: round trip, kills at any moment, resume, and fields that do not fit.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
 
+#include "io/atomic_file.hpp"
 #include "io/hdf5.hpp"
 #include "io/result_file.hpp"
 
@@ -145,6 +147,21 @@ TEST_F(ResultFileTest, KilledWriterLeavesTheLastIncrementReadable) {
   EXPECT_FALSE(fs::exists(folder_ / "run.h5.tmp"));
   writer.write(info(2), fields());
   EXPECT_EQ(read_increments(folder_ / "run.h5").size(), 2U);
+}
+
+TEST_F(ResultFileTest, TemporaryFilesOfOtherLivingProcessesStay) {
+  fs::create_directories(folder_);
+  const fs::path dead = folder_ / "packing.h5.2147483646.tmp";  // beyond the largest process number of Linux
+  const fs::path living = folder_ / "packing.h5.1.tmp";         // process 1 always lives
+  const fs::path own = temporary_name(folder_ / "packing.h5");  // nothing of this process is half written now
+  for (const fs::path& file : {dead, living, own}) {
+    std::ofstream(file) << "half a file";
+  }
+  EXPECT_NE(own, living);
+  remove_leftovers(folder_);
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(living) || getpid() == 1);
+  EXPECT_FALSE(fs::exists(own));
 }
 
 TEST_F(ResultFileTest, ResumeDropsWhatCameAfterTheCheckpoint) {
