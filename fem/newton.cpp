@@ -179,11 +179,12 @@ void NewtonSolver::Workspace::form_residual() {
   report.residual = residual.norm();
   report.external_norm = load.external_force.norm();
   report.reaction_norm = increment.reactions.norm();
-  report.noise_floor =
+  const double allowed =
+      options.tolerance * std::max({report.external_norm, report.reaction_norm, load.reference_force});
+  const double noise =
       options.noise_factor * noise_force(mesh, increment.points, constrained, report.material.stress_noise);
-  report.residual_bound =
-      options.tolerance * std::max({report.external_norm, report.reaction_norm, load.reference_force}) +
-      report.noise_floor;
+  report.noise_floor = std::min(noise, options.noise_limit * allowed);
+  report.residual_bound = allowed + report.noise_floor;
   report.largest_nodal_ratio = 0;
   for (int node = 0; node < mesh.n_nodes(); ++node) {
     const double scale = internal.magnitude[node] + load.external_force.segment<2>(2 * node).norm();

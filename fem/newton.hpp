@@ -28,6 +28,7 @@ struct NewtonOptions {
   double anderson_condition = 1e6;  ///< limit on the condition of the least squares; older pairs are dropped beyond
   double growth_limit = 3.0;        ///< a residual grown by more than this halves the step and restarts Anderson
   int max_halvings = 2;             ///< of one correction
+  double noise_limit = 2.0;         ///< largest force floor over the tolerance it is added to: noise is no convergence
   double noise_factor = 1.5;        ///< on both noise floors; 0: none. At 1 only every other iterate would pass by luck
 };
 
@@ -50,7 +51,7 @@ struct NewtonReport {
   std::vector<double> correction_history;  ///< |K^-1 R| of each iterate [m]
   double residual = 0;                     ///< |R_free| at the end [N/m]
   double residual_bound = 0;               ///< what it is compared with [N/m], the noise floor included
-  double noise_floor = 0;                  ///< [N/m]
+  double noise_floor = 0;                  ///< its part of residual_bound [N/m]
   double correction_bound = 0;             ///< what the last correction is compared with [m], its noise floor included
   double external_norm = 0;                ///< |f_ext| [N/m]
   double reaction_norm = 0;                ///< |reactions| [N/m]

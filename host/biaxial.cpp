@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "kernels/drives.hpp"
 
@@ -21,6 +22,7 @@ std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double 
     const double pressure = rves[k].pressure;
     const double limit = kernels::largest_rate(rves[k].packing, settings);
     const double rate = std::min(inertial_number / rves[k].packing.inertial_time(pressure), limit);
+    if (!(strain / rate < 1e9)) throw std::invalid_argument("a biaxial test of this rate takes more than 1e9 steps");
     const int steps = static_cast<int>(std::ceil(strain / rate));
     requests.push_back({.x = {.stress_controlled = true, .target = -pressure},
                         .y = {.stress_controlled = false, .target = -rate},
@@ -80,9 +82,11 @@ Strength strength_of(const BiaxialCurve& curve, double window) {
   Strength out;
   if (curve.points.size() < 2) return out;
   const double end = curve.points.back().axial_strain;
-  double peak = 0, dilation = 0, lateral = 0;
+  double peak = 0, dilation = 0, lateral = 0, squared = 0;
   for (const BiaxialPoint& point : curve.points) {
-    lateral += point.stress_xx / curve.pressure - 1.0;
+    const double off = point.stress_xx / curve.pressure - 1.0;
+    lateral += off;
+    squared += off * off;
     out.contraction = std::max(out.contraction, point.volumetric_strain());
     const auto near = around(curve, point.axial_strain, window);
     const bool whole = point.axial_strain > 0.5 * window && point.axial_strain < end - 0.5 * window;
@@ -98,6 +102,7 @@ Strength strength_of(const BiaxialCurve& curve, double window) {
   const auto last_quarter = around(curve, 0.875 * end, 0.25 * end);
   if (!last_quarter.empty()) out.critical_angle = std::asin(std::min(mean_ratio(last_quarter), 1.0));
   out.lateral_error = std::abs(lateral / static_cast<double>(curve.points.size()));
+  out.lateral_scatter = std::sqrt(squared / static_cast<double>(curve.points.size()));
   return out;
 }
 

@@ -38,10 +38,11 @@ struct Strength {
   double dilatancy = 0;       ///< psi_max, sin psi = max(-d eps_v / d eps_q) [rad]
   double contraction = 0;     ///< largest eps_v [-]
   double lateral_error = 0;   ///< |mean of sigma_xx / pressure - 1| [-]
+  double lateral_scatter = 0; ///< root mean square of sigma_xx / pressure - 1 [-]
 };
 
 /// All packings in one batch, each compressed along y from its own state, its own pressure held on x. The packing must rest
-/// at that pressure already.
+/// at that pressure already. Throws std::invalid_argument where the rate asks for more than 1e9 steps.
 /// @param strain axial, logarithmic [-]; @param inertial_number sets the rate; @param samples points of a curve
 [[nodiscard]] std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double strain, double inertial_number,
                                                       int samples, const kernels::EngineSettings& settings);

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -49,18 +50,30 @@ std::vector<PackedRve> packings_of(const Case& input, const PackingNote& note) {
   return all;
 }
 
+/// Scatter of sigma_xx beyond which a test was not the one that was asked for.
+constexpr double most_scatter = 0.1;
+
+bool held(const BiaxialCurve& curve, const Strength& s) {
+  return curve.status == kernels::RveStatus::converged && s.lateral_scatter <= most_scatter;
+}
+
+const char* outcome(const BiaxialCurve& curve, const Strength& s) {
+  return curve.status == kernels::RveStatus::converged && !held(curve, s) ? "sigma_xx not held" : kernels::name_of(curve.status);
+}
+
 void print(const BiaxialCurve& curve, const Strength& s) {
   std::printf("seed %4lld  %7.1f kPa  phi_p %5.1f deg at %4.1f %%  phi_cs %5.1f deg  psi_max %5.1f deg  contraction %.3f %%  "
-              "sigma_xx off by %.2f %%  I %.1e  %s\n",
+              "sigma_xx off by %.2f %%, scatters by %.1f %%  I %.1e  %s\n",
               static_cast<long long>(curve.seed), curve.pressure * 1e-3, s.peak_angle / degree, s.peak_strain * 100.0,
               s.critical_angle / degree, s.dilatancy / degree, s.contraction * 100.0, s.lateral_error * 100.0,
-              curve.inertial_number, kernels::name_of(curve.status));
+              s.lateral_scatter * 100.0, curve.inertial_number, outcome(curve, s));
 }
 
 struct Summary {
-  std::vector<double> seed, pressure, peak, peak_p, peak_strain, critical, critical_p, dilatancy, contraction, lateral, inertial;
+  std::vector<double> seed, pressure, peak, peak_p, peak_strain, critical, critical_p, dilatancy, contraction;
+  std::vector<double> lateral, scatter, inertial, valid;
 
-  void add(const BiaxialCurve& curve, const Strength& s) {
+  void add(const BiaxialCurve& curve, const Strength& s, bool is_valid) {
     // sigma_xx is held, so p = sigma_xx / (1 - q/p) at any q/p.
     const auto p_at = [&](double angle) { return curve.pressure / (1.0 - std::sin(angle)); };
     seed.push_back(static_cast<double>(curve.seed));
@@ -73,13 +86,25 @@ struct Summary {
     dilatancy.push_back(s.dilatancy);
     contraction.push_back(s.contraction);
     lateral.push_back(s.lateral_error);
+    scatter.push_back(s.lateral_scatter);
+    valid.push_back(is_valid ? 1.0 : 0.0);
     inertial.push_back(curve.inertial_number);
   }
 
   [[nodiscard]] std::vector<io::TableColumn> table() const {
     return {{"seed", "-", seed},           {"pressure", "Pa", pressure},       {"peak_angle", "rad", peak},
             {"peak_strain", "-", peak_strain}, {"critical_angle", "rad", critical}, {"dilatancy_angle", "rad", dilatancy},
-            {"contraction", "-", contraction}, {"lateral_error", "-", lateral},     {"inertial_number", "-", inertial}};
+            {"contraction", "-", contraction}, {"lateral_error", "-", lateral},
+            {"lateral_scatter", "-", scatter}, {"inertial_number", "-", inertial},  {"valid", "-", valid}};
+  }
+
+  /// Entries of the tests that were held.
+  [[nodiscard]] std::vector<double> of_valid(const std::vector<double>& values) const {
+    std::vector<double> out;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (valid[k] != 0) out.push_back(values[k]);
+    }
+    return out;
   }
 };
 
@@ -100,14 +125,18 @@ int run_biaxial(const Case& input, const RunOptions& options) {
   for (const BiaxialCurve& curve : curves) {
     const Strength s = strength_of(curve, test.window);
     print(curve, s);
-    summary.add(curve, s);
-    failed = failed || curve.status != kernels::RveStatus::converged;
-    writer.set_table(fmt::format("seed_{}_{:.0f}_kPa", curve.seed, curve.pressure * 1e-3), curve_table(curve));
+    summary.add(curve, s, held(curve, s));
+    failed = failed || !held(curve, s);
+    writer.set_table(fmt::format("seed_{}_{:.4g}_kPa", curve.seed, curve.pressure * 1e-3), curve_table(curve));
   }
   writer.set_table("strength", summary.table());
-  std::printf("all tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f deg (smoothed over %.1f %% of axial strain)\n",
-              common_angle(summary.peak, summary.peak_p) / degree, common_angle(summary.critical, summary.critical_p) / degree,
-              *std::max_element(summary.dilatancy.begin(), summary.dilatancy.end()) / degree, test.window * 100.0);
+  const std::vector<double> psi = summary.of_valid(summary.dilatancy);
+  if (!psi.empty()) {
+    std::printf("all valid tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f deg (smoothed over %.1f %% of axial strain)\n",
+                common_angle(summary.of_valid(summary.peak), summary.of_valid(summary.peak_p)) / degree,
+                common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
+                *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
+  }
   return failed ? exit_numerical : exit_ok;
 }
 

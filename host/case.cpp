@@ -1,13 +1,17 @@
 #include "host/case.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "host/case_tables.hpp"
 #include "io/case_file.hpp"
+#include "io/hash.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -56,6 +60,19 @@ void read_ground_tables(const io::Table& root, Case& input) {
   }
 }
 
+/// The bytes of a packing of another code: its files may change under their names.
+std::string packing_content(const std::filesystem::path& file) {
+  std::string name = file.filename().string();
+  const std::size_t at = std::min(name.rfind("_particles.csv"), name.rfind("_meta.json"));
+  name = at == std::string::npos ? name : name.substr(0, at);
+  std::string content;
+  for (const char* end : {"_particles.csv", "_meta.json"}) {
+    std::ifstream in(file.parent_path() / (name + end), std::ios::binary);
+    content.append(std::istreambuf_iterator<char>(in), {});
+  }
+  return content;
+}
+
 /// The key `title`, else the folder of a case.toml, else the file's stem.
 std::string default_title(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
@@ -77,6 +94,7 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   input.resolved = text.resolved();
   const std::array<std::string, 3> without{"title", "output", "packing.folder"};  // none of them changes a number
   input.fingerprint = text.fingerprint(without);
+  if (!input.packing.file.empty()) input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
   return input;
 }
 

@@ -1,4 +1,6 @@
-// The tables of the grains: [soil], [packing], [engine], [probe].
+// The tables of the grains: [soil], [packing], [engine], [probe], [biaxial].
+#include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -94,6 +96,9 @@ PackingCase read_packing(const io::Table& table) {
   read_integer(table, "grains", packing.grains, {.at_least = 30, .at_most = 20000});
   packing.seed = table.integer("seed", {.fallback = packing.seed, .at_least = 0});
   packing.seeds = table.integers("seeds", {.at_least = 0}, std::vector<std::int64_t>{});
+  if (std::set<std::int64_t>(packing.seeds.begin(), packing.seeds.end()).size() != packing.seeds.size()) {
+    throw table.error("seeds", "names a seed twice");
+  }
   read_integer(table, "candidates", packing.candidates, {.at_least = 1, .at_most = 1000});
   read_quantity(table, "consolidation_friction", Dimension::none, packing.consolidation_friction,
                 {.at_least = "0", .at_most = "2"});
@@ -130,6 +135,14 @@ BiaxialCase read_biaxial(const io::Table& table) {
   read_quantity(table, "inertial_number", Dimension::none, test.inertial_number, {.at_least = "1e-6", .at_most = "1e-2"});
   read_quantity(table, "window", Dimension::none, test.window, {.at_least = "1e-5", .at_most = "0.1"});
   read_integer(table, "samples", test.samples, {.at_least = 20, .at_most = 100'000});
+  if (test.strain < 2.0 * test.window) throw table.error("window", "is more than half of the strain");
+  if (test.samples < 5.0 * test.strain / test.window) throw table.error("samples", "leaves fewer than five points in a window");
+  for (std::size_t k = 1; k < test.pressures.size(); ++k) {
+    if (std::find(test.pressures.begin(), test.pressures.begin() + static_cast<std::ptrdiff_t>(k), test.pressures[k]) !=
+        test.pressures.begin() + static_cast<std::ptrdiff_t>(k)) {
+      throw table.error("pressures", "names a pressure twice");
+    }
+  }
   return test;
 }
 

@@ -1,9 +1,11 @@
 // The committed state of a pool as bytes: what an evaluation starts from, nothing derived.
 
+#include <array>
 #include <cstring>
 #include <stdexcept>
 
 #include "host/rve_pool.hpp"
+#include "io/hash.hpp"
 
 namespace voussoir::host {
 
@@ -72,13 +74,30 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
   }
 }
 
+/// What the RVEs are made of; their state is nothing without it.
+std::uint64_t identity(const kernels::RveBatch& batch) {
+  std::uint64_t hash = io::fnv_start;
+  const auto add = [&hash](const auto& values) { hash = io::fnv1a(std::as_bytes(std::span(values)), hash); };
+  for (const kernels::Packing& p : batch.packings) {
+    add(p.radii);
+    add(p.class_of);
+    add(std::array{p.thickness, p.local_damping});
+    for (const kernels::GrainMaterial& m : p.materials) {
+      add(std::array{m.modulus, m.stiffness_ratio, m.friction, m.rolling_stiffness, m.rolling_limit});
+    }
+  }
+  return hash;
+}
+
 }  // namespace
 
 std::vector<std::byte> RvePool::state() const {
   std::vector<std::byte> bytes;
   Writer write(bytes);
   const std::uint64_t n = size();
+  const std::uint64_t packing = identity(batch_);
   write(&n, 1);
+  write(&packing, 1);
   for (const auto& report : committed_reports_) transfer_report(write, report);
   for (std::size_t k = 0; k < size(); ++k) {
     transfer_rve(write, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
@@ -91,6 +110,9 @@ void RvePool::set_state(std::span<const std::byte> bytes) {
   std::uint64_t n = 0;
   read(&n, 1);
   if (n != size()) throw std::runtime_error("the checkpoint has another number of RVEs");
+  std::uint64_t packing = 0;
+  read(&packing, 1);
+  if (packing != identity(batch_)) throw std::runtime_error("the checkpoint's RVEs are of another packing");
   for (auto& report : committed_reports_) transfer_report(read, report);
   for (std::size_t k = 0; k < size(); ++k) {
     transfer_rve(read, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));

@@ -217,7 +217,7 @@ TEST(Newton, NoiseIsNotChased) {
   for (const double noise : {1e2, 1e3, 5e3}) {  // against about 5e4 Pa of stress
     Block block;
     RoughMaterial rough(static_cast<std::size_t>(block.mesh.n_points()), noise);
-    NewtonSolver solver(block.mesh, rough, Kinematics::fixed_mesh, {});
+    NewtonSolver solver(block.mesh, rough, Kinematics::fixed_mesh, {.noise_limit = 1e3});
     for (int k = 0; k < 4; ++k) {
       Increment increment;
       const NewtonReport report = solver.solve_increment(block.state, block.load(0.003, 0.004), increment);
@@ -226,6 +226,17 @@ TEST(Newton, NoiseIsNotChased) {
       solver.commit(block.state, increment);
     }
   }
+}
+
+TEST(Newton, NoiseBeyondItsLimitIsNoConvergence) {
+  Block block;
+  RoughMaterial rough(static_cast<std::size_t>(block.mesh.n_points()), 2e4);  // 40 % of the stress
+  NewtonSolver solver(block.mesh, rough, Kinematics::fixed_mesh, {.max_iterations = 10});
+  Increment increment;
+  const NewtonReport report = solver.solve_increment(block.state, block.load(0.003, 0.004), increment);
+  EXPECT_EQ(report.status, NewtonStatus::max_iterations);
+  EXPECT_NEAR(report.residual_bound, 1.5 * report.noise_floor, 1e-9 * report.residual_bound);  // floor = 2 x tolerance
+  EXPECT_GT(report.residual, report.residual_bound);
 }
 
 TEST(Newton, ImpossibleOptionsAreRefused) {
