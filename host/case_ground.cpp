@@ -1,4 +1,5 @@
 // The tables of the ground and its stages: [ground], [column], [gravity], [volume_loss], [newton], [output], [elastic].
+#include <set>
 #include <string>
 
 #include "host/case_tables.hpp"
@@ -84,6 +85,8 @@ OutputCase read_output(const io::Table& table) {
   OutputCase output;
   read_integer(table, "every", output.every, {.at_least = 1, .at_most = 1'000'000});
   output.rves = table.integers("rves", {.at_least = 0}, std::vector<std::int64_t>{});
+  const std::set<std::int64_t> different(output.rves.begin(), output.rves.end());
+  if (different.size() != output.rves.size()) throw table.error("rves", "names a point twice");
   return output;
 }
 

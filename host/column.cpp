@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
@@ -118,7 +119,7 @@ ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& lo
     if (status != RunStatus::finished) return {status, {}};
   }
   const K0Table k0 = fit(rows, input.ground.surcharge);
-  write_k0(options.folder, k0);
+  if (!recorder.finished() || !std::filesystem::exists(options.folder / "k0.csv")) write_k0(options.folder, k0);
   const std::size_t last_rows = std::min(rows.size(), static_cast<std::size_t>(2 * mesh.n_elements()));
   recorder.set_table("k0", k0_columns(k0));
   recorder.set_table("column_rows", rows_table(std::span(rows).last(last_rows)));

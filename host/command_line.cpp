@@ -89,6 +89,9 @@ int run_command_line(int argc, char** argv) {
     } catch (const CLI::Success& help) {
       return app.exit(help);
     } catch (const CLI::ParseError& error) {
+      if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+        return complain(exit_input, "unknown command " + std::string(argv[1]) + " (see --help)");
+      }
       return complain(exit_input, std::string(error.what()) + " (see --help)");
     }
     return code;

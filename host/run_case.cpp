@@ -2,13 +2,16 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 
 #include "host/biaxial.hpp"
+#include "host/case_size.hpp"
 #include "host/exit_code.hpp"
 #include "host/packing.hpp"
 #include "host/tunnel.hpp"
+#include "io/case_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -33,9 +36,19 @@ int answer(RunStatus status, const RunOptions& options) {
   return exit_machine;
 }
 
+/// Throws io::InputError where output.rves names a point that the mesh has not.
+void check_snapshot_points(const Case& input, std::size_t points) {
+  for (const std::int64_t point : input.output.rves) {
+    if (static_cast<std::size_t>(point) < points) continue;
+    throw io::InputError(input.name, "output.rves", fmt::format("names point {} of {}", point, points));
+  }
+}
+
 }  // namespace
 
 int run_case(const Case& input, const RunOptions& options) {
+  if (!input.output.rves.empty()) check_snapshot_points(input, case_size(input).points);
+  if (options.replace) remove_earlier_run(options);
   switch (input.kind) {
     case CaseKind::tunnel: return answer(run_tunnel(input, options), options);
     case CaseKind::column: return answer(run_column_case(input, options), options);

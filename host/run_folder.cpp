@@ -1,13 +1,27 @@
 #include "host/run_folder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
+#include <string_view>
 
+#include "io/atomic_file.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
 namespace {
+
+/// What a run leaves before it has a run.h5.
+constexpr std::array<std::string_view, 4> first_names{"run.log", "increments", "checkpoints", "column"};
+/// What it leaves besides. run.h5 is last: as long as it is there, the folder is known for one of results.
+constexpr std::array<std::string_view, 4> further_names{"result.xdmf", "k0.csv", "probe.csv", "run.h5"};
+
+/// A run killed in its first moment has left this.
+bool is_left_by_a_start(const std::filesystem::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  return entry.path().extension() == ".tmp" || std::find(first_names.begin(), first_names.end(), name) != first_names.end();
+}
 
 /// Fingerprint of the case that made the results; throws io::InputError where run.h5 is no result of this program.
 std::string fingerprint_of_results(const RunOptions& options) {
@@ -26,10 +40,7 @@ void check_folder(const RunOptions& options, const Case& input) {
   if (!fs::exists(options.folder)) return;
   if (!fs::is_directory(options.folder)) throw io::InputError("--output", folder, "is not a folder");
   if (!fs::exists(options.folder / "run.h5")) {
-    // A run killed in its first moment leaves a log and nothing else.
-    const bool only_log = std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(),
-                                      [](const fs::directory_entry& e) { return e.path().filename() == "run.log"; });
-    if (only_log) return;
+    if (std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_start)) return;
     throw io::InputError("--output", folder, "holds files that are no results of this program; choose another folder");
   }
   const std::string theirs = fingerprint_of_results(options);
@@ -42,6 +53,14 @@ void check_folder(const RunOptions& options, const Case& input) {
   if (!options.replace) {
     throw io::InputError("--output", folder, "holds results already: add --resume to go on or --replace to remove them");
   }
+}
+
+void remove_earlier_run(const RunOptions& options) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(options.folder / "run.h5")) return;  // what a start left is overwritten by the next one
+  for (const std::string_view name : first_names) fs::remove_all(options.folder / name);
+  for (const std::string_view name : further_names) fs::remove(options.folder / name);
+  io::remove_leftovers(options.folder);
 }
 
 }  // namespace voussoir::host

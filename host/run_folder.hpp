@@ -17,7 +17,11 @@ struct RunOptions {
 };
 
 /// Throws io::InputError where the run must not start: the folder holds results and neither resume nor replace is asked
-/// for; it holds other files and no results; or resume is asked for and the results belong to another case.
+/// for; it holds other files and no results; or resume is asked for and the results belong to another case. What a run
+/// leaves that was killed before it had a run.h5 is no obstacle.
 void check_folder(const RunOptions& options, const Case& input);
+
+/// For options.replace: removes all that a run of any kind leaves in options.folder, checked before by check_folder.
+void remove_earlier_run(const RunOptions& options);
 
 }  // namespace voussoir::host

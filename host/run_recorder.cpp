@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <utility>
 
 #include "host/provenance.hpp"
@@ -21,11 +22,15 @@ std::string duration(double seconds) {
 
 RunRecorder::RunRecorder(const RunOptions& options, const Case& input, const std::string& kind, io::MeshData mesh,
                          RunLog& log)
-    : folder_(options.folder), log_(log), store_(options.folder / "checkpoints", input.fingerprint) {
+    : folder_(options.folder),
+      log_(log),
+      store_(options.folder / "checkpoints", input.fingerprint),
+      provenance_(provenance_of(options, input, kind)),
+      mesh_(std::move(mesh)) {
   if (options.resume) loaded_ = store_.load_latest();
   if (!loaded_) {
     store_.clear();
-    writer_ = io::ResultWriter::create(folder_, provenance_of(options, input, kind), std::move(mesh));
+    writer_ = io::ResultWriter::create(folder_, provenance_, mesh_);
     return;
   }
   for (const std::string& skipped : loaded_->skipped) log_.warning(skipped);
@@ -36,7 +41,8 @@ RunRecorder::RunRecorder(const RunOptions& options, const Case& input, const std
   result_index_ = static_cast<int>(record.at(1));
   finished_ = record.at(2) != 0;
   sequence_ = loaded_->increment;
-  writer_ = io::ResultWriter::resume(folder_, provenance_of(options, input, kind), std::move(mesh), result_index_);
+  if (std::filesystem::exists(folder_ / "run.h5")) provenance_ = io::read_provenance(folder_ / "run.h5");
+  if (!finished_) writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
 }
 
 const io::Checkpoint* RunRecorder::resumed() const { return loaded_ ? &loaded_->checkpoint : nullptr; }
@@ -85,6 +91,10 @@ void RunRecorder::write(io::IncrementInfo info, const std::vector<io::Field>& fi
 }
 
 void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn> columns) {
+  if (!writer_) {
+    if (std::filesystem::exists(folder_ / "run.h5") && io::read_tables(folder_ / "run.h5").contains(name)) return;
+    writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
+  }
   writer_->set_table(name, std::move(columns));
 }
 

@@ -18,7 +18,8 @@ namespace voussoir::host {
 class RunRecorder {
  public:
   /// Starts the results in options.folder, or goes on behind the last checkpoint there when options.resume is set and one
-  /// exists. `kind` names the run in its provenance. Throws std::runtime_error naming the file that cannot be used.
+  /// exists. `kind` names the run in its provenance, which stays that of the start when a run goes on. Nothing is written
+  /// to a finished run before it is asked for. Throws std::runtime_error naming the file that cannot be used.
   RunRecorder(const RunOptions& options, const Case& input, const std::string& kind, io::MeshData mesh, RunLog& log);
 
   [[nodiscard]] bool finished() const { return finished_; }  ///< an earlier run has done everything
@@ -27,7 +28,6 @@ class RunRecorder {
   [[nodiscard]] int resumed_stage_index() const { return resumed_stage_index_; }
   [[nodiscard]] RunLog& log() { return log_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  [[nodiscard]] const std::vector<io::IncrementInfo>& increments() const { return writer_->increments(); }
 
   /// Progress: a stage of `planned` increments, of which `done` are behind it.
   void begin_stage(const std::string& name, int done, int planned);
@@ -39,7 +39,7 @@ class RunRecorder {
   void write(io::IncrementInfo info, const std::vector<io::Field>& fields,
              const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates);
 
-  /// A table of run.h5, see io::ResultWriter::set_table.
+  /// A table of run.h5, see io::ResultWriter::set_table. A finished run that has a table of this name keeps it.
   void set_table(const std::string& name, std::vector<io::TableColumn> columns);
 
   /// Saves a checkpoint after increment `stage_index` of `stage`; `finished`: nothing is left to do behind it.
@@ -52,7 +52,9 @@ class RunRecorder {
   RunLog& log_;
   io::CheckpointStore store_;
   std::optional<io::CheckpointStore::Loaded> loaded_;
-  std::optional<io::ResultWriter> writer_;
+  io::Provenance provenance_;
+  io::MeshData mesh_;
+  std::optional<io::ResultWriter> writer_;  ///< none as long as a finished run needs nothing
   std::string resumed_stage_;
   int resumed_stage_index_ = 0;
   bool finished_ = false;

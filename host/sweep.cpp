@@ -36,6 +36,12 @@ struct Sweep {
   std::vector<SweepRun> runs;
 };
 
+/// Whether a name can be a folder's, and a field of summary.csv as it stands.
+bool is_plain(const std::string& name) {
+  constexpr const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
+  return !name.empty() && name.front() != '.' && name.find_first_not_of(allowed) == std::string::npos;
+}
+
 /// Reads the sweep and validates the case of every run, before anything is written.
 Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options) {
   const io::CaseFile text = io::CaseFile::load(file);
@@ -44,9 +50,7 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
   std::set<std::string> names;
   for (const io::Table& table : text.root().tables("run")) {
     SweepRun run{table.text("name"), table.texts("set", std::vector<std::string>{}), {}};
-    if (run.name.empty() || run.name.find('/') != std::string::npos || run.name.front() == '.') {
-      throw table.error("name", "must be usable as the name of a folder");
-    }
+    if (!is_plain(run.name)) throw table.error("name", "must be of letters, digits and _ . - and not begin with a dot");
     if (!names.insert(run.name).second) throw table.error("name", "names two runs");
     run.folder = options.folder / run.name;
     check_folder({.folder = run.folder, .resume = options.resume, .command = {}}, load_case(sweep.base, run.overrides));

@@ -29,7 +29,9 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
 
   RunOptions column_options = options;
   column_options.folder /= "column";
-  const ColumnResult column = run_column(input, column_options, log);
+  Case column_input = input;
+  column_input.output.rves.clear();  // they are points of the tunnel's mesh
+  const ColumnResult column = run_column(column_input, column_options, log);
   if (column.status != RunStatus::finished) return column.status;
 
   recorder.set_table("k0", k0_columns(column.k0));

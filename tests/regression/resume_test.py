@@ -33,15 +33,32 @@ for wait_for, resume in (("increments/0007.h5", []), ("increments/0019.h5", ["--
 run(command(CASE, killed, SETTINGS, "--resume"))
 check_same(straight, killed)
 
+with h5py.File(killed / "run.h5", "r") as result:
+    check("--resume" not in str(result["provenance"].attrs["command"]), "a resumed run says it began with --resume")
+
 # A finished run has nothing to do; results are neither overwritten nor continued by another case.
+before = (straight / "run.h5").read_bytes(), (straight / "run.h5").stat().st_mtime_ns
 again = run(command(CASE, straight, SETTINGS, "--resume"))
 check("finished already" in again.stdout, "a finished run does not say so")
+check(before == ((straight / "run.h5").read_bytes(), (straight / "run.h5").stat().st_mtime_ns), "a finished run was written anew")
 check_same(straight, killed)
 run(command(CASE, straight, SETTINGS), code=2)
 run(command(CASE, straight, [*SETTINGS, "elastic.poisson=0.2"], "--resume"), code=2)
 check_same(straight, killed)
 run(command(CASE, straight, SETTINGS, "--replace"))
 check_same(straight, killed)
+
+# A run killed before it had a run.h5 is no obstacle; another kind in its place leaves nothing of a replaced run.
+for words in ([], ["--resume"], ["--replace"]):
+    started = fresh("started")
+    (started / "increments").mkdir(parents=True)
+    (started / "run.log").write_text("")
+    (started / "run.h5.1.tmp").write_text("half a file")
+    run(command("column", started, ["material=linear_elastic"], *words))
+run(command(CASE, started, SETTINGS, "--replace"))
+check((started / "column").exists(), "a tunnel without a column")
+run(command("column", started, ["material=linear_elastic"], "--replace"))
+check(not (started / "column").exists(), "a replaced run left its column")
 
 # The same with grains, and on another number of threads.
 GRAINS = ["packing.grains=100", "packing.candidates=1", "packing.folder=packings", "ground.mesh_size_opening=2.5 m",
