@@ -66,6 +66,10 @@ GRAINS = ["packing.grains=100", "packing.candidates=1", "packing.folder=packings
           "newton.tolerance=0.01", "output.rves=[3, 4]"]
 straight = fresh("straight_grains")
 run(command("tunnel_quick", straight, GRAINS, "--threads", "2"))
+for folder, expected in ((straight, 2), (straight / "column", 0)):  # output.rves are points of the tunnel alone
+    with h5py.File(folder / "increments/0001.h5", "r") as result:
+        written = len(result.get("snapshots", ()))
+        check(written == expected, f"{folder}: {written} snapshots instead of {expected}")
 stopped = fresh("stopped_grains")
 for wait_for, resume in (("column/increments/0010.h5", []), ("increments/0006.h5", ["--resume"])):
     code = start_and_signal(command("tunnel_quick", stopped, GRAINS, *resume, "--threads", "1"), stopped / wait_for,
