@@ -11,6 +11,7 @@
 #include "host/biaxial.hpp"
 #include "host/exit_code.hpp"
 #include "host/provenance.hpp"
+#include "host/rve_pool.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -113,10 +114,7 @@ struct Summary {
 int run_biaxial(const Case& input, const RunOptions& options) {
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const std::vector<PackedRve> rves = packings_of(input, note);
-  const kernels::EngineSettings settings{.precision = input.engine.precision == Precision::single_precision
-                                                          ? kernels::Precision::float32
-                                                          : kernels::Precision::float64,
-                                         .skin = input.engine.skin};
+  const kernels::EngineSettings settings{.precision = engine_precision(input.engine), .skin = input.engine.skin};
   const BiaxialCase& test = input.biaxial;
   const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});

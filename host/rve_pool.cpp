@@ -54,10 +54,13 @@ int round_up(double steps) {
 
 }  // namespace
 
+kernels::Precision engine_precision(const EngineCase& engine) {
+  return engine.precision == Precision::single_precision ? kernels::Precision::float32 : kernels::Precision::float64;
+}
+
 RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent)
     : engine_(engine),
-      settings_{.precision = engine.precision == Precision::single_precision ? kernels::Precision::float32
-                                                                             : kernels::Precision::float64,
+      settings_{.precision = engine_precision(engine),
                 .skin = engine.skin,
                 .hold_tolerance = engine.hold_tolerance,
                 .tangent = kernel_tangent(tangent)},

@@ -9,6 +9,9 @@
 
 namespace voussoir::host {
 
+/// The case's value type as the engine names it.
+[[nodiscard]] kernels::Precision engine_precision(const EngineCase& engine);
+
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
   /// `n` clones of `rve`.
