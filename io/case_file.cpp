@@ -204,7 +204,8 @@ std::string Table::choice(std::string_view key, const std::vector<std::string>& 
 
 std::filesystem::path Table::path(std::string_view key) const {
   CaseNode& node = take(key, false);
-  const auto path = state_->path.parent_path() / read_text(node, {});
+  const std::string written = read_text(node, {});
+  const auto path = (node.place == "--set" ? state_->path.parent_path() : node.folder) / written;
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
     fail(node, fmt::format("{} does not exist", path.string()));

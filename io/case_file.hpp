@@ -62,7 +62,7 @@ class Table {
   /// One of `choices`; the message of an error lists them.
   [[nodiscard]] std::string choice(std::string_view key, const std::vector<std::string>& choices,
                                    std::optional<std::string> fallback = {}) const;
-  /// An existing file or folder, relative to the folder of the case file.
+  /// An existing file or folder, relative to the folder of the file that names it (of the case file with --set).
   [[nodiscard]] std::filesystem::path path(std::string_view key) const;
 
   /// Arrays; the rule's limits hold for each entry, its fallback is not used.
@@ -97,6 +97,8 @@ class CaseFile {
  public:
   /// Reads a TOML file; each override is "table.key=value" ("stage[0].steps=4" inside an array of tables). The value is
   /// TOML, or else taken as text, so that quotes may be left out: "mesh.size=0.5 m".
+  /// `extends = "other.toml"` (or an array of such names, relative to the file) takes over the keys of other files: later
+  /// ones go before earlier ones, the file's own keys before all; an array is taken over or replaced as a whole.
   /// Throws InputError: no such file, bad TOML (with its line), bad override.
   [[nodiscard]] static CaseFile load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 

@@ -16,7 +16,8 @@ namespace voussoir::io {
 namespace {
 
 struct Origin {
-  std::string file;  ///< empty for an override
+  std::string file;              ///< empty for an override
+  std::filesystem::path folder;  ///< where the paths written there begin
 
   [[nodiscard]] std::string place(const toml::node& node) const {
     return file.empty() ? "--set" : fmt::format("{}:{}", file, node.source().begin.line);
@@ -36,15 +37,21 @@ std::vector<std::pair<std::string, const toml::node*>> in_file_order(const toml:
   return entries;
 }
 
-/// Copies a TOML value into a node.
+/// Copies a TOML value into a node. What the node held before is replaced, but for tables of a file: there the keys that
+/// the new one has not stay, as those of the files that it extends.
 void fill(CaseNode& node, const toml::node& from, const Origin& origin) {
+  const bool joins = node.kind == CaseNode::Kind::table && from.is_table() && !origin.file.empty();
   node.written = true;
   node.place = origin.place(from);
-  node.children.clear();
+  node.folder = origin.folder;
+  if (!joins) {
+    node.children.clear();
+  }
   if (const auto* table = from.as_table()) {
     node.kind = CaseNode::Kind::table;
     for (const auto& [key, value] : in_file_order(*table)) {
-      fill(node.add(key, {}), *value, origin);
+      CaseNode* known = node.find(key);
+      fill(known != nullptr ? *known : node.add(key, {}), *value, origin);
     }
   } else if (const auto* array = from.as_array()) {
     node.kind = CaseNode::Kind::array;
@@ -137,6 +144,57 @@ void apply_override(CaseNode& root, const std::string& override_text) {
   fill_override(*node, override_text.substr(equals + 1));
 }
 
+std::string read_whole(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (std::filesystem::is_directory(path) || !file || !(text << file.rdbuf())) {
+    throw InputError(path.string(), "", "cannot be read: no such file, empty, or no permission");
+  }
+  return text.str();
+}
+
+/// The names under the key `extends`: one text or an array of them.
+std::vector<std::string> extended_names(const toml::node& written, const std::string& place) {
+  std::vector<std::string> names;
+  const auto take = [&](const toml::node& entry) {
+    if (!entry.is_string()) {
+      throw InputError(place, "extends", "must be the name of a case file, or an array of such names");
+    }
+    names.push_back(entry.as_string()->get());
+  };
+  if (const auto* list = written.as_array()) {
+    for (const auto& entry : *list) {
+      take(entry);
+    }
+  } else {
+    take(written);
+  }
+  return names;
+}
+
+/// The files that this one extends, in their order, then this one over them.
+void fill_from_file(CaseNode& root, const std::filesystem::path& path, int depth) {
+  constexpr int most_files = 8;  // deep: a circle
+  const auto folder = path.parent_path();
+  auto parsed = parse_toml(read_whole(path), path.string());
+  const Origin origin{path.string(), folder};
+  if (const toml::node* written = parsed.get("extends")) {
+    const std::string place = origin.place(*written);
+    for (const auto& name : extended_names(*written, place)) {
+      std::error_code ignored;
+      if (!std::filesystem::is_regular_file(folder / name, ignored)) {
+        throw InputError(place, "extends", fmt::format("{} does not exist", (folder / name).string()));
+      }
+      if (depth == most_files) {
+        throw InputError(place, "extends", "goes in a circle, or deeper than eight files");
+      }
+      fill_from_file(root, folder / name, depth + 1);
+    }
+    parsed.erase("extends");
+  }
+  fill(root, parsed, origin);
+}
+
 }  // namespace
 
 CaseNode* CaseNode::find(std::string_view child_name) {
@@ -158,15 +216,10 @@ CaseNode& CaseNode::add(std::string child_name, std::string child_place) {
 }
 
 std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (std::filesystem::is_directory(path) || !file || !(text << file.rdbuf())) {
-    throw InputError(path.string(), "", "cannot be read: no such file, empty, or no permission");
-  }
   auto state = std::make_shared<CaseState>();
   state->path = path;
-  const auto parsed = parse_toml(text.str(), path.string());
-  fill(state->root, parsed, Origin{path.string()});
+  state->root.kind = CaseNode::Kind::table;
+  fill_from_file(state->root, path, 0);
   state->root.place = fmt::format("{}:1", path.string());
   state->root.read = true;
   for (const auto& item : overrides) {

@@ -23,6 +23,15 @@ RUNS = {
     "pack_gravel": (["packing.grains=300", "packing.folder=packings"], None, []),
     "pack": (["packing.grains=100", "packing.seeds=[1]", "packing.folder=packings"], None, []),
 }
+# The study's tunnels: few grains and elements and a first step of the volume loss, those of other depths in elastic ground;
+# their meshes are counted in full size.
+STUDY = [*ONE_PACKING, "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=17 m", "column.elements=5",
+         "gravity.uniform_step=0.2", "volume_loss.total=0.25 %", "volume_loss.increments=1", "output.rves=[0]"]
+STUDY_ELEMENTS = {"tunnel_cps_d_cd2": 821, "tunnel_cps_d_cd3": 836, "tunnel_cps_d_cd4": 892, "tunnel_cps_md_cd3": 836,
+                  "tunnel_cpg_d_cd3": 836}
+RUNS |= {case: ([*STUDY, "material=linear_elastic"], None, []) for case in ("tunnel_cps_d_cd2", "tunnel_cps_d_cd4")}
+RUNS |= {case: ([*STUDY, f"packing.grains={grains}"], None, [])
+         for case, grains in (("tunnel_cps_d_cd3", 150), ("tunnel_cps_md_cd3", 150), ("tunnel_cpg_d_cd3", 400))}
 ESTIMATE = 3  # factor within which `check` must foretell a shrunk run's work; 2 is what it promises of whole ones
 
 
@@ -39,6 +48,10 @@ for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml"
     words = [PROGRAM, "check", str(folder / "case.toml"), *(word for setting in settings for word in ("--set", setting))]
     checked = subprocess.run(words, capture_output=True, text=True, timeout=60)
     check(checked.returncode == 0, f"check of cases/{case}: {checked.stderr}")
+    if case in STUDY_ELEMENTS:
+        whole = run([PROGRAM, "check", str(folder / "case.toml")]).stdout
+        points = int(re.search(r"# (\d+) Gauss points", whole)[1])
+        check(abs(points / 4 - STUDY_ELEMENTS[case]) <= 5, f"cases/{case}: {points / 4} elements, not those of the study")
     results = fresh(f"results_{case}")
     run(command(case, results, settings))
     if without is not None:

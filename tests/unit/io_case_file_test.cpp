@@ -151,6 +151,55 @@ TEST(CaseFile, OverridesReplaceAddAndAreChecked) {
   EXPECT_EQ(message(valid, {"soil..radius=3"}), "--set: \"soil..radius=3\" is not of the form table.key=value");
 }
 
+TEST(CaseFile, ExtendedFilesAreTakenOverKeyByKey) {
+  const auto here = std::filesystem::current_path();
+  std::filesystem::create_directories(here / "extended");
+  std::ofstream(here / "extended" / "whole.toml") << valid;
+  std::ofstream(here / "extended" / "soil.toml") << "[soil]\nfriction = 0.7\nkept = false\n";
+  const auto load = [&](const std::string& text) { return CaseFile::load(write(text)); };
+
+  const CaseFile file = load(R"(extends = ["extended/whole.toml", "extended/soil.toml"]
+[soil]
+kept = true
+[[stage]]
+name = "only"
+)");
+  read_all(file);
+  EXPECT_EQ(file.root().table("soil").quantity("radius", Dimension::length), 0.005);  // of whole.toml
+  EXPECT_EQ(file.root().table("soil").number("friction"), 0.7);                       // soil.toml is the later one
+  EXPECT_TRUE(file.root().table("soil").boolean("kept"));                             // the file itself
+  EXPECT_EQ(file.root().tables("stage").size(), 1U);                                  // an array is replaced
+  EXPECT_EQ(file.resolved().find("extends"), std::string::npos);
+
+  const CaseFile same = load("extends = \"extended/whole.toml\"");
+  read_all(same);
+  const CaseFile plain = load(valid);
+  read_all(plain);
+  EXPECT_EQ(same.fingerprint(), plain.fingerprint());
+}
+
+TEST(CaseFile, WrongExtensionsAreOneLine) {
+  const auto here = std::filesystem::current_path();
+  std::filesystem::create_directories(here / "extended");
+  std::ofstream(here / "extended" / "bad.toml") << "steps = 1\n[soil]\nradius = \"-1 mm\"\n";
+  EXPECT_EQ(message("extends = \"extended/bad.toml\"\nkind = \"pack\""),
+            "extended/bad.toml:3: soil.radius: must be positive, is -1 mm");
+  EXPECT_EQ(message("steps = 1\nextends = \"nowhere.toml\"").substr(0, 21), "case.toml:2: extends:");
+  EXPECT_EQ(message("extends = 3"), "case.toml:1: extends: must be the name of a case file, or an array of such names");
+  EXPECT_EQ(message("extends = \"case.toml\""), "case.toml:1: extends: goes in a circle, or deeper than eight files");
+}
+
+TEST(CaseFile, PathsBeginWhereTheyAreWritten) {
+  const auto here = std::filesystem::current_path();
+  std::filesystem::create_directories(here / "extended");
+  std::ofstream(here / "extended" / "data.csv") << "1\n";
+  std::ofstream(here / "extended" / "path.toml") << "file = \"data.csv\"\n";
+  const auto file = write("extends = \"extended/path.toml\"");
+  EXPECT_TRUE(std::filesystem::equivalent(CaseFile::load(file).root().path("file"), here / "extended" / "data.csv"));
+  EXPECT_TRUE(std::filesystem::equivalent(CaseFile::load(file, {"file=extended/data.csv"}).root().path("file"),
+                                          here / "extended" / "data.csv"));
+}
+
 TEST(CaseFile, ResolvedCaseReadsBackAsTheSameCase) {
   const CaseFile file = CaseFile::load(write(valid), {"soil.radius=7 mm"});
   read_all(file);
