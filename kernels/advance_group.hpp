@@ -15,11 +15,6 @@ template <class Run>
   return false;
 }
 
-/// Looks at overlaps come on fixed steps, whatever a lane's neighbours do.
-[[nodiscard]] inline bool guards(const EngineSettings& settings, int step) {
-  return step % settings.guard_interval == settings.guard_interval - 1;
-}
-
 template <class Run>
 [[nodiscard]] bool measures(const Run& run, int step) {
   if (guards(run.settings, step)) return true;
@@ -29,62 +24,25 @@ template <class Run>
   return false;
 }
 
-/// F <- exp(rate) F in double, then the lanes' rounded copies. A lane that is not running stands still.
 template <class Run>
 void move_cells(Run& run, int step) {
-  using real = typename Run::real;
-  auto& m = run.group.motion;
-  for (std::size_t l = 0; l < Run::width; ++l) {
-    auto& lane = run.lanes[l];
-    if (!lane.running) lane.rate = lane.e = Mat2{};
-    lane.f_minus_i = lane.e + lane.f_minus_i + lane.e * lane.f_minus_i;
-    m.d_xx[l] = static_cast<real>(lane.rate.xx);
-    m.d_xy[l] = static_cast<real>(0.5 * (lane.rate.xy + lane.rate.yx));
-    m.d_yy[l] = static_cast<real>(lane.rate.yy);
-    lane.rotation += 0.5 * (lane.rate.yx - lane.rate.xy);
-    if (lane.running) {
-      lane.steps = step + 1;
-      set_rate(lane, step + 1);
-    }
-    round_motion(run, l);
-  }
+  for (std::size_t l = 0; l < Run::width; ++l) move_cell(run.lanes[l], step, run.group.motion, l);
 }
 
+/// What a measuring step decides: lanes that are lost are given up, lanes at their end are frozen.
 template <class Run>
-[[nodiscard]] Measurement measurement_of(const Run& run, std::size_t l, const SweepSums<typename Run::Value>& sums) {
-  const double v = volume_of(run, l);
-  const Mat2 cell = (identity2 + run.lanes[l].f_minus_i) * run.lists[l].cell;
-  Measurement m;
-  m.stress_xx = sums.stress_xx[l] / v;
-  m.stress_yy = sums.stress_yy[l] / v;
-  m.stress_xy = 0.5 * (sums.stress_xy[l] + sums.stress_yx[l]) / v;
-  m.width = cell.xx;
-  m.height = cell.yy;
-  const double p = std::max(-0.5 * (m.stress_xx + m.stress_yy), run.settings.pressure_floor);
-  m.unbalanced = std::sqrt(static_cast<double>(sums.force_squared[l]) / run.group.n_grains) /
-                 (p * run.packing->thickness * run.packing->mean_diameter());
-  return m;
-}
-
-/// What a measuring step decides: overlaps beyond the limit are given up, lanes at their end are frozen.
-template <class Run>
-void judge(Run& run, int step, const SweepSums<typename Run::Value>& sums) {
+void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums) {
   for (std::size_t l = 0; l < Run::width; ++l) {
     auto& lane = run.lanes[l];
     if (!lane.running) continue;
-    if (guards(run.settings, step)) {
-      lane.overlap = relative_overlap(static_cast<double>(sums.largest_overlap[l]));
-      if (!(lane.overlap <= run.settings.overlap_limit)) {
-        discard(run, l, RveStatus::overlap_limit);
-        continue;
-      }
+    const auto measure = [&] {
+      return measurement_of(sums, l, current_cell(lane, run.lists[l].cell), run.scales, run.settings.pressure_floor);
+    };
+    switch (judge(lane, step, run.settings, sums, l, measure)) {
+      case Outcome::running: break;
+      case Outcome::ended: freeze(run, l, lane.status); break;
+      case Outcome::lost: discard(run, l, lane.status); break;
     }
-    if (!lane.drive.looks(step)) continue;
-    const Measurement m = measurement_of(run, l, sums);
-    lane.unbalanced = m.unbalanced;
-    const Verdict verdict = lane.drive.judge(step, m);
-    if (verdict == Verdict::running) continue;
-    freeze(run, l, verdict == Verdict::converged ? RveStatus::converged : RveStatus::step_limit);
   }
 }
 
@@ -103,7 +61,7 @@ void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int
     SweepSums<typename Run::Value> sums;
     if (measures(run, step)) {
       sweep_pairs<Sweep::measure, Law>(run.group, sums);
-      judge(run, step, sums);
+      judge_lanes(run, step, sums);
     } else {
       sweep_pairs<Sweep::advance, Law>(run.group, sums);
     }

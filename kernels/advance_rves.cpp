@@ -7,34 +7,12 @@
 #include <numeric>
 #include <vector>
 
-#if defined(__SSE2__)
-#include <immintrin.h>
-#endif
-
 #include "kernels/advance_group.hpp"
+#include "kernels/flush_subnormals.hpp"
 
 namespace voussoir::kernels {
 
 namespace {
-
-/// Subnormal numbers are flushed to zero while a group runs: grains at rest decay into them, at ten times the cost a step.
-class FlushSubnormals {
- public:
-#if defined(__SSE2__)
-  FlushSubnormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040U); }
-  ~FlushSubnormals() { _mm_setcsr(saved_); }
-
- private:
-  unsigned saved_;
-#else
-  FlushSubnormals() = default;
-  ~FlushSubnormals() {}
-#endif
-
- public:
-  FlushSubnormals(const FlushSubnormals&) = delete;
-  FlushSubnormals& operator=(const FlushSubnormals&) = delete;
-};
 
 int predicted_steps(const StrainRequest& r) { return r.strain_steps + r.hold_cap / 4; }
 int predicted_steps(const ServoRequest& r) { return r.max_steps; }

@@ -43,12 +43,12 @@ class StrainDrive {
   }
 
   /// False for a motion without a real logarithm (NaN, det F <= 0): the RVE is not run.
-  [[nodiscard]] bool possible() const { return std::isfinite(total_.norm()); }
-  [[nodiscard]] Mat2 rate(int step) const { return step < strain_steps_ ? rate_ : Mat2{}; }
-  [[nodiscard]] bool looks(int step) const { return step >= strain_steps_ && (step % interval_ == 0 || step >= last_); }
-  [[nodiscard]] double strain_rate() const { return symmetric_norm(rate_); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool possible() const { return std::isfinite(total_.norm()); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 rate(int step) const { return step < strain_steps_ ? rate_ : Mat2{}; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool looks(int step) const { return step >= strain_steps_ && (step % interval_ == 0 || step >= last_); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double strain_rate() const { return symmetric_norm(rate_); }
 
-  Verdict judge(int step, const Measurement& m) {
+  KOKKOS_INLINE_FUNCTION Verdict judge(int step, const Measurement& m) {
     if (step < strain_steps_) return Verdict::running;
     if (m.unbalanced < tolerance_) return Verdict::converged;
     return step >= last_ ? Verdict::step_limit : Verdict::running;
@@ -65,12 +65,12 @@ class StrainDrive {
 
 /// PI control of each stress-controlled axis against a reference modulus (E r / t of the packing): the
 /// proportional part alone leaves an offset with stiff grains (method.md §6).
-class ServoDrive {
+class ServoControl {
  public:
   using Request = ServoRequest;
 
-  ServoDrive() = default;
-  ServoDrive(const ServoRequest& request, const Packing& packing, const EngineSettings& settings)
+  ServoControl() = default;
+  ServoControl(const ServoRequest& request, const Packing& packing, const EngineSettings& settings)
       : request_(request),
         tolerance_(settings.hold_tolerance),
         floor_(settings.pressure_floor),
@@ -80,25 +80,35 @@ class ServoDrive {
     rate_y_.value = request.y.stress_controlled ? 0.0 : request.y.target;
   }
 
-  [[nodiscard]] bool possible() const { return std::isfinite(request_.x.target) && std::isfinite(request_.y.target); }
-  [[nodiscard]] Mat2 rate(int) const { return {rate_x_.value, 0, 0, rate_y_.value}; }
-  [[nodiscard]] bool looks(int) const { return true; }
-  [[nodiscard]] double strain_rate() const { return symmetric_norm(rate(0)); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool possible() const {
+    return std::isfinite(request_.x.target) && std::isfinite(request_.y.target);
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 rate(int) const { return {rate_x_.value, 0, 0, rate_y_.value}; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool looks(int) const { return true; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double strain_rate() const { return symmetric_norm(rate(0)); }
 
-  Verdict judge(int step, const Measurement& m) {
+  KOKKOS_INLINE_FUNCTION Verdict judge(int step, const Measurement& m) {
     const bool x_ok = follow(request_.x, m.stress_xx, rate_x_);
     const bool y_ok = follow(request_.y, m.stress_yy, rate_y_);
     if (step == 0) start_ = m;
-    const double strain_y = std::log(m.height / start_.height);
-    if (request_.trace != nullptr && step % request_.trace_interval == 0) {
-      request_.trace->push_back({step, std::log(m.width / start_.width), strain_y, m.stress_xx, m.stress_yy, m.stress_xy, m.unbalanced});
-    }
-    if (std::abs(strain_y) >= request_.end_strain_y) return Verdict::converged;
+    if (std::abs(std::log(m.height / start_.height)) >= request_.end_strain_y) return Verdict::converged;
     const bool at_rest = request_.x.stress_controlled && request_.y.stress_controlled && m.unbalanced < tolerance_;
     settled_ = x_ok && y_ok && at_rest ? settled_ + 1 : 0;
     if (settled_ >= request_.settle_steps) return Verdict::converged;
     return step + 1 >= request_.max_steps ? Verdict::step_limit : Verdict::running;
   }
+
+  /// Whether the caller wants a sample of this step, and what it is; after `judge`.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool samples(int step) const {
+    return request_.trace != nullptr && step % request_.trace_interval == 0;
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION ServoSample sample(int step, const Measurement& m) const {
+    return {step,        std::log(m.width / start_.width), std::log(m.height / start_.height), m.stress_xx, m.stress_yy,
+            m.stress_xy, m.unbalanced};
+  }
+
+ protected:
+  ServoRequest request_;
 
  private:
   static constexpr double proportional = 0.02;                               ///< share of the error per step
@@ -109,22 +119,33 @@ class ServoDrive {
     double sum = 0;
   };
 
-  bool follow(const ServoAxis& axis, double stress, Rate& rate) const {
+  KOKKOS_INLINE_FUNCTION bool follow(const ServoAxis& axis, double stress, Rate& rate) const {
     if (!axis.stress_controlled) return true;
     const double error = (axis.target - stress) / modulus_;
     const double wanted = proportional * error + integral * (rate.sum + error);
-    rate.value = std::clamp(wanted, -request_.max_rate, request_.max_rate);
+    rate.value = Kokkos::clamp(wanted, -request_.max_rate, request_.max_rate);
     if (wanted == rate.value) rate.sum += error;  // no wind-up while the rate is at its limit
-    return std::abs(axis.target - stress) <= request_.stress_tolerance * std::max(std::abs(axis.target), floor_);
+    return std::abs(axis.target - stress) <= request_.stress_tolerance * Kokkos::max(std::abs(axis.target), floor_);
   }
 
-  ServoRequest request_;
   Measurement start_;
   double tolerance_ = 0;
   double floor_ = 0;
   double modulus_ = 1;
   Rate rate_x_, rate_y_;
   int settled_ = 0;
+};
+
+/// The control with its trace kept where the caller wants it.
+class ServoDrive : public ServoControl {
+ public:
+  using ServoControl::ServoControl;
+
+  Verdict judge(int step, const Measurement& m) {
+    const Verdict verdict = ServoControl::judge(step, m);
+    if (samples(step)) request_.trace->push_back(sample(step, m));
+    return verdict;
+  }
 };
 
 }  // namespace voussoir::kernels

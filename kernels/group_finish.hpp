@@ -5,37 +5,16 @@
 #include <span>
 
 #include "kernels/group_run.hpp"
+#include "kernels/rve_report.hpp"
 
 namespace voussoir::kernels {
 
-/// The sum of everything an answer is made of: finite if and only if all of it is.
+/// Finite if and only if all grains' motions are.
 template <class Run>
-[[nodiscard]] double sum_of_answer(const Run& run, std::size_t l, const RveReport& report) {
-  double all = volume_of(run, l);
-  for (const double s : report.stress) all += s;
-  for (const double d : report.tangent) all += d;
+[[nodiscard]] bool grains_are_finite(const Run& run, std::size_t l) {
+  double all = 0;
   for (const auto& g : run.group.grains) all += static_cast<double>(g.u_x[l] + g.u_y[l] + g.rotation[l]);
-  return all;
-}
-
-template <class Run>
-void fill_report(const Run& run, std::size_t l, const Homogenised<typename Run::Value>& h, RveReport& report) {
-  const double v = volume_of(run, l);
-  const double stress[4] = {h.sums.stress_xx[l] / v, h.sums.stress_xy[l] / v, h.sums.stress_yx[l] / v,
-                            h.sums.stress_yy[l] / v};
-  std::copy_n(stress, 4, report.stress);
-  for (std::size_t k = 0; k < 6; ++k) report.tangent[k] = static_cast<double>(h.tangent[k][l]) / v;
-  report.contacts = static_cast<int>(h.contacts[l]);
-  report.largest_overlap = relative_overlap(static_cast<double>(h.sums.largest_overlap[l]));
-  const double p = std::max(report.pressure(), run.settings.pressure_floor);
-  report.inertial_number = run.lanes[l].drive.strain_rate() * run.packing->inertial_time(p);
-  if (!std::isfinite(sum_of_answer(run, l, report)) || !(v > 0)) {
-    report.status = RveStatus::not_finite;
-  } else if (!(report.largest_overlap <= run.settings.overlap_limit)) {
-    report.status = RveStatus::overlap_limit;
-  } else if (report.contacts == 0) {
-    report.status = RveStatus::open;
-  }
+  return std::isfinite(all);
 }
 
 /// Whether static tangent `d` [Pa] is no stiffer than the contact one: it cannot be, but where rounding spoilt the
@@ -93,7 +72,7 @@ template <class Run>
   auto& list = run.lists[l];
   RveStates& to = run.batch->trial;
   move_positions(run, l, list.position);
-  list.cell = (identity2 + run.lanes[l].f_minus_i) * list.cell;
+  list.cell = current_cell(run.lanes[l], list.cell);
   if (report.contacts > to.contact_capacity() || !reduce_cell(run, list)) return false;
   const double h[4] = {list.cell.xx, list.cell.xy, list.cell.yx, list.cell.yy};
   std::copy_n(h, 4, &to.cell(rve, 0));
@@ -109,17 +88,16 @@ template <class Run>
 /// The group's answers. An RVE that failed keeps its committed state as trial state.
 template <class Law, class Run>
 void finish(Run& run, std::span<RveReport> reports) {
-  for (std::size_t l = 0; l < Run::width; ++l) round_motion(run, l);
+  for (std::size_t l = 0; l < Run::width; ++l) round_motion(run.lanes[l], run.group.motion, l);
   const auto sums = homogenise<Law>(run.group);
   std::array<RveReport, Run::width> answers;
   for (std::size_t l = 0; l < Run::width; ++l) {
     const auto& lane = run.lanes[l];
     RveReport& report = answers[l];
-    report.status = lane.status;
-    report.steps = lane.steps;
-    report.unbalanced = lane.unbalanced;
-    report.largest_overlap = lane.overlap;
-    if (lane.rve >= 0 && !is_failure(report.status)) fill_report(run, l, sums, report);
+    begin_report(lane, report);
+    if (lane.rve >= 0 && !is_failure(report.status)) {
+      fill_report(lane, sums, l, volume_of(run, l), grains_are_finite(run, l), run.scales, run.settings, report);
+    }
   }
   if (run.settings.tangent != TangentKind::contact) replace_tangents<Law>(run, answers);
   for (std::size_t l = 0; l < Run::width; ++l) {

@@ -11,6 +11,7 @@
 
 #include "kernels/group_state.hpp"
 #include "kernels/neighbours.hpp"
+#include "kernels/pair_reference.hpp"
 #include "kernels/rve_batch.hpp"
 
 namespace voussoir::kernels {
@@ -48,11 +49,9 @@ void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<c
   auto from = kept.begin();
   for (const std::uint32_t key : keys) {
     const auto i = static_cast<std::size_t>(first_of(key)), j = static_cast<std::size_t>(second_of(key));
-    double bx = lane.position[2 * j] - lane.position[2 * i];
-    double by = lane.position[2 * j + 1] - lane.position[2 * i + 1];
-    cell.nearest(bx, by);
-    const double sum = radii[i] + radii[j];
-    ListedPair<real> pair{key, static_cast<real>(bx), static_cast<real>(by), static_cast<real>(bx * bx + by * by - sum * sum),
+    const PairReference at = pair_reference(lane.position[2 * j] - lane.position[2 * i],
+                                            lane.position[2 * j + 1] - lane.position[2 * i + 1], radii[i] + radii[j], cell);
+    ListedPair<real> pair{key,     static_cast<real>(at.branch_x), static_cast<real>(at.branch_y), static_cast<real>(at.gap),
                           real(0), real(0)};
     while (from != kept.end() && from->key < key) ++from;
     if (from != kept.end() && from->key == key) {
@@ -63,24 +62,11 @@ void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<c
   }
 }
 
+/// The lanes' pair (i, j) of a packing.
 template <class V>
 PairShape<real_of<V>> shape_of(const Packing& packing, int i, int j) {
-  using real = real_of<V>;
   const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
-  const double ri = packing.radii[si], rj = packing.radii[sj];
-  const PairConstants c = combine(packing.material_of(si), ri, packing.material_of(sj), rj);
-  const auto r = [](double x) { return static_cast<real>(x); };
-  return {.other = j,
-          .active = 1,
-          .sum_radii = r(ri + rj),
-          .inverse_sum = r(1.0 / (ri + rj)),
-          .minus_inverse_sum_squared = r(-1.0 / ((ri + rj) * (ri + rj))),
-          .radius_other = r(rj),
-          .normal_stiffness = r(c.normal_stiffness),
-          .tangential_stiffness = r(c.tangential_stiffness),
-          .rolling_stiffness = r(c.rolling_stiffness),
-          .friction = r(c.friction),
-          .rolling_arm = r(c.rolling_arm)};
+  return pair_shape<real_of<V>>(j, packing.material_of(si), packing.radii[si], packing.material_of(sj), packing.radii[sj]);
 }
 
 /// Writes the union of the lanes' lists into the group.

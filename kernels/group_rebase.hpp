@@ -1,6 +1,8 @@
 #pragma once
 /// Keeping neighbour lists valid while the lanes move: each lane by its own displacements, on its own steps.
 
+#include <cmath>
+
 #include "kernels/group_run.hpp"
 
 namespace voussoir::kernels {
@@ -36,11 +38,11 @@ void rebase(Run& run, std::size_t l) {
     }
   }
   move_positions(run, l, list.position);
-  list.cell = (identity2 + lane.f_minus_i) * list.cell;
+  list.cell = current_cell(lane, list.cell);
   lane.f_minus_i = Mat2{};
   for (auto& g : run.group.grains) g.u_x[l] = g.u_y[l] = 0;
   if (!reduce_cell(run, list)) return discard(run, l, RveStatus::neighbour_overflow);
-  find_candidates(list.position, run.packing->radii, Cell(list.cell), run.skin, run.keys);
+  find_candidates(list.position, run.packing->radii, Cell(list.cell), run.scales.skin, run.keys);
   list_pairs(list, run.packing->radii, run.keys, run.kept);
 }
 
@@ -52,27 +54,20 @@ void rebuild(Run& run, const std::array<bool, Run::width>& stale) {
     gather_lane(run.group, l, run.lists[l].pairs);
     if (stale[l]) rebase(run, l);
   }
-  for (std::size_t l = 0; l < Run::width; ++l) round_motion(run, l);
+  for (std::size_t l = 0; l < Run::width; ++l) round_motion(run.lanes[l], run.group.motion, l);
   run.builder.build(run.group, run.lists, *run.packing);
 }
 
-/// Whether the lane's grains may meet someone it does not list before its next look: with what comes until then,
-/// 2 max|u| + |F - I| (R + skin) reaches the skin. A lane that is lost is discarded, before any binning.
+/// Whether the lane's list is to be renewed. A lane that is lost is discarded, before any binning.
 template <class Run>
 [[nodiscard]] bool is_stale(Run& run, std::size_t l, const Motion<typename Run::Value>& m, int step) {
-  auto& lane = run.lanes[l];
-  const double u = std::sqrt(static_cast<double>(m.largest[l]));
-  const double per_step = 2.0 * std::sqrt(static_cast<double>(m.fastest[l])) + lane.rate.norm() * run.reach;
-  const double moved = 2.0 * u + lane.f_minus_i.norm() * run.reach;
-  const bool finite = m.finite[l] == 0 && std::isfinite(moved + per_step);
-  // Fast grains are looked at every step.
-  const int interval = per_step * run.settings.list_interval > 0.25 * run.skin ? 1 : run.settings.list_interval;
-  lane.next_list_check = step + interval;
-  if (finite && moved + interval * per_step < run.skin) return false;
-  lane.steps = step;
-  if (!finite) discard(run, l, RveStatus::not_finite);
-  if (finite && u > run.packing->mean_diameter()) discard(run, l, RveStatus::overlap_limit);
-  return true;
+  const double largest = std::sqrt(static_cast<double>(m.largest[l]));
+  const double fastest = std::sqrt(static_cast<double>(m.fastest[l]));
+  const ListState state =
+      look_at_list(run.lanes[l], largest, fastest, m.finite[l] == 0, run.scales, run.settings.list_interval, step);
+  if (state == ListState::not_finite) discard(run, l, RveStatus::not_finite);
+  if (state == ListState::flown) discard(run, l, RveStatus::overlap_limit);
+  return state != ListState::valid;
 }
 
 template <class Run>

@@ -29,9 +29,9 @@ template <class Run>
     return false;
   }
   auto& cached = run.batch->candidates.keys[rve];
-  if (run.batch->candidates.skin[rve] != run.skin) {
-    find_candidates(list.position, run.packing->radii, Cell(list.cell), run.skin, cached);
-    run.batch->candidates.skin[rve] = run.skin;
+  if (run.batch->candidates.skin[rve] != run.scales.skin) {
+    find_candidates(list.position, run.packing->radii, Cell(list.cell), run.scales.skin, cached);
+    run.batch->candidates.skin[rve] = run.scales.skin;
   }
   run.kept.clear();
   for (std::size_t c = 0; c < static_cast<std::size_t>(from.contact_count(rve)); ++c) {
@@ -54,7 +54,7 @@ void restore_grains(Run& run) {
   run.group.grains.assign(n, GrainLanes<V>{V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0)});
   run.group.shapes.resize(n);
   run.group.row.resize(n + 1);
-  const double largest = packing.largest_radius();
+  const double largest = run.scales.largest_radius;
   for (std::size_t i = 0; i < n; ++i) {
     const double r = packing.radii[i];
     run.group.shapes[i] = {static_cast<real>(r), static_cast<real>(mobility_of(packing.material_of(i), r)),
@@ -65,8 +65,7 @@ void restore_grains(Run& run) {
 template <class Run>
 void restore(Run& run, const GroupMembers<static_cast<int>(Run::width)>& members,
              std::span<const typename Run::Drive::Request> requests) {
-  run.skin = run.settings.skin * run.packing->mean_diameter();
-  run.reach = 2.0 * run.packing->largest_radius() + run.skin;
+  run.scales = scales_of(*run.packing, run.settings);
   restore_grains(run);
   for (std::size_t l = 0; l < Run::width; ++l) {
     run.lanes[l] = {};

@@ -2,12 +2,11 @@
 /// A group on its way from committed to trial states: its lanes, their lists and the working arrays. One per worker, reused.
 
 #include <array>
-#include <cmath>
 #include <vector>
 
-#include "kernels/drives.hpp"
 #include "kernels/group_lists.hpp"
 #include "kernels/homogenise.hpp"
+#include "kernels/rve_course.hpp"
 #include "kernels/static_tangent.hpp"
 
 namespace voussoir::kernels {
@@ -15,23 +14,6 @@ namespace voussoir::kernels {
 /// Members of a group by lane; -1 is an empty lane. All share one packing.
 template <int width>
 using GroupMembers = std::array<int, static_cast<std::size_t>(width)>;
-
-/// One RVE of the group.
-template <class Drive>
-struct Lane {
-  int rve = -1;  ///< -1: empty
-  bool running = false;
-  RveStatus status = RveStatus::converged;
-  int steps = 0;
-  int next_list_check = 0;  ///< step of the lane's next look at displacements
-  double unbalanced = 0;
-  double overlap = 0;  ///< largest at the last measuring step [-]
-  Drive drive;
-  Mat2 rate;            ///< velocity gradient per step of the coming motion
-  Mat2 e;               ///< exp(rate) - I
-  Mat2 f_minus_i;       ///< since the last rebase
-  double rotation = 0;  ///< sum of W per step since the committed state [rad]
-};
 
 template <class V, class DriveType>
 struct GroupRun {
@@ -43,9 +25,8 @@ struct GroupRun {
   RveBatch* batch = nullptr;
   const Packing* packing = nullptr;
   EngineSettings settings;
-  double skin = 0;   ///< [m]
-  double reach = 0;  ///< of the longest listed branch, 2 r_max + skin [m]
-  std::array<Lane<Drive>, width> lanes;
+  RunScales scales;
+  std::array<RveCourse<Drive>, width> lanes;
   std::array<LaneList<real>, width> lists;
   GroupState<V> group;
   UnionBuilder<V> builder;
@@ -57,37 +38,7 @@ struct GroupRun {
 /// Current volume of a lane's cell [m^3].
 template <class Run>
 [[nodiscard]] double volume_of(const Run& run, std::size_t l) {
-  return ((identity2 + run.lanes[l].f_minus_i) * run.lists[l].cell).det() * run.packing->thickness;
-}
-
-/// overlap / (r_i + r_j) from e = -g/R^2.
-[[nodiscard]] inline double relative_overlap(double e) { return 1.0 - std::sqrt(1.0 - std::min(1.0, e)); }
-
-/// The lane's velocity gradient of the motion to `step`.
-template <class Drive>
-void set_rate(Lane<Drive>& lane, int step) {
-  const Mat2 rate = lane.drive.rate(step);
-  if (rate == lane.rate) return;
-  lane.rate = rate;
-  lane.e = exp_minus_identity(rate);
-}
-
-/// The lane's numbers of the cell's motion, rounded for the sweep.
-template <class Run>
-void round_motion(Run& run, std::size_t l) {
-  using real = typename Run::real;
-  auto& m = run.group.motion;
-  const auto& lane = run.lanes[l];
-  m.f_xx[l] = static_cast<real>(lane.f_minus_i.xx);
-  m.f_xy[l] = static_cast<real>(lane.f_minus_i.xy);
-  m.f_yx[l] = static_cast<real>(lane.f_minus_i.yx);
-  m.f_yy[l] = static_cast<real>(lane.f_minus_i.yy);
-  m.e_xx[l] = static_cast<real>(lane.e.xx);
-  m.e_xy[l] = static_cast<real>(lane.e.xy);
-  m.e_yx[l] = static_cast<real>(lane.e.yx);
-  m.e_yy[l] = static_cast<real>(lane.e.yy);
-  m.rotation[l] = static_cast<real>(0.5 * (lane.rate.yx - lane.rate.xy));
-  m.alive[l] = lane.running ? real(1) : real(0);
+  return current_cell(run.lanes[l], run.lists[l].cell).det() * run.scales.thickness;
 }
 
 /// The lane stands still from here on: nothing that later steps do can change it.
@@ -114,13 +65,13 @@ template <class Run>
   list.cell = reduced_lattice(list.cell);
   const Cell cell(list.cell);
   for (std::size_t i = 0; 2 * i < list.position.size(); ++i) cell.wrap(list.position[2 * i], list.position[2 * i + 1]);
-  return wide_enough(cell, run.packing->largest_radius(), run.skin);
+  return wide_enough(cell, run.scales.largest_radius, run.scales.skin);
 }
 
 /// x = F X + u of a lane, in place.
 template <class Run>
 void move_positions(const Run& run, std::size_t l, std::vector<double>& position) {
-  const Mat2 f = identity2 + run.lanes[l].f_minus_i;
+  const Mat2 f = plus_identity(run.lanes[l].f_minus_i);
   for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
     const double px = position[2 * i], py = position[2 * i + 1];
     position[2 * i] = f.xx * px + f.xy * py + static_cast<double>(run.group.grains[i].u_x[l]);

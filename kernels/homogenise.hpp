@@ -16,39 +16,64 @@ struct Homogenised {
   V contacts = V(0);
 };
 
-/// k s (x) s with s = sym(direction (x) branch) in Voigt form.
+/// A spring of stiffness k along a direction: k s (x) s with s = sym(direction (x) branch) in Voigt form.
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION void add_spring(V* tangent, const V& k, const V& dx, const V& dy, const PairGeometry<V>& at) {
+struct SpringTerms {
+  V xx, yy, xy;     ///< s
+  V kxx, kyy, kxy;  ///< k s
+
+  /// Entry `c` of the tangent's upper triangle grows by these factors.
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION V added_to(int c, const V& tangent) const {
+    const V& left = c < 3 ? kxx : (c < 5 ? kyy : kxy);
+    const V& right = c == 0 ? xx : (c == 1 || c == 3 ? yy : xy);
+    return fused(left, right, tangent);
+  }
+};
+
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION SpringTerms<V> spring_terms(const V& k, const V& dx, const V& dy, const PairGeometry<V>& at) {
   const V xx = dx * at.branch_x;
   const V yy = dy * at.branch_y;
   const V xy = V(real_of<V>(0.5)) * fused(dx, at.branch_y, dy * at.branch_x);
-  const V kxx = k * xx, kyy = k * yy;
-  tangent[0] = fused(kxx, xx, tangent[0]);
-  tangent[1] = fused(kxx, yy, tangent[1]);
-  tangent[2] = fused(kxx, xy, tangent[2]);
-  tangent[3] = fused(kyy, yy, tangent[3]);
-  tangent[4] = fused(kyy, xy, tangent[4]);
-  tangent[5] = fused(k * xy, xy, tangent[5]);
+  return {xx, yy, xy, k * xx, k * yy, k * xy};
 }
 
-/// Adds the pair to the sums; history is limited by the caps of the final positions, as the next step would.
+/// A pair at rest.
+template <class V>
+struct RestingPair {
+  PairAction<V> action;
+  SpringTerms<V> normal, tangential;  ///< zero where the pair does not touch
+  V weight;                           ///< 1, or 0 where it does not touch
+  V overlap;                          ///< e = -g/R^2
+};
+
+/// The pair's history is limited by the caps of the final positions, as the next step would.
 template <class Law, class V, class real>
-void homogenise_pair(Homogenised<V>& out, PairLanes<V>& pair, const PairShape<real>& shape, const PairGeometry<V>& at,
-                     const CellMotion<V>& cell, const V& radius_i) {
+KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<V>& pair, const PairShape<real>& shape, const PairGeometry<V>& at,
+                                                const CellMotion<V>& cell, const V& radius_i) {
   const V zero(0), one(1);
-  const auto touching = at.gap < zero;
   CellMotion<V> still = cell;
   still.d_xx = still.d_xy = still.d_yy = zero;
-  add_stress(out.sums, act<Law>(pair, shape, at, still, zero, zero, zero, zero, radius_i), at);
-
-  const V weight = Kokkos::Experimental::condition(touching, one, zero);
-  const V e = overlap_measure(at, shape);
-  const V to_unit = distance_of(e, V(shape.sum_radii)).inverse_ratio * V(shape.inverse_sum);
+  RestingPair<V> out;
+  out.action = act<Law>(pair, shape, at, still, zero, zero, zero, zero, radius_i);
+  out.weight = Kokkos::Experimental::condition(at.gap < zero, one, zero);
+  out.overlap = overlap_measure(at, shape);
+  const V to_unit = distance_of(out.overlap, V(shape.sum_radii)).inverse_ratio * V(shape.inverse_sum);
   const V nx = at.branch_x * to_unit, ny = at.branch_y * to_unit;
-  add_spring(out.tangent, weight * V(shape.normal_stiffness), nx, ny, at);
-  add_spring(out.tangent, weight * V(shape.tangential_stiffness), -ny, nx, at);
-  out.contacts = out.contacts + weight;
-  out.sums.largest_overlap = larger(out.sums.largest_overlap, e);
+  out.normal = spring_terms(out.weight * V(shape.normal_stiffness), nx, ny, at);
+  out.tangential = spring_terms(out.weight * V(shape.tangential_stiffness), -ny, nx, at);
+  return out;
+}
+
+/// Adds the pair to the sums.
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION void add_pair(Homogenised<V>& out, const RestingPair<V>& pair, const PairGeometry<V>& at) {
+  add_stress(out.sums, pair.action, at);
+  for (int c = 0; c < 6; ++c) {
+    out.tangent[c] = pair.tangential.added_to(c, pair.normal.added_to(c, out.tangent[c]));
+  }
+  out.contacts = out.contacts + pair.weight;
+  out.sums.largest_overlap = larger(out.sums.largest_overlap, pair.overlap);
 }
 
 template <class Law, class V>
@@ -62,7 +87,7 @@ Homogenised<V> homogenise(GroupState<V>& group) {
       const GrainLanes<V>& gj = grains[shape.other];
       const PairGeometry<V> at =
           geometry_of(group.pairs[p], group.motion, gj.u_x - grains[i].u_x, gj.u_y - grains[i].u_y);
-      homogenise_pair<Law>(out, group.pairs[p], shape, at, group.motion, radius);
+      add_pair(out, rest<Law>(group.pairs[p], shape, at, group.motion, radius), at);
     }
   }
   return out;

@@ -2,6 +2,7 @@
 /// 2x2 matrix exponential and logarithm, closed form, so that F(t) = exp(t log F) ends exactly at F and a rotation is
 /// rigid all the way (method.md §4).
 
+#include <Kokkos_Macros.hpp>
 #include <cmath>
 #include <limits>
 
@@ -11,27 +12,36 @@ namespace voussoir::kernels {
 struct Mat2 {
   double xx = 0, xy = 0, yx = 0, yy = 0;
 
-  friend Mat2 operator*(const Mat2& a, const Mat2& b) {
+  KOKKOS_INLINE_FUNCTION friend Mat2 operator*(const Mat2& a, const Mat2& b) {
     return {a.xx * b.xx + a.xy * b.yx, a.xx * b.xy + a.xy * b.yy, a.yx * b.xx + a.yy * b.yx, a.yx * b.xy + a.yy * b.yy};
   }
-  friend Mat2 operator+(const Mat2& a, const Mat2& b) { return {a.xx + b.xx, a.xy + b.xy, a.yx + b.yx, a.yy + b.yy}; }
-  friend Mat2 operator*(double s, const Mat2& a) { return {s * a.xx, s * a.xy, s * a.yx, s * a.yy}; }
-  friend bool operator==(const Mat2&, const Mat2&) = default;
-  [[nodiscard]] double det() const { return xx * yy - xy * yx; }
-  [[nodiscard]] double norm() const { return std::sqrt(xx * xx + xy * xy + yx * yx + yy * yy); }
-  [[nodiscard]] Mat2 inverse() const { return (1.0 / det()) * Mat2{yy, -xy, -yx, xx}; }
+  KOKKOS_INLINE_FUNCTION friend Mat2 operator+(const Mat2& a, const Mat2& b) {
+    return {a.xx + b.xx, a.xy + b.xy, a.yx + b.yx, a.yy + b.yy};
+  }
+  KOKKOS_INLINE_FUNCTION friend Mat2 operator*(double s, const Mat2& a) {
+    return {s * a.xx, s * a.xy, s * a.yx, s * a.yy};
+  }
+  KOKKOS_INLINE_FUNCTION friend bool operator==(const Mat2& a, const Mat2& b) {
+    return a.xx == b.xx && a.xy == b.xy && a.yx == b.yx && a.yy == b.yy;
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double det() const { return xx * yy - xy * yx; }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double norm() const { return std::sqrt(xx * xx + xy * xy + yx * yx + yy * yy); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 inverse() const { return (1.0 / det()) * Mat2{yy, -xy, -yx, xx}; }
 };
 
 /// |sym A|: the strain in a velocity gradient, without its rotation.
-[[nodiscard]] inline double symmetric_norm(const Mat2& a) {
+[[nodiscard]] KOKKOS_INLINE_FUNCTION double symmetric_norm(const Mat2& a) {
   const double shear = 0.5 * (a.xy + a.yx);
   return std::sqrt(a.xx * a.xx + a.yy * a.yy + 2.0 * shear * shear);
 }
 
 inline constexpr Mat2 identity2{1, 0, 0, 1};
 
+/// I + A; device code may not refer to `identity2`.
+[[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 plus_identity(const Mat2& a) { return {1.0 + a.xx, a.xy, a.yx, 1.0 + a.yy}; }
+
 /// exp(A) - I without cancellation for small A: A = s I + B with tr B = 0, B^2 = q I, q = -det B.
-[[nodiscard]] inline Mat2 exp_minus_identity(const Mat2& a) {
+[[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 exp_minus_identity(const Mat2& a) {
   const double s = 0.5 * (a.xx + a.yy);
   const Mat2 b{0.5 * (a.xx - a.yy), a.xy, a.yx, 0.5 * (a.yy - a.xx)};
   const double q = -b.det();

@@ -8,50 +8,6 @@
 
 namespace voussoir::kernels {
 
-void Cell::wrap(double& x, double& y) const {
-  const double a = std::floor(inverse.xx * x + inverse.xy * y);
-  const double b = std::floor(inverse.yx * x + inverse.yy * y);
-  x -= h.xx * a + h.xy * b;
-  y -= h.yx * a + h.yy * b;
-}
-
-void Cell::nearest(double& dx, double& dy) const {
-  const double a = std::nearbyint(inverse.xx * dx + inverse.xy * dy);
-  const double b = std::nearbyint(inverse.yx * dx + inverse.yy * dy);
-  dx -= h.xx * a + h.xy * b;
-  dy -= h.yx * a + h.yy * b;
-}
-
-Mat2 reduced_lattice(Mat2 cell) {
-  constexpr int most_swaps = 1000;  // each but the last shortens a vector; a bound for cells that are no numbers
-  for (int k = 0; k < most_swaps; ++k) {
-    const double aa = cell.xx * cell.xx + cell.yx * cell.yx;
-    const double bb = cell.xy * cell.xy + cell.yy * cell.yy;
-    const double ab = cell.xx * cell.xy + cell.yx * cell.yy;
-    if (aa <= bb) {
-      const double n = std::nearbyint(ab / aa);
-      if (n == 0 || !std::isfinite(n)) break;
-      cell.xy -= n * cell.xx;
-      cell.yy -= n * cell.yx;
-    } else {
-      const double n = std::nearbyint(ab / bb);
-      if (n == 0 || !std::isfinite(n)) break;
-      cell.xx -= n * cell.xy;
-      cell.yx -= n * cell.yy;
-    }
-  }
-  return cell;
-}
-
-bool wide_enough(const Cell& cell, double largest_radius, double skin) {
-  return std::min(cell.height(0), cell.height(1)) > 2.0 * (2.0 * largest_radius + skin);
-}
-
-double Cell::height(int axis) const {
-  const double row = axis == 0 ? std::hypot(inverse.xx, inverse.xy) : std::hypot(inverse.yx, inverse.yy);
-  return 1.0 / row;
-}
-
 namespace {
 
 /// Grains of one size level (radii within a factor 2) sorted into bins of the fractional cell by counting sort. A bin is as
@@ -144,13 +100,10 @@ void append_near(const Level& own, std::size_t k, const Level& level, int first,
   if (most > keys.size()) keys.resize(2 * most);
   const int i = own.member[k];
   for (auto m = static_cast<std::size_t>(first); m < static_cast<std::size_t>(last); ++m) {
-    double dx = level.x[m] - own.x[k];
-    double dy = level.y[m] - own.y[k];
-    cell.nearest(dx, dy);
     const double reach = own.radius[k] + level.radius[m] + skin;
     const int j = level.member[m];
     keys[count] = pair_key(std::min(i, j), std::max(i, j));
-    count += dx * dx + dy * dy < reach * reach ? 1 : 0;
+    count += is_within(reach, level.x[m] - own.x[k], level.y[m] - own.y[k], cell) ? 1 : 0;
   }
 }
 

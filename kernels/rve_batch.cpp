@@ -55,7 +55,7 @@ double rotational_mobility_of(const GrainMaterial& m, double radius, double larg
 }
 
 double Packing::inertial_time(double pressure) const {
-  return 1.0 / std::sqrt(mean_mobility() * pressure * thickness);
+  return kernels::inertial_time(mean_mobility(), thickness, pressure);
 }
 
 RveStates::RveStates(std::string_view label, std::size_t n, int grains) {

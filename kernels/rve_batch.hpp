@@ -6,6 +6,7 @@
 /// the lanes compute in, and complete: neighbour lists derive from it.
 
 #include <Kokkos_Core.hpp>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -35,10 +36,14 @@ struct Packing {
   [[nodiscard]] double mean_mobility() const;  ///< mean of dt^2/m [m/N], see kernels/README.md "Mobilities"
   [[nodiscard]] double mean_stiffness() const;  ///< mean of E r [N/m], the normal stiffness of a grain against its like
 
-  /// Inertial number per strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| * inertial_time(p) for |D| in
-  /// strain per step. @param pressure [Pa]
-  [[nodiscard]] double inertial_time(double pressure) const;
+  [[nodiscard]] double inertial_time(double pressure) const;  ///< as below, of the packing's mean mobility
 };
+
+/// Inertial number per strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| * inertial_time(p) for |D| in
+/// strain per step. @param mean_mobility [m/N]; @param thickness [m]; @param pressure [Pa]
+[[nodiscard]] KOKKOS_INLINE_FUNCTION double inertial_time(double mean_mobility, double thickness, double pressure) {
+  return 1.0 / std::sqrt(mean_mobility * pressure * thickness);
+}
 
 /// dt^2/m [m/N] and dt^2/J [rad/(N m)] of a grain, see kernels/README.md "Mobilities".
 /// @param largest_radius of the packing: a small grain that rolls on a large one is the stiffest rotation
@@ -63,11 +68,11 @@ struct RveStates {
 };
 
 /// A pair i < j in one word; ascending keys are ordered by (i, j).
-[[nodiscard]] constexpr std::uint32_t pair_key(int i, int j) {
+[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr std::uint32_t pair_key(int i, int j) {
   return (static_cast<std::uint32_t>(i) << 16) | static_cast<std::uint32_t>(j);
 }
-[[nodiscard]] constexpr int first_of(std::uint32_t key) { return static_cast<int>(key >> 16); }
-[[nodiscard]] constexpr int second_of(std::uint32_t key) { return static_cast<int>(key & 0xffffU); }
+[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr int first_of(std::uint32_t key) { return static_cast<int>(key >> 16); }
+[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr int second_of(std::uint32_t key) { return static_cast<int>(key & 0xffffU); }
 
 inline constexpr int max_grains = 65535;  ///< indices of a pair fit one word
 
@@ -75,7 +80,7 @@ inline constexpr int max_grains = 65535;  ///< indices of a pair fit one word
 /// `neighbour_overflow` also stands for a cell too narrow for its largest grains.
 enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, overlap_limit, not_finite };
 
-[[nodiscard]] constexpr bool is_failure(RveStatus s) { return s >= RveStatus::neighbour_overflow; }
+[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr bool is_failure(RveStatus s) { return s >= RveStatus::neighbour_overflow; }
 [[nodiscard]] const char* name_of(RveStatus s);
 
 /// Answer of one RVE.
@@ -92,7 +97,8 @@ struct RveReport {
   double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
   double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]
 
-  [[nodiscard]] double pressure() const { return -0.5 * (stress[0] + stress[3]); }  ///< compression positive [Pa]
+  /// Compression positive [Pa].
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double pressure() const { return -0.5 * (stress[0] + stress[3]); }
 };
 
 /// Candidate contacts of a committed state, kept between evaluations; derived, never stored.

@@ -1,0 +1,74 @@
+#pragma once
+/// The periodic cell of an RVE as a lattice: images, its shortest vectors, how wide it is.
+
+#include <cmath>
+
+#include "kernels/kinematics.hpp"
+
+namespace voussoir::kernels {
+
+/// Periodic cell with its inverse, for nearest images.
+struct Cell {
+  Mat2 h;        ///< columns are the periodic vectors [m]
+  Mat2 inverse;
+
+  KOKKOS_INLINE_FUNCTION explicit Cell(const Mat2& cell) : h(cell), inverse(cell.inverse()) {}
+
+  /// The point's image inside the cell.
+  KOKKOS_INLINE_FUNCTION void wrap(double& x, double& y) const {
+    const double a = std::floor(inverse.xx * x + inverse.xy * y);
+    const double b = std::floor(inverse.yx * x + inverse.yy * y);
+    x -= h.xx * a + h.xy * b;
+    y -= h.yx * a + h.yy * b;
+  }
+
+  /// The nearest image of a difference vector, in the cell's own (sheared) metric: exact for lengths below half a height.
+  KOKKOS_INLINE_FUNCTION void nearest(double& dx, double& dy) const {
+    const double a = std::nearbyint(inverse.xx * dx + inverse.xy * dy);
+    const double b = std::nearbyint(inverse.yx * dx + inverse.yy * dy);
+    dx -= h.xx * a + h.xy * b;
+    dy -= h.yx * a + h.yy * b;
+  }
+
+  /// Distance between opposite sides: along fractional axis 0 and 1.
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION double height(int axis) const {
+    const double row = axis == 0 ? std::hypot(inverse.xx, inverse.xy) : std::hypot(inverse.yx, inverse.yy);
+    return 1.0 / row;
+  }
+};
+
+/// Whether the nearest image of a difference vector is shorter than `reach` [m].
+[[nodiscard]] KOKKOS_INLINE_FUNCTION bool is_within(double reach, double dx, double dy, const Cell& cell) {
+  cell.nearest(dx, dy);
+  return dx * dx + dy * dy < reach * reach;
+}
+
+/// The same lattice with its shortest vectors (Gauss' reduction): a cell never gets thin by shear alone, so shear is unlimited.
+[[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 reduced_lattice(Mat2 cell) {
+  constexpr int most_swaps = 1000;  // each but the last shortens a vector; a bound for cells that are no numbers
+  for (int k = 0; k < most_swaps; ++k) {
+    const double aa = cell.xx * cell.xx + cell.yx * cell.yx;
+    const double bb = cell.xy * cell.xy + cell.yy * cell.yy;
+    const double ab = cell.xx * cell.xy + cell.yx * cell.yy;
+    if (aa <= bb) {
+      const double n = std::nearbyint(ab / aa);
+      if (n == 0 || !std::isfinite(n)) break;
+      cell.xy -= n * cell.xx;
+      cell.yy -= n * cell.yx;
+    } else {
+      const double n = std::nearbyint(ab / bb);
+      if (n == 0 || !std::isfinite(n)) break;
+      cell.xx -= n * cell.xy;
+      cell.yx -= n * cell.yy;
+    }
+  }
+  return cell;
+}
+
+/// Nearest images are unique for contacts: both heights exceed two contact distances of the largest grains.
+[[nodiscard]] KOKKOS_INLINE_FUNCTION bool wide_enough(const Cell& cell, double largest_radius, double skin) {
+  const double least = 2.0 * (2.0 * largest_radius + skin);
+  return least < cell.height(0) && least < cell.height(1);
+}
+
+}  // namespace voussoir::kernels

@@ -1,0 +1,39 @@
+#pragma once
+/// A listed pair where its RVE's positions are known in double: the displacement form's reference, and the pair's constants.
+
+#include "kernels/cell.hpp"
+#include "kernels/group_state.hpp"
+
+namespace voussoir::kernels {
+
+/// Branch b0 and gap g0 = |b0|^2 - R^2 at a rebase; to be rounded once.
+struct PairReference {
+  double branch_x, branch_y, gap;
+};
+
+/// @param dx, dy x_j - x_i, any image [m]; @param sum_radii R [m]
+[[nodiscard]] KOKKOS_INLINE_FUNCTION PairReference pair_reference(double dx, double dy, double sum_radii, const Cell& cell) {
+  cell.nearest(dx, dy);
+  return {dx, dy, dx * dx + dy * dy - sum_radii * sum_radii};
+}
+
+/// Constants of a pair i < j, combined in double and rounded once. @param ri, rj radii [m]
+template <class real>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION PairShape<real> pair_shape(int j, const GrainMaterial& of_i, double ri,
+                                                                const GrainMaterial& of_j, double rj) {
+  const PairConstants c = combine(of_i, ri, of_j, rj);
+  const auto r = [](double x) { return static_cast<real>(x); };
+  return {.other = j,
+          .active = 1,
+          .sum_radii = r(ri + rj),
+          .inverse_sum = r(1.0 / (ri + rj)),
+          .minus_inverse_sum_squared = r(-1.0 / ((ri + rj) * (ri + rj))),
+          .radius_other = r(rj),
+          .normal_stiffness = r(c.normal_stiffness),
+          .tangential_stiffness = r(c.tangential_stiffness),
+          .rolling_stiffness = r(c.rolling_stiffness),
+          .friction = r(c.friction),
+          .rolling_arm = r(c.rolling_arm)};
+}
+
+}  // namespace voussoir::kernels

@@ -1,0 +1,171 @@
+#pragma once
+/// The course of one RVE from its committed to its trial state, in double, whatever runs it (a lane of a group, a team): how its
+/// cell moves, when its lists are renewed, when it is looked at, and how it ends.
+
+#include <cmath>
+
+#include "kernels/drives.hpp"
+#include "kernels/group_state.hpp"
+
+namespace voussoir::kernels {
+
+/// Constants of a packing under given settings that every look needs.
+struct RunScales {
+  int grains = 0;
+  double mean_diameter = 0;   ///< [m]
+  double largest_radius = 0;  ///< [m]
+  double mean_mobility = 0;   ///< [m/N]
+  double thickness = 0;       ///< [m]
+  double local_damping = 0;   ///< [-]
+  double skin = 0;            ///< of the lists [m]
+  double reach = 0;           ///< of the longest listed branch, 2 r_max + skin [m]
+};
+
+[[nodiscard]] inline RunScales scales_of(const Packing& packing, const EngineSettings& settings) {
+  const double diameter = packing.mean_diameter(), largest = packing.largest_radius();
+  const double skin = settings.skin * diameter;
+  return {.grains = packing.size(),
+          .mean_diameter = diameter,
+          .largest_radius = largest,
+          .mean_mobility = packing.mean_mobility(),
+          .thickness = packing.thickness,
+          .local_damping = packing.local_damping,
+          .skin = skin,
+          .reach = 2.0 * largest + skin};
+}
+
+template <class DriveType>
+struct RveCourse {
+  using Drive = DriveType;
+
+  int rve = -1;  ///< -1: none
+  bool running = false;
+  RveStatus status = RveStatus::converged;
+  int steps = 0;
+  int next_list_check = 0;  ///< step of the next look at displacements
+  double unbalanced = 0;
+  double overlap = 0;  ///< largest at the last measuring step [-]
+  Drive drive;
+  Mat2 rate;            ///< velocity gradient per step of the coming motion
+  Mat2 e;               ///< exp(rate) - I
+  Mat2 f_minus_i;       ///< since the last rebase
+  double rotation = 0;  ///< sum of W per step since the committed state [rad]
+};
+
+/// The velocity gradient of the motion to `step`.
+template <class Drive>
+KOKKOS_INLINE_FUNCTION void set_rate(RveCourse<Drive>& course, int step) {
+  const Mat2 rate = course.drive.rate(step);
+  if (rate == course.rate) return;
+  course.rate = rate;
+  course.e = exp_minus_identity(rate);
+}
+
+/// The numbers of the cell's motion, rounded for the sweep into lane `l`.
+template <class V, class Drive>
+KOKKOS_INLINE_FUNCTION void round_motion(const RveCourse<Drive>& course, CellMotion<V>& m, std::size_t l) {
+  using real = real_of<V>;
+  m.f_xx[l] = static_cast<real>(course.f_minus_i.xx);
+  m.f_xy[l] = static_cast<real>(course.f_minus_i.xy);
+  m.f_yx[l] = static_cast<real>(course.f_minus_i.yx);
+  m.f_yy[l] = static_cast<real>(course.f_minus_i.yy);
+  m.e_xx[l] = static_cast<real>(course.e.xx);
+  m.e_xy[l] = static_cast<real>(course.e.xy);
+  m.e_yx[l] = static_cast<real>(course.e.yx);
+  m.e_yy[l] = static_cast<real>(course.e.yy);
+  m.rotation[l] = static_cast<real>(0.5 * (course.rate.yx - course.rate.xy));
+  m.alive[l] = course.running ? real(1) : real(0);
+}
+
+/// F <- exp(rate) F in double, then its rounded copy. A course that is not running stands still.
+template <class V, class Drive>
+KOKKOS_INLINE_FUNCTION void move_cell(RveCourse<Drive>& course, int step, CellMotion<V>& m, std::size_t l) {
+  using real = real_of<V>;
+  if (!course.running) course.rate = course.e = Mat2{};
+  course.f_minus_i = course.e + course.f_minus_i + course.e * course.f_minus_i;
+  m.d_xx[l] = static_cast<real>(course.rate.xx);
+  m.d_xy[l] = static_cast<real>(0.5 * (course.rate.xy + course.rate.yx));
+  m.d_yy[l] = static_cast<real>(course.rate.yy);
+  course.rotation += 0.5 * (course.rate.yx - course.rate.xy);
+  if (course.running) {
+    course.steps = step + 1;
+    set_rate(course, step + 1);
+  }
+  round_motion(course, m, l);
+}
+
+/// What a look at displacements says of the list. The last two end the course.
+enum class ListState { valid, stale, not_finite, flown };
+
+/// Whether grains may meet someone who is not listed before the next look: with what comes until then, 2 max|u| + |F - I| (R + skin)
+/// reaches the skin. @param largest, fastest max |u| [m] and max |w| [m/step]; @param finite all of them are
+template <class Drive>
+KOKKOS_INLINE_FUNCTION ListState look_at_list(RveCourse<Drive>& course, double largest, double fastest, bool finite,
+                                              const RunScales& scales, int list_interval, int step) {
+  const double per_step = 2.0 * fastest + course.rate.norm() * scales.reach;
+  const double moved = 2.0 * largest + course.f_minus_i.norm() * scales.reach;
+  const bool known = finite && std::isfinite(moved + per_step);
+  // Fast grains are looked at every step.
+  const int interval = per_step * list_interval > 0.25 * scales.skin ? 1 : list_interval;
+  course.next_list_check = step + interval;
+  if (known && moved + interval * per_step < scales.skin) return ListState::valid;
+  course.steps = step;
+  if (!known) return ListState::not_finite;
+  return largest > scales.mean_diameter ? ListState::flown : ListState::stale;
+}
+
+/// overlap / (r_i + r_j) from e = -g/R^2.
+[[nodiscard]] KOKKOS_INLINE_FUNCTION double relative_overlap(double e) { return 1.0 - std::sqrt(1.0 - (e < 1.0 ? e : 1.0)); }
+
+/// Looks at overlaps come on fixed steps, whatever runs beside.
+[[nodiscard]] KOKKOS_INLINE_FUNCTION bool guards(const EngineSettings& settings, int step) {
+  return step % settings.guard_interval == settings.guard_interval - 1;
+}
+
+/// Current cell matrix. @param reference that of the last rebase
+template <class Drive>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 current_cell(const RveCourse<Drive>& course, const Mat2& reference) {
+  return plus_identity(course.f_minus_i) * reference;
+}
+
+/// @param sums of lane `l` over one measuring sweep; @param cell the current one
+template <class V>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION Measurement measurement_of(const SweepSums<V>& sums, std::size_t l, const Mat2& cell,
+                                                                const RunScales& scales, double pressure_floor) {
+  const double v = cell.det() * scales.thickness;
+  Measurement m;
+  m.stress_xx = sums.stress_xx[l] / v;
+  m.stress_yy = sums.stress_yy[l] / v;
+  m.stress_xy = 0.5 * (sums.stress_xy[l] + sums.stress_yx[l]) / v;
+  m.width = cell.xx;
+  m.height = cell.yy;
+  const double p = Kokkos::max(-0.5 * (m.stress_xx + m.stress_yy), pressure_floor);
+  m.unbalanced = std::sqrt(static_cast<double>(sums.force_squared[l]) / scales.grains) /
+                 (p * scales.thickness * scales.mean_diameter);
+  return m;
+}
+
+/// What a measuring step decides: `ended` keeps the state, `lost` gives it up.
+enum class Outcome { running, ended, lost };
+
+/// Sets the status of a course that ends. @param measure () -> Measurement, called when the drive looks
+template <class V, class Drive, class Measure>
+KOKKOS_INLINE_FUNCTION Outcome judge(RveCourse<Drive>& course, int step, const EngineSettings& settings,
+                                     const SweepSums<V>& sums, std::size_t l, const Measure& measure) {
+  if (guards(settings, step)) {
+    course.overlap = relative_overlap(static_cast<double>(sums.largest_overlap[l]));
+    if (!(course.overlap <= settings.overlap_limit)) {
+      course.status = RveStatus::overlap_limit;
+      return Outcome::lost;
+    }
+  }
+  if (!course.drive.looks(step)) return Outcome::running;
+  const Measurement m = measure();
+  course.unbalanced = m.unbalanced;
+  const Verdict verdict = course.drive.judge(step, m);
+  if (verdict == Verdict::running) return Outcome::running;
+  course.status = verdict == Verdict::converged ? RveStatus::converged : RveStatus::step_limit;
+  return Outcome::ended;
+}
+
+}  // namespace voussoir::kernels

@@ -1,0 +1,47 @@
+#pragma once
+/// The answer of one RVE from its course and the sums over its contacts at rest.
+
+#include <cmath>
+
+#include "kernels/homogenise.hpp"
+#include "kernels/rve_course.hpp"
+
+namespace voussoir::kernels {
+
+/// What is known of any course, lost or not.
+template <class Drive>
+KOKKOS_INLINE_FUNCTION void begin_report(const RveCourse<Drive>& course, RveReport& report) {
+  report = RveReport{};
+  report.status = course.status;
+  report.steps = course.steps;
+  report.unbalanced = course.unbalanced;
+  report.largest_overlap = course.overlap;
+}
+
+/// Stress, tangent and status from lane `l` of the sums. @param volume current [m^3]; @param finite all grains' motions are
+template <class V, class Drive>
+KOKKOS_INLINE_FUNCTION void fill_report(const RveCourse<Drive>& course, const Homogenised<V>& h, std::size_t l, double volume,
+                                        bool finite, const RunScales& scales, const EngineSettings& settings,
+                                        RveReport& report) {
+  report.stress[0] = h.sums.stress_xx[l] / volume;
+  report.stress[1] = h.sums.stress_xy[l] / volume;
+  report.stress[2] = h.sums.stress_yx[l] / volume;
+  report.stress[3] = h.sums.stress_yy[l] / volume;
+  for (int k = 0; k < 6; ++k) report.tangent[k] = static_cast<double>(h.tangent[k][l]) / volume;
+  report.contacts = static_cast<int>(h.contacts[l]);
+  report.largest_overlap = relative_overlap(static_cast<double>(h.sums.largest_overlap[l]));
+  const double p = Kokkos::max(report.pressure(), settings.pressure_floor);
+  report.inertial_number = course.drive.strain_rate() * inertial_time(scales.mean_mobility, scales.thickness, p);
+  double all = volume;
+  for (int k = 0; k < 4; ++k) all += report.stress[k];
+  for (int k = 0; k < 6; ++k) all += report.tangent[k];
+  if (!finite || !std::isfinite(all) || !(volume > 0)) {
+    report.status = RveStatus::not_finite;
+  } else if (!(report.largest_overlap <= settings.overlap_limit)) {
+    report.status = RveStatus::overlap_limit;
+  } else if (report.contacts == 0) {
+    report.status = RveStatus::open;
+  }
+}
+
+}  // namespace voussoir::kernels
