@@ -53,6 +53,7 @@ struct NewtonSolver::Workspace {
   Failure prepare();
   Failure predict();
   Failure take_step();
+  [[nodiscard]] std::vector<double> stiffness(double share);
   Failure refactor();
   Failure find_step();
   Failure evaluate();
@@ -117,6 +118,7 @@ Failure NewtonSolver::Workspace::predict() {
   Eigen::VectorXd right = -internal_force(mesh, increment.points, stress).force;
   if (load.predictor_ratio == 0) right += load.external_force;
   for (const auto& [dof, value] : load.prescribed) right[dof] = 0;
+  const PartTimer timer(report.times.solve);
   step = guess + lift + solver.solver_.solve(right);
   for (const auto& [dof, value] : load.prescribed) step[dof] = value;
   return step.allFinite() ? Failure{} : Failure{NewtonStatus::not_finite};
@@ -152,7 +154,10 @@ Failure NewtonSolver::Workspace::take_step() {
 Failure NewtonSolver::Workspace::evaluate() {
   const Mesh& mesh = solver.mesh_;
   if (!increment.displacement.allFinite()) return NewtonStatus::not_finite;
-  displacement_gradients(mesh, increment.points, increment.displacement, displacement_gradient);
+  {
+    const PartTimer timer(report.times.assembly);
+    displacement_gradients(mesh, increment.points, increment.displacement, displacement_gradient);
+  }
   for (int i = 0; i < mesh.n_points(); ++i) {
     Gradient h = displacement_gradient[i];
     if (solver.kinematics_ == Kinematics::fixed_mesh)
@@ -160,6 +165,7 @@ Failure NewtonSolver::Workspace::evaluate() {
     if (!((Eigen::Matrix2d::Identity() + h).determinant() > 0)) return NewtonStatus::inverted_element;
     increment.gradients[i] = h;
   }
+  const PartTimer timer(report.times.material);
   report.material = solver.material_.evaluate(increment.gradients, increment.stress, increment.tangent);
   ++report.evaluations;
   report.work += report.material.work;
@@ -167,6 +173,7 @@ Failure NewtonSolver::Workspace::evaluate() {
 }
 
 void NewtonSolver::Workspace::form_residual() {
+  const PartTimer timer(report.times.assembly);
   const Mesh& mesh = solver.mesh_;
   const NewtonOptions& options = solver.options_;
   const InternalForce internal = internal_force(mesh, increment.points, increment.stress);
@@ -193,17 +200,23 @@ void NewtonSolver::Workspace::form_residual() {
   }
 }
 
-/// K from the present tangents plus a share of the initial ones (it steers the iteration, not the answer); where that is
-/// not positive definite, ten and a hundred times the share.
+/// Entries of K from the present tangents plus a share of the initial ones, which steers the iteration, not the answer.
+std::vector<double> NewtonSolver::Workspace::stiffness(double share) {
+  const PartTimer timer(report.times.assembly);
+  std::vector<Tangent> tangents = increment.tangent;
+  for (std::size_t i = 0; i < tangents.size(); ++i) tangents[i] += share * state.initial_tangent[i];
+  return solver.assembler_.assemble(increment.points, tangents, constrained);
+}
+
+/// K with the share that the options give; where that is not positive definite, ten and a hundred times the share.
 Failure NewtonSolver::Workspace::refactor() {
   constexpr double smallest_share = 0.02;
   double share = solver.options_.initial_tangent_share;
   for (int attempt = 0; attempt < 3; ++attempt) {
-    std::vector<Tangent> tangents = increment.tangent;
-    for (std::size_t i = 0; i < tangents.size(); ++i) tangents[i] += share * state.initial_tangent[i];
-    const std::vector<double> values = solver.assembler_.assemble(increment.points, tangents, constrained);
+    const std::vector<double> values = stiffness(share);
     if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }))
       return NewtonStatus::not_finite;
+    const PartTimer timer(report.times.solve);
     const FactorStatus status = solver.solver_.factorise(values);
     ++report.factorisations;
     if (status == FactorStatus::ok) return {};
@@ -214,6 +227,7 @@ Failure NewtonSolver::Workspace::refactor() {
 }
 
 Failure NewtonSolver::Workspace::find_step() {
+  const PartTimer timer(report.times.solve);
   const NewtonOptions& options = solver.options_;
   const AndersonHistory::Step next = history.step(solver.solver_);
   if (!next.accelerated.allFinite()) return NewtonStatus::not_finite;

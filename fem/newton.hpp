@@ -13,6 +13,7 @@
 #include "fem/assembly.hpp"
 #include "fem/boundary.hpp"
 #include "fem/mesh_state.hpp"
+#include "fem/part_times.hpp"
 
 namespace voussoir::fem {
 
@@ -58,6 +59,7 @@ struct NewtonReport {
   double increment_norm = 0;               ///< |Du| [m]
   double largest_nodal_ratio = 0;          ///< max over nodes of |R_i| / (sum of |element forces| + |f_ext|) there [-]
   std::size_t work = 0;                    ///< sum of BatchReport::work
+  PartTimes times;                         ///< where the wall time went
   BatchReport material;                    ///< of the last evaluation
 };
 

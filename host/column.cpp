@@ -116,7 +116,7 @@ ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& lo
       begin_stage(ground);
     }
     const RunStatus status = advance_stage(ground, column_stage(mesh, input, rows), recorder);
-    if (status != RunStatus::finished) return {status, {}};
+    if (status != RunStatus::finished) return {status, {}, recorder.totals()};
   }
   const K0Table k0 = fit(rows, input.ground.surcharge);
   if (!recorder.finished() || !std::filesystem::exists(options.folder / "k0.csv")) write_k0(options.folder, k0);
@@ -125,7 +125,7 @@ ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& lo
   recorder.set_table("column_rows", rows_table(std::span(rows).last(last_rows)));
   log.line(fmt::format("column: K0 falls from 1 at {:.3g} Pa to {:.3f} at {:.3g} Pa", input.ground.surcharge,
                        k0.ratio().back(), k0.stress().back()));
-  return {RunStatus::finished, k0};
+  return {RunStatus::finished, k0, recorder.totals()};
 }
 
 }  // namespace voussoir::host

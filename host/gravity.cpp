@@ -1,6 +1,4 @@
 // Stage "gravity", and the forces that the stages share.
-#include <algorithm>
-#include <cmath>
 
 #include "fem/boundary.hpp"
 #include "host/stages.hpp"
@@ -52,36 +50,6 @@ RunStatus settle_under_gravity(Ground& ground, const K0Table& k0, RunRecorder& r
   stage.targets = gravity_targets(ground.input);
   stage.last = last;
   return advance_stage(ground, stage, recorder);
-}
-
-GeostaticCheck check_geostatic(const Ground& ground) {
-  const GroundCase& soil = ground.input.ground;
-  const auto n = static_cast<std::size_t>(ground.mesh.n_points());
-  std::vector<fem::Stress> stress(n);
-  std::vector<fem::Tangent> tangent(n);
-  ground.material.committed(stress, tangent);
-  const fem::GaussPoints points = fem::gauss_points(ground.mesh, ground.mesh.coordinates);
-  const fem::Point axis(0.0, soil.axis_height());
-  GeostaticCheck check;
-  double deflections = 0;
-  std::size_t counted = 0;
-  for (std::size_t p = 0; p < n; ++p) {
-    const fem::Point x = points.positions.col(static_cast<Eigen::Index>(p));
-    if ((x - axis).norm() <= soil.diameter) continue;  // within D/2 of the opening's edge
-    const double expected = soil.unit_weight * (soil.height - x.y()) + soil.surcharge;
-    const double error = std::abs(-stress[p][1] - expected);
-    const double k0 = stress[p][0] / stress[p][1];
-    const double deflection = std::abs(major_axis_from_vertical(stress[p]));
-    check.vertical_error = std::max(check.vertical_error, error);
-    check.vertical_ratio = std::max(check.vertical_ratio, error / (0.05 * expected + 1.0e3));
-    check.k0_minimum = std::min(check.k0_minimum, k0);
-    check.k0_maximum = std::max(check.k0_maximum, k0);
-    check.deflection_max = std::max(check.deflection_max, deflection);
-    deflections += deflection;
-    ++counted;
-  }
-  check.deflection_mean = counted > 0 ? deflections / static_cast<double>(counted) : 0.0;
-  return check;
 }
 
 }  // namespace voussoir::host

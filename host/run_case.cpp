@@ -19,7 +19,9 @@ namespace {
 RunStatus run_column_case(const Case& input, const RunOptions& options) {
   std::filesystem::create_directories(options.folder);
   RunLog log(options.folder / "run.log", options.resume);
-  return run_column(input, options, log).status;
+  const ColumnResult column = run_column(input, options, log);
+  for (const std::string& line : totals_table(column.totals)) log.line(line);
+  return column.status;
 }
 
 int answer(RunStatus status, const RunOptions& options) {

@@ -41,6 +41,7 @@ RunRecorder::RunRecorder(const RunOptions& options, const Case& input, const std
   result_index_ = static_cast<int>(record.at(1));
   finished_ = record.at(2) != 0;
   sequence_ = loaded_->increment;
+  totals_ = totals_from(checkpoint);
   if (std::filesystem::exists(folder_ / "run.h5")) provenance_ = io::read_provenance(folder_ / "run.h5");
   if (!finished_) writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
 }
@@ -49,6 +50,7 @@ const io::Checkpoint* RunRecorder::resumed() const { return loaded_ ? &loaded_->
 
 void RunRecorder::begin_stage(const std::string& name, int done, int planned) {
   stage_ = name;
+  if (totals_.empty() || totals_.back().stage != name) totals_.emplace_back().stage = name;
   stage_done_ = done;
   stage_current_ = done;
   stage_planned_ = planned;
@@ -100,6 +102,7 @@ void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn
 
 void RunRecorder::save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished) {
   checkpoint.put_text("stage", stage);
+  host::save(totals_, checkpoint);
   const std::array<std::int64_t, 3> record{stage_index, result_index_, finished ? 1 : 0};
   checkpoint.put_integers("record", record);
   store_.save(++sequence_, checkpoint);

@@ -10,6 +10,7 @@
 #include "host/case.hpp"
 #include "host/run_folder.hpp"
 #include "host/run_log.hpp"
+#include "host/run_totals.hpp"
 #include "io/checkpoint.hpp"
 #include "io/result_file.hpp"
 
@@ -28,6 +29,11 @@ class RunRecorder {
   [[nodiscard]] int resumed_stage_index() const { return resumed_stage_index_; }
   [[nodiscard]] RunLog& log() { return log_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+  /// What the stages have cost so far; those of a resumed run include what came before.
+  [[nodiscard]] const std::vector<StageTotals>& totals() const { return totals_; }
+  /// Totals of the stage that was begun last.
+  [[nodiscard]] StageTotals& stage_totals() { return totals_.back(); }
 
   /// Progress: a stage of `planned` increments, of which `done` are behind it.
   void begin_stage(const std::string& name, int done, int planned);
@@ -60,6 +66,7 @@ class RunRecorder {
   bool finished_ = false;
   int sequence_ = 0;      ///< checkpoints so far
   int result_index_ = 0;  ///< last result file
+  std::vector<StageTotals> totals_;
   std::string stage_;
   int stage_done_ = 0;     ///< increments of the stage behind the start of this process
   int stage_current_ = 0;  ///< increments of the stage done

@@ -13,6 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
 /// The residual's norm over the reference that the tolerance is relative to.
 double relative(double residual, const fem::NewtonReport& report, double tolerance) {
   const double reference = (report.residual_bound - report.noise_floor) / tolerance;
@@ -48,6 +50,9 @@ class StageRun {
 
   [[nodiscard]] int done() const { return done_; }
 
+  /// The wall time since the last increment, of tries that led to none.
+  void end() { recorder_.stage_totals().wall += seconds_since(since_); }
+
   /// False: stop here.
   bool converged(const fem::ConvergedStep& step) {
     tally(step.report);
@@ -64,6 +69,7 @@ class StageRun {
   void failed(const fem::FailedStep& step) {
     tally(step.report);
     ++info_.cuts;
+    ++recorder_.stage_totals().cuts;
     recorder_.log().line(fmt::format("{}: step {:.6g} to {:.6g} cut: {} {}", stage_.name, step.from, step.to,
                                      fem::to_string(step.report.status), step.report.material.message));
   }
@@ -73,6 +79,32 @@ class StageRun {
     info_.iterations += report.iterations;
     info_.evaluations += report.evaluations;
     info_.particle_steps += static_cast<double>(report.work);
+    times_ += report.times;
+    recorder_.stage_totals().particle_steps += static_cast<double>(report.work);
+    recorder_.stage_totals().parts += report.times;
+  }
+
+  /// Evaluations and wall time of an increment that converged. Its output is still to come: the column has that of the
+  /// increment before.
+  void count_increment() {
+    info_.wall_s = seconds_since(since_);
+    info_.extra["time_grains"] = {times_.material, "s"};
+    info_.extra["time_assembly"] = {times_.assembly, "s"};
+    info_.extra["time_solve"] = {times_.solve, "s"};
+    info_.extra["time_output"] = {output_, "s"};
+    recorder_.stage_totals().evaluations.push_back(info_.evaluations);
+    recorder_.stage_totals().wall += info_.wall_s;
+  }
+
+  /// The increment is on the disk.
+  void close_increment() {
+    output_ = seconds_since(since_) - info_.wall_s;
+    recorder_.stage_totals().output += output_;
+    recorder_.stage_totals().wall += output_;
+    info_ = {};
+    info_.stage = stage_.name;
+    times_ = {};
+    since_ = Clock::now();
   }
 
   void finish_increment(const fem::ConvergedStep& step) {
@@ -87,16 +119,14 @@ class StageRun {
     }
     add_report_columns(ground_, step.report, info_);
     if (stage_.on_record) stage_.on_record(info_);
-    info_.wall_s = std::chrono::duration<double>(Clock::now() - since_).count();
+    count_increment();
     const bool last_target = done_ == static_cast<int>(stage_.targets.size());
     if (last_target || done_ % ground_.input.output.every == 0) {
       record_ground(ground_, info_, step.increment.reactions, recorder_);
     }
     checkpoint(stage_.last && last_target);
     recorder_.report(info_);
-    info_ = {};
-    info_.stage = stage_.name;
-    since_ = Clock::now();
+    close_increment();
   }
 
   void checkpoint(bool finished) {
@@ -110,6 +140,8 @@ class StageRun {
   const Stage& stage_;
   RunRecorder& recorder_;
   io::IncrementInfo info_;
+  fem::PartTimes times_;  ///< of the present increment
+  double output_ = 0;     ///< of the last increment [s]
   Clock::time_point since_;
   int done_ = 0;
 };
@@ -150,6 +182,7 @@ RunStatus advance_stage(Ground& ground, const Stage& stage, RunRecorder& recorde
       fem::advance_load(solver, ground.state, stage.path, stage.targets, options,
                         {.on_converged = [&](const fem::ConvergedStep& step) { return run.converged(step); },
                          .on_failed = [&](const fem::FailedStep& step) { run.failed(step); }});
+  run.end();
   if (report.status == fem::StepStatus::gave_up) {
     recorder.log().line(fmt::format("{} failed: {}", stage.name, report.message));
     return RunStatus::failed;

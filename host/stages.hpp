@@ -14,6 +14,7 @@ namespace voussoir::host {
 struct ColumnResult {
   RunStatus status = RunStatus::finished;
   K0Table k0;
+  std::vector<StageTotals> totals;  ///< what it cost
 };
 /// Runs, or goes on with, the column in options.folder, with its own results and checkpoints, tables `k0` and `column_rows`
 /// of io/FORMAT.md, and k0.csv.
@@ -43,14 +44,28 @@ struct ColumnResult {
 /// Base fixed, sides and symmetry axis on rollers.
 [[nodiscard]] fem::Constraints ground_supports(const fem::Mesh& mesh);
 
+/// A level band of the ground after gravity, means over its points weighted by their volume.
+struct GeostaticRow {
+  double depth = 0;       ///< of its middle [m]
+  double vertical = 0;    ///< vertical stress, compression positive, brought to that depth by the unit weight [Pa]
+  double error = 0;       ///< mean of vertical stress - (unit weight * depth + surcharge) [Pa]
+  double scatter = 0;     ///< standard deviation of the same [Pa]
+  double k0 = 0;          ///< horizontal over vertical stress [-]
+  double deflection = 0;  ///< of the principal axis from the vertical, without sign [rad]
+};
+
 /// How near the ground after gravity is to the state at rest; Gauss points farther than D/2 from the opening.
 struct GeostaticCheck {
   double vertical_error = 0;    ///< largest |sigma_yy - (unit weight * depth + surcharge)| [Pa]
   double vertical_ratio = 0;    ///< the same, over (5 % of the expected stress + 1 kPa) [-]; at most 1 is wanted
+  double row_ratio = 0;         ///< largest |error| of a row over (2 % of the expected stress + 0.5 kPa) [-]; at most 1 is wanted
+  double row_scatter = 0;       ///< largest scatter of a row over its vertical stress [-]
   double k0_minimum = 1;        ///< least horizontal over vertical stress [-]
   double k0_maximum = 0;        ///< largest [-]
   double deflection_mean = 0;   ///< of the principal axis from the vertical [rad]
   double deflection_max = 0;    ///< [rad]
+  double deflection_deep = 0;   ///< largest where the vertical stress is 100 kPa or more [rad]; at most 1 deg is wanted
+  std::vector<GeostaticRow> rows;  ///< from the surface down; rows without points are left out
 };
 [[nodiscard]] GeostaticCheck check_geostatic(const Ground& ground);
 

@@ -1,8 +1,11 @@
 // Stage "volume_loss".
 #include <spdlog/fmt/fmt.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "fem/assembly.hpp"
 #include "fem/boundary.hpp"
@@ -32,24 +35,39 @@ void add_tunnel_columns(const Ground& ground, io::IncrementInfo& info) {
   info.extra["area_loss"] = {area_loss(ground), "-"};
 }
 
-/// The state at V_l = 0, with the reactions of the opening that is now fixed, as the stage's increment 0.
-void record_start(const Ground& ground, const K0Table& k0, RunRecorder& recorder) {
-  const GeostaticCheck at_rest = check_geostatic(ground);
-  const OpeningCheck opening = check_opening(ground, k0);
+void record_at_rest(const GeostaticCheck& at_rest, RunRecorder& recorder) {
   constexpr double degree = 180.0 / std::numbers::pi;
   recorder.log().line(fmt::format(
-      "after gravity: vertical stress within {:.3g} Pa of rest ({:.2f} of 5 % + 1 kPa), K0 {:.3f} to {:.3f}, principal "
-      "axis off by {:.2g} deg (mean), {:.2g} deg (largest)",
-      at_rest.vertical_error, at_rest.vertical_ratio, at_rest.k0_minimum, at_rest.k0_maximum,
-      at_rest.deflection_mean * degree, at_rest.deflection_max * degree));
-  recorder.log().line(fmt::format("V_l = 0: reactions of the opening differ from its tractions by {:.2e} of them",
-                                  opening.relative));
+      "after gravity: vertical stress within {:.3g} Pa of rest ({:.2f} of 5 % + 1 kPa), means of rows {:.2f} of 2 % + 0.5 kPa, "
+      "their scatter up to {:.2g} %; K0 {:.3f} to {:.3f}; principal axis off by {:.2g} deg (mean), {:.2g} deg (largest), {:.2g} "
+      "deg (largest from 100 kPa on)",
+      at_rest.vertical_error, at_rest.vertical_ratio, at_rest.row_ratio, 100 * at_rest.row_scatter, at_rest.k0_minimum,
+      at_rest.k0_maximum, at_rest.deflection_mean * degree, at_rest.deflection_max * degree,
+      at_rest.deflection_deep * degree));
   recorder.set_table("geostatic_check", {{"vertical_error", "Pa", {at_rest.vertical_error}},
                                          {"vertical_ratio", "-", {at_rest.vertical_ratio}},
+                                         {"row_ratio", "-", {at_rest.row_ratio}},
+                                         {"row_scatter", "-", {at_rest.row_scatter}},
                                          {"k0_minimum", "-", {at_rest.k0_minimum}},
                                          {"k0_maximum", "-", {at_rest.k0_maximum}},
                                          {"deflection_mean", "rad", {at_rest.deflection_mean}},
-                                         {"deflection_max", "rad", {at_rest.deflection_max}}});
+                                         {"deflection_max", "rad", {at_rest.deflection_max}},
+                                         {"deflection_deep", "rad", {at_rest.deflection_deep}}});
+  std::vector<io::TableColumn> rows{{"depth", "m", {}}, {"vertical_stress", "Pa", {}}, {"error", "Pa", {}},
+                                    {"scatter", "Pa", {}}, {"ratio", "-", {}}, {"deflection", "rad", {}}};
+  for (const GeostaticRow& row : at_rest.rows) {
+    const std::array<double, 6> values{row.depth, row.vertical, row.error, row.scatter, row.k0, row.deflection};
+    for (std::size_t k = 0; k < rows.size(); ++k) rows[k].values.push_back(values[k]);
+  }
+  recorder.set_table("geostatic_rows", std::move(rows));
+}
+
+/// The state at V_l = 0, with the reactions of the opening that is now fixed, as the stage's increment 0.
+void record_start(const Ground& ground, const K0Table& k0, RunRecorder& recorder) {
+  record_at_rest(check_geostatic(ground), recorder);
+  const OpeningCheck opening = check_opening(ground, k0);
+  recorder.log().line(fmt::format("V_l = 0: reactions of the opening differ from its tractions by {:.2e} of them",
+                                  opening.relative));
   recorder.set_table("opening_check",
                      {{"difference", "N/m", {opening.difference}}, {"relative", "-", {opening.relative}}});
   io::IncrementInfo info;

@@ -54,6 +54,38 @@ TEST(Geostatic, StateAtRestPasses) {
   EXPECT_NEAR(check.k0_minimum, 0.5, 1e-12);
   EXPECT_NEAR(check.k0_maximum, 0.5, 1e-12);
   EXPECT_LT(check.deflection_max, 1e-12);
+  EXPECT_EQ(check.rows.size(), 20U);
+  EXPECT_LT(check.row_ratio, 1e-8);
+  EXPECT_LT(check.row_scatter, 1e-6);
+}
+
+TEST(Geostatic, RowsTellErrorFromScatter) {
+  GroundAtRest rest;
+  std::vector<fem::Stress> stress = rest.at_rest();
+  for (std::size_t p = 0; p < stress.size(); ++p) stress[p][1] += p % 2 == 0 ? 3e3 : -1e3;  // 1 kPa less, +- 2 kPa
+  rest.material.set_stress(stress);
+  const GeostaticCheck check = check_geostatic(rest.ground);
+  double error = 0, scatter = 0;
+  for (const GeostaticRow& row : check.rows) {
+    EXPECT_NEAR(row.depth, 35.0 * (0.5 + static_cast<double>(&row - check.rows.data())) / 20, 1e-9);
+    error += row.error / 20;
+    scatter += row.scatter / 20;
+  }
+  // Few points a row on this mesh: a row holds not quite as many even points as odd ones.
+  EXPECT_NEAR(error, -1e3, 200);
+  EXPECT_NEAR(scatter, 2e3, 200);
+  EXPECT_GT(check.row_ratio, 0.5);
+  EXPECT_LT(check.vertical_error, 3e3 + 1);
+}
+
+TEST(Geostatic, DeflectionCountsWhereTheStressIsLarge) {
+  GroundAtRest rest;
+  std::vector<fem::Stress> stress = rest.at_rest();
+  for (fem::Stress& s : stress) s[2] = s[1] > -100e3 ? 0.1 * s[1] : 0.01 * s[1];
+  rest.material.set_stress(stress);
+  const GeostaticCheck check = check_geostatic(rest.ground);
+  EXPECT_NEAR(check.deflection_max, 0.5 * std::atan2(0.2, 0.5), 1e-12);
+  EXPECT_NEAR(check.deflection_deep, 0.5 * std::atan2(0.02, 0.5), 1e-12);
 }
 
 TEST(Geostatic, FaultsAreSeen) {

@@ -1,0 +1,30 @@
+#pragma once
+/// What a run has cost, stage by stage: kept in its checkpoints and told at the end of its log.
+
+#include <string>
+#include <vector>
+
+#include "fem/part_times.hpp"
+#include "io/checkpoint.hpp"
+
+namespace voussoir::host {
+
+struct StageTotals {
+  std::string stage;
+  std::vector<double> evaluations;  ///< of each increment, cut tries included
+  int cuts = 0;                     ///< tries that did not converge
+  double particle_steps = 0;
+  fem::PartTimes parts;
+  double output = 0;  ///< result files and checkpoints [s]
+  double wall = 0;    ///< all of it [s]
+};
+
+void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint);
+/// Empty where the checkpoint holds none.
+[[nodiscard]] std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint);
+
+/// Lines of a table, one row a stage and a sum: increments, wall time by part [s], evaluations an increment (median and
+/// largest), cuts, particle-steps and their rate.
+[[nodiscard]] std::vector<std::string> totals_table(const std::vector<StageTotals>& totals);
+
+}  // namespace voussoir::host

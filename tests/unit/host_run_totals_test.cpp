@@ -1,0 +1,64 @@
+// What a run has cost: kept in a checkpoint, summed in a table.
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "host/run_totals.hpp"
+
+namespace voussoir::host {
+namespace {
+
+std::vector<StageTotals> two_stages() {
+  StageTotals gravity;
+  gravity.stage = "gravity";
+  gravity.evaluations = {2, 3};
+  gravity.particle_steps = 4e8;
+  gravity.parts = {.material = 2.0, .assembly = 0.25, .solve = 0.5};
+  gravity.output = 0.125;
+  gravity.wall = 3.0;
+  StageTotals loss = gravity;
+  loss.stage = "volume_loss";
+  loss.evaluations = {5, 9, 4};
+  loss.cuts = 2;
+  return {gravity, loss};
+}
+
+TEST(RunTotals, ComeBackFromACheckpoint) {
+  const std::vector<StageTotals> written = two_stages();
+  io::Checkpoint checkpoint;
+  EXPECT_TRUE(totals_from(checkpoint).empty());
+  save(written, checkpoint);
+  const std::vector<StageTotals> read = totals_from(checkpoint);
+  ASSERT_EQ(read.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(read[k].stage, written[k].stage);
+    EXPECT_EQ(read[k].evaluations, written[k].evaluations);
+    EXPECT_EQ(read[k].cuts, written[k].cuts);
+    EXPECT_EQ(read[k].particle_steps, written[k].particle_steps);
+    EXPECT_EQ(read[k].parts.material, written[k].parts.material);
+    EXPECT_EQ(read[k].parts.assembly, written[k].parts.assembly);
+    EXPECT_EQ(read[k].parts.solve, written[k].parts.solve);
+    EXPECT_EQ(read[k].output, written[k].output);
+    EXPECT_EQ(read[k].wall, written[k].wall);
+  }
+}
+
+TEST(RunTotals, TableSumsTheStages) {
+  EXPECT_TRUE(totals_table({}).empty());
+  const std::vector<std::string> lines = totals_table(two_stages());
+  ASSERT_EQ(lines.size(), 5U);  // what the numbers are, head, two stages, sum
+  const auto words = [](const std::string& line) {
+    std::vector<std::string> found;
+    std::istringstream in(line);
+    for (std::string word; in >> word;) found.push_back(word);
+    return found;
+  };
+  EXPECT_EQ(words(lines[4]), (std::vector<std::string>{"all", "5", "6.0", "4.0", "0.5", "1.0", "0.2", "0.2", "4", "9", "2",
+                                                       "8.000e+08", "200.0"}));
+  EXPECT_EQ(words(lines[2]).at(8), "2.5");
+}
+
+}  // namespace
+}  // namespace voussoir::host
