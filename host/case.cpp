@@ -16,9 +16,10 @@
 namespace voussoir::host {
 namespace {
 
-constexpr std::array<std::pair<CaseKind, const char*>, 5> kind_names{{{CaseKind::pack, "pack"},
+constexpr std::array<std::pair<CaseKind, const char*>, 6> kind_names{{{CaseKind::pack, "pack"},
                                                                       {CaseKind::biaxial, "biaxial"},
                                                                       {CaseKind::probe, "probe"},
+                                                                      {CaseKind::biaxial_bvp, "biaxial_bvp"},
                                                                       {CaseKind::column, "column"},
                                                                       {CaseKind::tunnel, "tunnel"}}};
 
@@ -41,17 +42,22 @@ void read_grain_tables(const io::Table& root, Case& input) {
   if (input.kind == CaseKind::biaxial) input.biaxial = read_biaxial(root.table("biaxial"));
 }
 
-void read_ground_tables(const io::Table& root, Case& input) {
-  const bool with_tunnel = input.kind == CaseKind::tunnel;
+/// Tables of every kind with a mesh.
+void read_mesh_tables(const io::Table& root, Case& input) {
   const std::string material = root.choice("material", {"grains", "linear_elastic"}, "grains");
   input.material = material == "grains" ? MaterialKind::grains : MaterialKind::linear_elastic;
   input.elastic = read_elastic(root.table("elastic"));
+  input.newton = read_newton(root.table("newton"));
+  input.output = read_output(root.table("output"));
+  if (input.kind == CaseKind::biaxial_bvp) input.biaxial_bvp = read_biaxial_bvp(root.table("biaxial_bvp"));
+}
+
+void read_ground_tables(const io::Table& root, Case& input) {
+  const bool with_tunnel = input.kind == CaseKind::tunnel;
   input.ground = read_ground(root.table("ground"), with_tunnel);
   input.column = read_column(root.table("column"));
   input.gravity = read_gravity(root.table("gravity"));
   if (with_tunnel) input.volume_loss = read_volume_loss(root.table("volume_loss"));
-  input.newton = read_newton(root.table("newton"));
-  input.output = read_output(root.table("output"));
   if (std::abs(input.ground.surcharge - input.packing.pressure) > 1e-9 * input.packing.pressure) {
     throw root.table("ground").error("surcharge", "must equal packing.pressure: the ground starts at rest under it");
   }
@@ -89,6 +95,7 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   input.kind = read_kind(root);
   input.name = root.text("title", default_title(file));
   read_grain_tables(root, input);
+  if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();
   input.resolved = text.resolved();

@@ -10,7 +10,7 @@
 
 namespace voussoir::host {
 
-enum class CaseKind { pack, probe, biaxial, column, tunnel };
+enum class CaseKind { pack, probe, biaxial, biaxial_bvp, column, tunnel };
 enum class MaterialKind { grains, linear_elastic };
 enum class Precision { single_precision, double_precision };
 enum class TangentChoice { contact, elastic, static_ };
@@ -142,6 +142,19 @@ struct BiaxialCase {
   int samples = 1000;              ///< points of a curve
 };
 
+/// [biaxial_bvp] A biaxial test on a rectangle of elements (biaxial_bvp.hpp).
+struct BiaxialBvpCase {
+  double pressure = 1.0e5;      ///< on the sides, and that of the packing [Pa]
+  double width = 0.05;          ///< of the specimen [m]
+  double height = 0.10;         ///< [m]
+  int columns = 2;              ///< elements across
+  int rows = 4;                 ///< elements upwards
+  double strain = 0.10;         ///< the top's displacement at the end, over the height [-]
+  double strain_step = 1.0e-3;  ///< the same of one increment [-]
+
+  [[nodiscard]] int increments() const { return static_cast<int>(strain / strain_step + 0.5); }
+};
+
 struct Case {
   CaseKind kind = CaseKind::tunnel;
   MaterialKind material = MaterialKind::grains;
@@ -157,6 +170,7 @@ struct Case {
   ElasticCase elastic;
   ProbeCase probe;
   BiaxialCase biaxial;
+  BiaxialBvpCase biaxial_bvp;
 
   std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
   std::string resolved;     ///< TOML of every value after defaults and overrides
@@ -166,6 +180,11 @@ struct Case {
 /// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) on anything wrong:
 /// unknown keys, wrong units, values outside their limits, values that do not fit together.
 [[nodiscard]] Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// Kinds that advance in load increments on a mesh: with checkpoints, and interrupted between two of them.
+[[nodiscard]] constexpr bool runs_on_a_mesh(CaseKind kind) {
+  return kind == CaseKind::biaxial_bvp || kind == CaseKind::column || kind == CaseKind::tunnel;
+}
 
 [[nodiscard]] std::string to_string(CaseKind kind);
 [[nodiscard]] std::string to_string(MaterialKind kind);

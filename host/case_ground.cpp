@@ -1,4 +1,5 @@
-// The tables of the ground and its stages: [ground], [column], [gravity], [volume_loss], [newton], [output], [elastic].
+// The tables of what has a mesh: [ground], [column], [gravity], [volume_loss], [biaxial_bvp], [newton], [output], [elastic].
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -62,6 +63,22 @@ VolumeLossCase read_volume_loss(const io::Table& table) {
                       ? LossGeometry::fixed_mesh
                       : LossGeometry::updated_lagrangian;
   return loss;
+}
+
+BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
+  BiaxialBvpCase test;
+  read_quantity(table, "pressure", Dimension::pressure, test.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
+  read_quantity(table, "width", Dimension::length, test.width, {.positive = true});
+  read_quantity(table, "height", Dimension::length, test.height, {.positive = true});
+  read_integer(table, "columns", test.columns, {.at_least = 1, .at_most = 1000});
+  read_integer(table, "rows", test.rows, {.at_least = 1, .at_most = 1000});
+  read_quantity(table, "strain", Dimension::none, test.strain, {.at_most = "0.5", .positive = true});
+  read_quantity(table, "strain_step", Dimension::none, test.strain_step, {.at_most = "0.05", .positive = true});
+  if (std::abs(test.increments() * test.strain_step - test.strain) > 1e-6 * test.strain) {
+    throw table.error("strain_step", "does not divide the strain");
+  }
+  if (test.increments() > 100'000) throw table.error("strain_step", "makes more than 100000 increments");
+  return test;
 }
 
 NewtonCase read_newton(const io::Table& table) {

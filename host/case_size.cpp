@@ -20,12 +20,13 @@ constexpr double loss_evaluations = 6.0;
 constexpr double gravity_strain = 0.014;  ///< mean strain of an RVE over the load factor's step
 constexpr double loss_strain = 0.2;       ///< mean strain of an RVE over the volume loss of an increment
 constexpr double hold_steps = 30;
+constexpr double specimen_evaluations = 6.0;
+constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the top's, without change of volume
 
 /// Steps of one evaluation of one RVE, from the inertial number I = strain / steps * sqrt(m / (p t)) with the scaled mass
-/// m of kernels/README.md (one stable step for all sizes), six neighbours, at the pressure of half the depth.
-double steps_per_evaluation(const Case& input, double strain) {
+/// m of kernels/README.md (one stable step for all sizes), six neighbours.
+double steps_per_evaluation(const Case& input, double strain, double pressure) {
   const SoilCase& soil = input.soil;
-  const double pressure = 0.5 * input.ground.unit_weight * input.ground.height;
   const double k_n = soil.modulus * 0.25 * (soil.size_minimum + soil.size_maximum);
   const double mass = (6.0 + 12.0 * soil.stiffness_ratio) * k_n / (4.0 * 0.9 * 0.9);
   const double steps = strain / input.engine.inertial_number * std::sqrt(mass / (pressure * soil.thickness));
@@ -34,10 +35,23 @@ double steps_per_evaluation(const Case& input, double strain) {
          std::min(hold_steps, static_cast<double>(input.engine.hold_cap));
 }
 
+CaseSize specimen_size(const Case& input) {
+  const BiaxialBvpCase& test = input.biaxial_bvp;
+  CaseSize size;
+  size.points = static_cast<std::size_t>(4 * test.columns * test.rows);
+  size.increments = static_cast<std::size_t>(test.increments());
+  if (input.material != MaterialKind::grains) return size;
+  size.grains = static_cast<double>(size.points) * input.packing.grains;
+  size.particle_steps = size.grains * specimen_evaluations * test.increments() *
+                        steps_per_evaluation(input, specimen_strain * test.strain_step, 2 * test.pressure);
+  return size;
+}
+
 }  // namespace
 
 CaseSize case_size(const Case& input) {
   CaseSize size;
+  if (input.kind == CaseKind::biaxial_bvp) return specimen_size(input);
   if (input.kind != CaseKind::column && input.kind != CaseKind::tunnel) return size;
   const bool with_tunnel = input.kind == CaseKind::tunnel;
   const std::size_t gravity = gravity_targets(input).size();
@@ -48,15 +62,16 @@ CaseSize case_size(const Case& input) {
   if (input.material != MaterialKind::grains) return size;
 
   const auto points = static_cast<double>(size.points);
+  const double pressure = 0.5 * input.ground.unit_weight * input.ground.height;  // at half the depth
   const double under_gravity = gravity_evaluations * static_cast<double>(gravity) *
-                               steps_per_evaluation(input, gravity_strain * input.gravity.uniform_step);
+                               steps_per_evaluation(input, gravity_strain * input.gravity.uniform_step, pressure);
   size.grains = points * input.packing.grains;
   size.particle_steps = size.grains * under_gravity;
   if (with_tunnel) {
     const double step = input.volume_loss.total / static_cast<double>(loss);
     size.particle_steps += static_cast<double>(size.column_points) * input.packing.grains * under_gravity;
     size.particle_steps += size.grains * loss_evaluations * static_cast<double>(loss) *
-                           steps_per_evaluation(input, loss_strain * step);
+                           steps_per_evaluation(input, loss_strain * step, pressure);
   }
   return size;
 }

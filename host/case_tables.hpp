@@ -12,6 +12,7 @@ namespace voussoir::host {
 [[nodiscard]] ProbeCase read_probe(const io::Table& table);
 [[nodiscard]] BiaxialCase read_biaxial(const io::Table& table);
 [[nodiscard]] ElasticCase read_elastic(const io::Table& table);
+[[nodiscard]] BiaxialBvpCase read_biaxial_bvp(const io::Table& table);
 [[nodiscard]] GroundCase read_ground(const io::Table& table, bool with_tunnel);
 [[nodiscard]] ColumnCase read_column(const io::Table& table);
 [[nodiscard]] GravityCase read_gravity(const io::Table& table);

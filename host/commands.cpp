@@ -39,7 +39,7 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
   const Kokkos::ScopeGuard kokkos(settings);
   options.threads = Kokkos::DefaultHostExecutionSpace().concurrency();
   // Only a run of increments can end between two of them; a pack or an element test ends at once.
-  if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) catch_interrupts();
+  if (runs_on_a_mesh(input.kind)) catch_interrupts();
   return run_case(input, options);
 }
 

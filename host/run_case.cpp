@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "host/biaxial.hpp"
+#include "host/biaxial_bvp.hpp"
 #include "host/case_size.hpp"
 #include "host/exit_code.hpp"
 #include "host/packing.hpp"
@@ -54,6 +55,7 @@ int run_case(const Case& input, const RunOptions& options) {
   switch (input.kind) {
     case CaseKind::tunnel: return answer(run_tunnel(input, options), options);
     case CaseKind::column: return answer(run_column_case(input, options), options);
+    case CaseKind::biaxial_bvp: return answer(run_biaxial_bvp(input, options), options);
     case CaseKind::pack: return run_pack(input, options);
     case CaseKind::probe: return run_probe(input, options);
     case CaseKind::biaxial: return run_biaxial(input, options);

@@ -77,3 +77,13 @@ for wait_for, resume in (("column/increments/0010.h5", []), ("increments/0006.h5
     check(code == 130, f"a run of grains stopped by SIGTERM ended with {code} instead of 130")
 run(command("tunnel_quick", stopped, GRAINS, "--resume", "--threads", "1"))
 check_same(straight, stopped)
+
+# A biaxial specimen, stopped in between: the same increments and the same histories.
+SPECIMEN = ["material=linear_elastic", "biaxial_bvp.strain=20 %"]
+straight = fresh("straight_specimen")
+run(command("biaxial_bvp", straight, SPECIMEN))
+stopped = fresh("stopped_specimen")
+code = start_and_signal(command("biaxial_bvp", stopped, SPECIMEN), stopped / "increments/0005.h5", signal.SIGINT)
+check(code == 130, f"a specimen stopped by SIGINT ended with {code} instead of 130")
+run(command("biaxial_bvp", stopped, SPECIMEN, "--resume"))
+check_same(straight, stopped)
