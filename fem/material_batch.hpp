@@ -24,6 +24,8 @@ struct BatchReport {
   std::size_t work = 0;     ///< particle-steps spent by this call (0 for a continuum law)
   std::size_t open = 0;     ///< points without any contact (stress 0)
   std::size_t step_limit = 0;  ///< points whose hold ended at its cap
+  std::size_t slowest = 0;     ///< the point that took most steps
+  int slowest_steps = 0;       ///< its steps; 0 for a continuum law
 };
 
 /// A named quantity at every point, for result files: values[point * components + k].

@@ -8,12 +8,9 @@
 
 namespace voussoir::host {
 
-double BiaxialPoint::q() const { return std::hypot(0.5 * (stress_yy - stress_xx), stress_xy); }
-
-double BiaxialPoint::shear_strain() const { return std::abs(axial_strain - lateral_strain); }
-
 std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double strain, double inertial_number, int samples,
-                                        const kernels::EngineSettings& settings) {
+                                        const kernels::EngineSettings& settings,
+                                        const kernels::MicrostructureRequest& microstructure) {
   kernels::RveBatch batch = batch_of(rves);
   std::vector<std::vector<kernels::ServoSample>> traces(rves.size());
   std::vector<kernels::ServoRequest> requests;
@@ -30,9 +27,11 @@ std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double 
                         .max_steps = 2 * steps,
                         .end_strain_y = strain,
                         .trace = &traces[k],
-                        .trace_interval = std::max(1, steps / samples)});
+                        .trace_interval = std::max(1, steps / samples),
+                        .microstructure = microstructure});
     curves[k].seed = rves[k].seed;
     curves[k].pressure = pressure;
+    curves[k].void_ratio = void_ratio(rves[k].cell.det(), rves[k].packing.solid_area());
     curves[k].inertial_number = rate * rves[k].packing.inertial_time(pressure);
   }
   std::vector<kernels::RveReport> reports(rves.size());
@@ -40,7 +39,8 @@ std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double 
   for (std::size_t k = 0; k < rves.size(); ++k) {
     curves[k].status = reports[k].status;
     for (const kernels::ServoSample& s : traces[k]) {
-      curves[k].points.push_back({-s.strain_y, -s.strain_x, -s.stress_xx, -s.stress_yy, -s.stress_xy, s.unbalanced});
+      curves[k].points.push_back({-s.strain_y, -s.strain_x, -s.stress_xx, -s.stress_yy, -s.stress_xy, s.unbalanced,
+                                  s.microstructure});
     }
   }
   return curves;

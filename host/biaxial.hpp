@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "host/invariants.hpp"
 #include "host/packing.hpp"
 
 namespace voussoir::host {
@@ -16,18 +17,28 @@ struct BiaxialPoint {
   double stress_xx, stress_yy, stress_xy;  ///< [Pa]
   double unbalanced;         ///< [-]
 
-  [[nodiscard]] double p() const { return 0.5 * (stress_xx + stress_yy); }
-  [[nodiscard]] double q() const;  ///< radius of Mohr's circle [Pa]
-  [[nodiscard]] double volumetric_strain() const { return axial_strain + lateral_strain; }  ///< contraction positive [-]
-  [[nodiscard]] double shear_strain() const;  ///< eps_q of eq. (11) [-]
+  kernels::Microstructure microstructure = {};  ///< as far as it was asked for; grain rotation since the test's start
+
+  [[nodiscard]] PlaneTensor stress() const { return {-stress_xx, -stress_yy, -stress_xy}; }   ///< tension positive [Pa]
+  [[nodiscard]] PlaneTensor strain() const { return {-lateral_strain, -axial_strain, 0.0}; }  ///< extension positive [-]
+  [[nodiscard]] double p() const { return mean_stress(stress()); }
+  [[nodiscard]] double q() const { return deviatoric_stress(stress()); }
+  [[nodiscard]] double volumetric_strain() const { return host::volumetric_strain(strain()); }
+  [[nodiscard]] double shear_strain() const { return deviatoric_strain(strain()); }
 };
 
 struct BiaxialCurve {
   std::int64_t seed = 0;
   double pressure = 0;         ///< confining [Pa]
+  double void_ratio = 0;       ///< at the start [-]
   double inertial_number = 0;  ///< of the axial rate at the confining pressure [-]
   kernels::RveStatus status = kernels::RveStatus::converged;
   std::vector<BiaxialPoint> points;
+
+  /// Area of voids over area of grains [-]. @param point of this curve
+  [[nodiscard]] double void_ratio_at(const BiaxialPoint& point) const {
+    return (1.0 + void_ratio) * std::exp(-point.volumetric_strain()) - 1.0;
+  }
 };
 
 /// Strength and dilatancy of one curve.
@@ -44,8 +55,10 @@ struct Strength {
 /// All packings in one batch, each compressed along y from its own state, its own pressure held on x. The packing must rest
 /// at that pressure already. Throws std::invalid_argument where the rate asks for more than 1e9 steps.
 /// @param strain axial, logarithmic [-]; @param inertial_number sets the rate; @param samples points of a curve
+/// @param microstructure of each point; nothing is computed unless asked for, and the curve's bits stay the same
 [[nodiscard]] std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double strain, double inertial_number,
-                                                      int samples, const kernels::EngineSettings& settings);
+                                                      int samples, const kernels::EngineSettings& settings,
+                                                      const kernels::MicrostructureRequest& microstructure = {});
 
 /// q/p and the slope of eps_v against eps_q are taken over a moving window of axial strain (mean and least-squares line).
 [[nodiscard]] Strength strength_of(const BiaxialCurve& curve, double window);

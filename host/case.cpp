@@ -39,7 +39,10 @@ void read_grain_tables(const io::Table& root, Case& input) {
   input.packing = read_packing(root.table("packing"));
   input.engine = read_engine(root.table("engine"));
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
-  if (input.kind == CaseKind::biaxial) input.biaxial = read_biaxial(root.table("biaxial"));
+  if (input.kind == CaseKind::biaxial) {
+    input.biaxial = read_biaxial(root.table("biaxial"));
+    input.output.microstructure = read_microstructure(root.table("output"));
+  }
 }
 
 /// Tables of every kind with a mesh.

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "kernels/microstructure.hpp"
+
 namespace voussoir::host {
 
 enum class CaseKind { pack, probe, biaxial, biaxial_bvp, column, tunnel };
@@ -119,6 +121,7 @@ struct NewtonCase {
 struct OutputCase {
   int every = 1;          ///< increments of a stage between two result files; a stage's last is always written
   std::vector<std::int64_t> rves;  ///< Gauss points whose whole RVE is written with each increment
+  kernels::MicrostructureRequest microstructure;  ///< fields of the contact network; nothing unless asked for
 };
 
 /// [elastic] The verification material.

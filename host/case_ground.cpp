@@ -4,6 +4,7 @@
 #include <string>
 
 #include "host/case_tables.hpp"
+#include "host/microstructure_fields.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::host {
@@ -104,7 +105,18 @@ OutputCase read_output(const io::Table& table) {
   output.rves = table.integers("rves", {.at_least = 0}, std::vector<std::int64_t>{});
   const std::set<std::int64_t> different(output.rves.begin(), output.rves.end());
   if (different.size() != output.rves.size()) throw table.error("rves", "names a point twice");
+  output.microstructure = read_microstructure(table);
   return output;
+}
+
+kernels::MicrostructureRequest read_microstructure(const io::Table& table) {
+  kernels::MicrostructureRequest request;
+  for (const std::string& name : table.texts("microstructure", std::vector<std::string>{})) {
+    if (!ask_for(name, request)) {
+      throw table.error("microstructure", "\"" + name + "\" is none of fabric, coordination, strong_networks");
+    }
+  }
+  return request;
 }
 
 }  // namespace voussoir::host

@@ -19,6 +19,8 @@ namespace voussoir::host {
 [[nodiscard]] VolumeLossCase read_volume_loss(const io::Table& table);
 [[nodiscard]] NewtonCase read_newton(const io::Table& table);
 [[nodiscard]] OutputCase read_output(const io::Table& table);
+/// The key `microstructure` of [output], the only one there of a case without a mesh.
+[[nodiscard]] kernels::MicrostructureRequest read_microstructure(const io::Table& table);
 
 /// Reads a key into `member`, whose value before is the key's default. Throws io::InputError.
 void read_quantity(const io::Table& table, const char* key, io::Dimension dimension, double& member,

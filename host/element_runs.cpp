@@ -76,8 +76,11 @@ int run_probe(const Case& input, const RunOptions& options) {
 }
 
 int run_pack(const Case& input, const RunOptions&) {
-  static_cast<void>(obtain_packings(input, seeds_of(input.packing), print));
-  return exit_ok;
+  const std::vector<std::int64_t> seeds = seeds_of(input.packing);
+  const std::size_t made = obtain_packings(input, seeds, print).size();
+  if (made == seeds.size() || !input.packing.file.empty()) return exit_ok;
+  std::fprintf(stderr, "pack: %zu of %zu packings do not come to rest\n", seeds.size() - made, seeds.size());
+  return exit_numerical;
 }
 
 }  // namespace voussoir::host

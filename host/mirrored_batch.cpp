@@ -1,5 +1,9 @@
 #include "host/mirrored_batch.hpp"
 
+#include <numbers>
+
+#include "host/microstructure_fields.hpp"
+
 namespace voussoir::host {
 namespace {
 
@@ -51,9 +55,12 @@ void MirroredBatch::committed(std::span<fem::Stress> stress, std::span<fem::Tang
 std::vector<fem::PointField> MirroredBatch::fields() const {
   std::vector<fem::PointField> fields = batch_->fields();
   for (fem::PointField& field : fields) {
-    if (field.name != "grain_rotation") continue;
+    const bool is_direction = field.name == fabric_direction;
+    if (field.name != "grain_rotation" && !is_direction) continue;
     for (std::size_t p = 0; p < field.values.size(); ++p) {
-      if (is_mirrored(p)) field.values[p] = -field.values[p];
+      if (!is_mirrored(p)) continue;
+      // A direction is half a circle's: its vertical, pi/2, is its own mirror image.
+      if (!is_direction || field.values[p] < 0.5 * std::numbers::pi) field.values[p] = -field.values[p];
     }
   }
   return fields;

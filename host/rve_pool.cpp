@@ -6,7 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kernels/neighbours.hpp"
+#include "host/microstructure_fields.hpp"
+#include "kernels/committed_contacts.hpp"
 
 namespace voussoir::host {
 
@@ -58,12 +59,14 @@ kernels::Precision engine_precision(const EngineCase& engine) {
   return engine.precision == Precision::single_precision ? kernels::Precision::float32 : kernels::Precision::float64;
 }
 
-RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent)
+RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent,
+                 const kernels::MicrostructureRequest& microstructure)
     : engine_(engine),
       settings_{.precision = engine_precision(engine),
                 .skin = engine.skin,
                 .hold_tolerance = engine.hold_tolerance,
                 .tangent = kernel_tangent(tangent)},
+      microstructure_(microstructure),
       batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
       requests_(n),
       trial_reports_(n),
@@ -122,6 +125,10 @@ fem::BatchReport RvePool::summarise() const {
     if (kernels::is_failure(r.status) && failures++ == 0) {
       out.message = fmt::format("RVE {}: {} (overlap {:.3f})", k, kernels::name_of(r.status), r.largest_overlap);
     }
+    if (r.steps > out.slowest_steps) {
+      out.slowest = k;
+      out.slowest_steps = r.steps;
+    }
     if (r.status == kernels::RveStatus::open) ++out.open;
     if (r.status == kernels::RveStatus::step_limit) ++out.step_limit;
     const double s = noise_share * r.unbalanced * std::max(r.pressure(), settings_.pressure_floor);
@@ -164,13 +171,16 @@ std::vector<fem::PointField> RvePool::fields() const {
   add("unbalanced_ratio", "-", [&](std::size_t k) { return reports[k].unbalanced; });
   add("inertial_number", "-", [&](std::size_t k) { return reports[k].inertial_number; });
   add("steps", "-", [&](std::size_t k) { return static_cast<double>(reports[k].steps); });
+  if (!microstructure_.any()) return out;
+  std::vector<kernels::Microstructure> all(size());
+  kernels::describe_committed(batch_, microstructure_, all);
+  for (const MicrostructureField& field : microstructure_fields(microstructure_)) {
+    add(field.name, field.unit, [&](std::size_t k) { return field.value(all[k]); });
+  }
   return out;
 }
 
-/// Branches and forces again from positions and histories, through the contact law itself.
 io::RveSnapshot RvePool::snapshot(std::size_t rve) const {
-  using V = kernels::SingleLane<double>;
-  using Law = kernels::LinearContactLaw<V, true>;
   const kernels::Packing& packing = batch_.packing(rve);
   PackedRve grains;
   grains.packing = packing;
@@ -185,22 +195,13 @@ io::RveSnapshot RvePool::snapshot(std::size_t rve) const {
     out.x.push_back(grains.position[2 * i]);
     out.y.push_back(grains.position[2 * i + 1]);
   }
-  const kernels::Cell cell(grains.cell);
-  for (std::size_t c = 0; c < grains.contact_key.size(); ++c) {
-    const auto i = static_cast<std::size_t>(kernels::first_of(grains.contact_key[c]));
-    const auto j = static_cast<std::size_t>(kernels::second_of(grains.contact_key[c]));
-    double bx = out.x[j] - out.x[i], by = out.y[j] - out.y[i];
-    cell.nearest(bx, by);
-    const double length = std::hypot(bx, by);
-    const kernels::PairConstants k = kernels::combine(packing.material_of(i), packing.radii[i], packing.material_of(j), packing.radii[j]);
-    const Law law{V(k.normal_stiffness), V(k.tangential_stiffness), V(k.rolling_stiffness), V(k.friction), V(k.rolling_arm)};
-    Law::History history{V(grains.contact_history[2 * c]), V(grains.contact_history[2 * c + 1])};
-    const auto f = law({V(packing.radii[i] + packing.radii[j] - length), V(0.0), V(0.0)}, history);
-    const double nx = bx / length, ny = by / length;
-    out.contact_i.push_back(static_cast<std::int64_t>(i));
-    out.contact_j.push_back(static_cast<std::int64_t>(j));
-    out.branch.insert(out.branch.end(), {bx, by});
-    out.force.insert(out.force.end(), {-f.normal[0] * nx - f.tangential[0] * ny, -f.normal[0] * ny + f.tangential[0] * nx});
+  std::vector<kernels::CommittedContact> contacts;
+  kernels::committed_contacts(batch_, rve, contacts);
+  for (const kernels::CommittedContact& c : contacts) {
+    out.contact_i.push_back(c.i);
+    out.contact_j.push_back(c.j);
+    out.branch.insert(out.branch.end(), {c.branch_x, c.branch_y});
+    out.force.insert(out.force.end(), {c.force_x(), c.force_y()});
   }
   return out;
 }
@@ -215,7 +216,8 @@ std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> po
 }
 
 std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points, const PackingNote& note) {
-  return std::make_unique<RvePool>(choose_packing(input, note), input.engine, n_points, input.newton.tangent);
+  return std::make_unique<RvePool>(choose_packing(input, note), input.engine, n_points, input.newton.tangent,
+                                   input.output.microstructure);
 }
 
 }  // namespace voussoir::host

@@ -14,8 +14,9 @@ namespace voussoir::host {
 
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
-  /// `n` clones of `rve`.
-  RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent = TangentChoice::contact);
+  /// `n` clones of `rve`. @param microstructure what fields() shall hold besides; computed there, at each call
+  RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent = TangentChoice::contact,
+          const kernels::MicrostructureRequest& microstructure = {});
 
   [[nodiscard]] std::size_t size() const override { return batch_.size(); }
   void begin_increment() override;
@@ -31,6 +32,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  private:
   EngineCase engine_;
   kernels::EngineSettings settings_;
+  kernels::MicrostructureRequest microstructure_;
   kernels::RveBatch batch_;
   std::vector<kernels::StrainRequest> requests_;
   std::vector<kernels::RveReport> trial_reports_;

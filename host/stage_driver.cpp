@@ -30,11 +30,9 @@ void add_report_columns(const Ground& ground, const fem::NewtonReport& report, i
   info.extra["noise_floor"] = {report.noise_floor, "N/m"};
   info.extra["open_points"] = {static_cast<double>(report.material.open), "-"};
   info.extra["step_limit_points"] = {static_cast<double>(report.material.step_limit), "-"};
-  for (const fem::PointField& field : ground.material.fields()) {
-    if (field.name != "steps" || field.values.empty()) continue;
-    const auto slowest = std::max_element(field.values.begin(), field.values.end());
-    info.extra["slowest_point"] = {static_cast<double>(slowest - field.values.begin()), "-"};
-    info.extra["slowest_steps"] = {*slowest, "-"};
+  if (report.material.slowest_steps > 0) {
+    info.extra["slowest_point"] = {static_cast<double>(report.material.slowest), "-"};
+    info.extra["slowest_steps"] = {static_cast<double>(report.material.slowest_steps), "-"};
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "kernels/group_finish.hpp"
 #include "kernels/group_rebase.hpp"
+#include "kernels/group_record.hpp"
 #include "kernels/group_restore.hpp"
 
 namespace voussoir::kernels {
@@ -58,6 +59,7 @@ void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int
   for (int step = 0; any_running(run); ++step) {
     move_cells(run, step);
     check_lists(run, step);
+    record_microstructures<Law>(run, step);
     SweepSums<typename Run::Value> sums;
     if (measures(run, step)) {
       sweep_pairs<Sweep::measure, Law>(run.group, sums);

@@ -31,6 +31,7 @@ enum class Verdict { running, converged, step_limit };
 class StrainDrive {
  public:
   using Request = StrainRequest;
+  static constexpr bool can_record = false;
 
   StrainDrive() = default;
   StrainDrive(const StrainRequest& request, const Packing& packing, const EngineSettings& settings)
@@ -68,6 +69,7 @@ class StrainDrive {
 class ServoControl {
  public:
   using Request = ServoRequest;
+  static constexpr bool can_record = false;
 
   ServoControl() = default;
   ServoControl(const ServoRequest& request, const Packing& packing, const EngineSettings& settings)
@@ -136,16 +138,28 @@ class ServoControl {
   int settled_ = 0;
 };
 
-/// The control with its trace kept where the caller wants it.
+/// The control with its trace kept where the caller wants it, and the contact network where it is asked for.
 class ServoDrive : public ServoControl {
  public:
+  static constexpr bool can_record = true;
   using ServoControl::ServoControl;
+
+  /// Whether `record` is wanted before the step's sweep; the sample that `judge` takes after it will hold what it was given.
+  [[nodiscard]] bool records(int step) const { return request_.microstructure.any() && samples(step); }
+  [[nodiscard]] const MicrostructureRequest& recorded_quantities() const { return request_.microstructure; }
+  void record(const Microstructure& m) { recorded_ = m; }
 
   Verdict judge(int step, const Measurement& m) {
     const Verdict verdict = ServoControl::judge(step, m);
-    if (samples(step)) request_.trace->push_back(sample(step, m));
+    if (samples(step)) {
+      request_.trace->push_back(sample(step, m));
+      request_.trace->back().microstructure = recorded_;
+    }
     return verdict;
   }
+
+ private:
+  Microstructure recorded_;
 };
 
 }  // namespace voussoir::kernels

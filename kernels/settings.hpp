@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels/kinematics.hpp"
+#include "kernels/microstructure.hpp"
 
 namespace voussoir::kernels {
 
@@ -48,6 +49,7 @@ struct ServoSample {
   double strain_x, strain_y;                   ///< logarithmic since the request's start, extension positive [-]
   double stress_xx, stress_yy, stress_xy;      ///< tension positive [Pa]
   double unbalanced;                           ///< [-]
+  Microstructure microstructure = {};          ///< as far as the request asks for it; rotation since the request's start
 };
 
 /// Rectangular cell whose axes follow a stress (PI control) or a rate.
@@ -60,6 +62,7 @@ struct ServoRequest {
   double end_strain_y = std::numeric_limits<double>::infinity();  ///< |strain_y| at which the request is done [-]
   std::vector<ServoSample>* trace = nullptr;  ///< the caller's, one per RVE; samples are appended
   int trace_interval = 100;                   ///< steps between samples
+  MicrostructureRequest microstructure = {};  ///< of the samples; nothing is computed unless asked for
 };
 
 }  // namespace voussoir::kernels

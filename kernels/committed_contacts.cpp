@@ -1,0 +1,49 @@
+#include "kernels/committed_contacts.hpp"
+
+#include <cmath>
+
+#include "kernels/contact_law.hpp"
+#include "kernels/neighbours.hpp"
+
+namespace voussoir::kernels {
+
+namespace {
+
+/// One law call without motion: histories are within their caps, as an evaluation left them.
+void add_forces(const Packing& packing, double tangential, double moment, CommittedContact& contact, double length) {
+  using V = SingleLane<double>;
+  using Law = LinearContactLaw<V, true>;
+  const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
+  const double ri = packing.radii[i], rj = packing.radii[j];
+  const PairConstants k = combine(packing.material_of(i), ri, packing.material_of(j), rj);
+  const Law law{V(k.normal_stiffness), V(k.tangential_stiffness), V(k.rolling_stiffness), V(k.friction),
+                V(k.rolling_arm)};
+  Law::History history{V(tangential), V(moment)};
+  const auto force = law({V(ri + rj - length), V(0.0), V(0.0)}, history);
+  contact.normal_force = force.normal[0];
+  contact.tangential_force = force.tangential[0];
+  contact.moment = force.moment[0];
+}
+
+}  // namespace
+
+void committed_contacts(const RveBatch& batch, std::size_t rve, std::vector<CommittedContact>& out) {
+  const RveStates& s = batch.committed;
+  const Cell cell(Mat2{s.cell(rve, 0), s.cell(rve, 1), s.cell(rve, 2), s.cell(rve, 3)});
+  const auto count = static_cast<std::size_t>(s.contact_count(rve));
+  out.resize(count);
+  for (std::size_t c = 0; c < count; ++c) {
+    CommittedContact& contact = out[c];
+    contact.i = first_of(s.contact_key(rve, c));
+    contact.j = second_of(s.contact_key(rve, c));
+    contact.branch_x = s.position(rve, contact.j, 0) - s.position(rve, contact.i, 0);
+    contact.branch_y = s.position(rve, contact.j, 1) - s.position(rve, contact.i, 1);
+    cell.nearest(contact.branch_x, contact.branch_y);
+    const double length = std::hypot(contact.branch_x, contact.branch_y);
+    contact.normal_x = contact.branch_x / length;
+    contact.normal_y = contact.branch_y / length;
+    add_forces(batch.packing(rve), s.contact_history(rve, c, 0), s.contact_history(rve, c, 1), contact, length);
+  }
+}
+
+}  // namespace voussoir::kernels

@@ -1,0 +1,54 @@
+#pragma once
+/// The contact network of a lane in the middle of its run, for requests that record it along their path.
+
+#include <vector>
+
+#include "kernels/group_run.hpp"
+#include "kernels/microstructure.hpp"
+
+namespace voussoir::kernels {
+
+/// Contacts of lane `l`; its cell and its grains must be at the same step. Only what depends on the positions: tangential
+/// forces follow with the sweep.
+template <class Law, class Run>
+[[nodiscard]] std::vector<NetworkContact> network_of(const Run& run, std::size_t l) {
+  using V = typename Run::Value;
+  const V zero(0);
+  std::vector<NetworkContact> out;
+  for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
+    const auto& gi = run.group.grains[i];
+    for (auto p = static_cast<std::size_t>(run.group.row[i]); p < static_cast<std::size_t>(run.group.row[i + 1]); ++p) {
+      const auto& shape = run.group.pair_shapes[p];
+      const auto& gj = run.group.grains[static_cast<std::size_t>(shape.other)];
+      const auto& pair = run.group.pairs[p];
+      const auto at = geometry_of(pair, run.group.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
+      if (!(at.gap[l] < 0)) continue;
+      const PairDistance<V> distance = distance_of(overlap_measure(at, shape), V(shape.sum_radii));
+      typename Law::History history{pair.tangential, pair.moment};
+      const auto force = law_of<Law, V>(shape)({distance.overlap, zero, zero}, history);
+      const V to_unit = distance.inverse_ratio * V(shape.inverse_sum);
+      out.push_back({static_cast<int>(i), shape.other, static_cast<double>((at.branch_x * to_unit)[l]),
+                     static_cast<double>((at.branch_y * to_unit)[l]), static_cast<double>(force.normal[l])});
+    }
+  }
+  return out;
+}
+
+/// Hands the drives that record at this step their lane's microstructure; rotations count from the request's start. To be
+/// called where cell and grains are at the same step, before the sweep. Compiled out for drives that never record.
+template <class Law, class Run>
+void record_microstructures(Run& run, int step) {
+  if constexpr (Run::Drive::can_record) {
+    for (std::size_t l = 0; l < Run::width; ++l) {
+      auto& lane = run.lanes[l];
+      if (!lane.running || !lane.drive.records(step)) continue;
+      Microstructure m;
+      for (const auto& g : run.group.grains) m.grain_rotation += static_cast<double>(g.rotation[l]);
+      m.grain_rotation = lane.rotation + m.grain_rotation / run.group.n_grains;
+      describe_network(network_of<Law>(run, l), run.group.n_grains, lane.drive.recorded_quantities(), m);
+      lane.drive.record(m);
+    }
+  }
+}
+
+}  // namespace voussoir::kernels

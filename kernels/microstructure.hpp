@@ -1,0 +1,48 @@
+#pragma once
+/// What the contact network of an RVE looks like: fabric and connectivity (method.md, eqs. 22 and 23). Computed for those who ask.
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace voussoir::kernels {
+
+struct RveBatch;
+
+/// A contact as far as the network is concerned.
+struct NetworkContact {
+  int i, j;                   ///< grains
+  double normal_x, normal_y;  ///< unit vector along the branch; its sense does not matter
+  double normal_force;        ///< f_n >= 0 [N]
+};
+
+/// Strong networks: contacts with f_n >= xi <f_n>.
+inline constexpr std::array<double, 3> strong_thresholds{1.0, 2.0, 2.5};
+
+struct MicrostructureRequest {
+  bool fabric = false;
+  bool coordination = false;
+  bool strong_networks = false;
+
+  [[nodiscard]] bool any() const { return fabric || coordination || strong_networks; }
+};
+
+/// Quantities that were not asked for are 0.
+struct Microstructure {
+  double grain_rotation = 0;           ///< mean over the grains, counter-clockwise [rad]
+  double coordination = 0;             ///< 2 N_c / N_p [-]
+  double fabric_anisotropy = 0;        ///< a of eq. (22) [-]; 0 without contacts
+  double fabric_direction = 0;         ///< theta_a of eq. (22), from x counter-clockwise, in (-pi/2, pi/2] [rad]
+  double mechanical_coordination = 0;  ///< Z_m of eq. (23) [-]; 0 where no grain has two contacts
+  std::array<double, strong_thresholds.size()> strong_coordination{};  ///< the same of the strong networks
+};
+
+/// The quantities of `wanted` that follow from the contacts (and `coordination`) of a packing of `grains` grains into `out`.
+void describe_network(std::span<const NetworkContact> contacts, int grains, const MicrostructureRequest& wanted,
+                      Microstructure& out);
+
+/// Committed states of a batch, RVEs side by side; normal forces are the contact law's. `out` has batch.size() entries.
+/// Cost: README.md, "Microstructure".
+void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<Microstructure> out);
+
+}  // namespace voussoir::kernels
