@@ -45,7 +45,7 @@ KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1,
 /// Relative motion at a contact during one step.
 template <class V>
 struct ContactMotion {
-  V overlap;  ///< delta [m]; <= 0 means no contact
+  V overlap;  ///< delta >= 0 [m]; 0 means no contact
   V sliding;  ///< increment of the sliding of j past i along t [m]
   V rolling;  ///< increment of the relative rotation of j against i [rad]
 };
@@ -78,7 +78,7 @@ struct LinearContactLaw {
 
   /// Without contact every force and the history become zero: both caps are multiples of f_n.
   KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> operator()(const ContactMotion<V>& motion, History& history) const {
-    const V fn = larger(normal_stiffness * motion.overlap, V(0));
+    const V fn = normal_stiffness * motion.overlap;
     history.tangential = clamp_to(fused(tangential_stiffness, motion.sliding, history.tangential), friction * fn);
     if constexpr (Rolling) {
       history.moment = clamp_to(fused(rolling_stiffness, motion.rolling, history.moment), rolling_arm * fn);

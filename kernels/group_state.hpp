@@ -54,7 +54,7 @@ struct PairShape {
 template <class V>
 struct CellMotion {
   V f_xx, f_xy, f_yx, f_yy;  ///< F - I since the lane's last rebase
-  V d_xx, d_xy, d_yy;        ///< D = sym L of the motion that led to the current positions
+  V d_xy, d_difference;      ///< D_xy and D_yy - D_xx of the motion that led to the current positions, D = sym L
   V e_xx, e_xy, e_yx, e_yy;  ///< E of the coming motion
   V rotation;                ///< W of the coming motion
   V alive;                   ///< 1, or 0 for a lane that is finished, empty or lost

@@ -53,7 +53,7 @@ KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<V>& pair, const PairSh
                                                 const CellMotion<V>& cell, const V& radius_i) {
   const V zero(0), one(1);
   CellMotion<V> still = cell;
-  still.d_xx = still.d_xy = still.d_yy = zero;
+  still.d_xy = still.d_difference = zero;
   RestingPair<V> out;
   out.action = act<Law>(pair, shape, at, still, zero, zero, zero, zero, radius_i);
   out.weight = Kokkos::Experimental::condition(at.gap < zero, one, zero);

@@ -83,9 +83,8 @@ KOKKOS_INLINE_FUNCTION void move_cell(RveCourse<Drive>& course, int step, CellMo
   using real = real_of<V>;
   if (!course.running) course.rate = course.e = Mat2{};
   course.f_minus_i = course.e + course.f_minus_i + course.e * course.f_minus_i;
-  m.d_xx[l] = static_cast<real>(course.rate.xx);
   m.d_xy[l] = static_cast<real>(0.5 * (course.rate.xy + course.rate.yx));
-  m.d_yy[l] = static_cast<real>(course.rate.yy);
+  m.d_difference[l] = static_cast<real>(course.rate.yy - course.rate.xx);
   course.rotation += 0.5 * (course.rate.yx - course.rate.xy);
   if (course.running) {
     course.steps = step + 1;
