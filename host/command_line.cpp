@@ -12,6 +12,7 @@
 #include "host/build_info.hpp"
 #include "host/commands.hpp"
 #include "host/exit_code.hpp"
+#include "host/ranks.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {
@@ -35,7 +36,7 @@ void add_overrides(CLI::App& command, Arguments& arguments) {
 /// The commands with their options; `code` receives the exit code of the one that was obeyed.
 void describe(CLI::App& app, Arguments& a, const std::string& command_text, int& code) {
   app.require_subcommand(1);
-  app.set_version_flag("--version", std::string("voussoir ") + build_version + " (" + build_revision + ")");
+  app.set_version_flag("--version", std::string("voussoir ") + build_version + " (" + build_revision + "), " + rank_library());
 
   CLI::App* run = app.add_subcommand("run", "run a case");
   run->add_option("case", a.file, "case file (TOML)")->required();

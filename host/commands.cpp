@@ -9,6 +9,7 @@
 #include "host/case_size.hpp"
 #include "host/exit_code.hpp"
 #include "host/interrupt.hpp"
+#include "host/ranks.hpp"
 #include "host/run_case.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
@@ -37,6 +38,7 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
   settings.set_disable_warnings(true);
   if (options.threads > 0) settings.set_num_threads(options.threads);
   const Kokkos::ScopeGuard kokkos(settings);
+  start_ranks(options.threads);
   options.threads = Kokkos::DefaultHostExecutionSpace().concurrency();
   // Only a run of increments can end between two of them; a pack or an element test ends at once.
   if (runs_on_a_mesh(input.kind)) catch_interrupts();
@@ -60,9 +62,9 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
 int command_info(const std::filesystem::path& result_file) {
   try {  // a file that cannot be read is wrong input here
     const io::Provenance origin = io::read_provenance(result_file);
-    std::printf("kind %s, version %s (%s), %s, %d threads, begun %s\ncommand: %s\nfingerprint: %s\n",
+    std::printf("kind %s, version %s (%s), %s, %d ranks, %d threads, begun %s\ncommand: %s\nfingerprint: %s\n",
                 origin.case_kind.c_str(), origin.version.c_str(), origin.git_hash.c_str(), origin.kokkos.c_str(),
-                origin.threads, origin.date.c_str(), origin.command.c_str(), origin.fingerprint.c_str());
+                origin.ranks, origin.threads, origin.date.c_str(), origin.command.c_str(), origin.fingerprint.c_str());
     const io::MeshData mesh = io::read_mesh(result_file);
     std::printf("%zu nodes, %zu elements\n", mesh.nodes(), mesh.elements());
     print_increments(io::read_increments(result_file));

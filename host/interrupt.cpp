@@ -17,6 +17,7 @@ extern "C" void voussoir_on_signal(int signal) {
 void catch_interrupts() {
   std::signal(SIGINT, voussoir_on_signal);
   std::signal(SIGTERM, voussoir_on_signal);
+  std::signal(SIGUSR1, voussoir_on_signal);  // what mpirun passes on without ending the run itself
 }
 
 bool interrupted() { return stop_requested != 0; }

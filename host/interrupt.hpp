@@ -1,9 +1,9 @@
 #pragma once
-/// A request to stop, from Ctrl-C (SIGINT) or SIGTERM: the run ends after the current increment, with a checkpoint.
+/// A request to stop, from Ctrl-C (SIGINT), SIGTERM or SIGUSR1: the run ends after the current increment, with a checkpoint.
 
 namespace voussoir::host {
 
-/// From now on SIGINT and SIGTERM set the flag instead of ending the process; a second one ends it at once.
+/// From now on they set the flag instead of ending the process; a second one ends it at once.
 void catch_interrupts();
 
 /// True once a signal has arrived.

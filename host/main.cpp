@@ -1,3 +1,7 @@
 #include "host/command_line.hpp"
+#include "host/ranks.hpp"
 
-int main(int argc, char** argv) { return voussoir::host::run_command_line(argc, argv); }
+int main(int argc, char** argv) {
+  const voussoir::host::RankSession session;
+  return session.serves() ? session.serve() : voussoir::host::run_command_line(argc, argv);
+}

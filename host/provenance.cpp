@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "host/build_info.hpp"
+#include "host/ranks.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -38,6 +39,7 @@ io::Provenance provenance_of(const RunOptions& options, const Case& input, const
   p.command = options.command;
   p.date = utc_now();
   p.threads = options.threads;
+  p.ranks = rank_count();
   return p;
 }
 

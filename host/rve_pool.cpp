@@ -7,35 +7,16 @@
 #include <stdexcept>
 
 #include "host/microstructure_fields.hpp"
+#include "host/ranks.hpp"
+#include "host/rve_answers.hpp"
 #include "kernels/committed_contacts.hpp"
 
 namespace voussoir::host {
 
 namespace {
 
-/// Share of unbalanced ratio x pressure that shows as an error of the stress: the moment sum of random residual forces at
-/// positions uniform in the cell, 1/sqrt(12).
-constexpr double noise_share = 0.29;
-
 /// An evaluation asking for this many times the frozen steps gets more after all: the predictor was far off.
 constexpr int step_regret = 2;
-
-fem::Stress stress_of(const kernels::RveReport& r) { return {r.stress[0], r.stress[3], 0.5 * (r.stress[1] + r.stress[2])}; }
-
-fem::Tangent tangent_of(const kernels::RveReport& r) {
-  const double* d = r.tangent;
-  fem::Tangent out;
-  out << d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5];
-  return out;
-}
-
-void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
-                  std::span<fem::Tangent> tangent) {
-  for (std::size_t k = 0; k < reports.size(); ++k) {
-    stress[k] = stress_of(reports[k]);
-    tangent[k] = tangent_of(reports[k]);
-  }
-}
 
 kernels::TangentKind kernel_tangent(TangentChoice choice) {
   switch (choice) {
@@ -105,39 +86,18 @@ void RvePool::choose_steps(std::span<const fem::Gradient> gradients) {
   steps_are_fixed_ = true;
 }
 
-fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
-                                   std::span<fem::Tangent> tangent) {
+kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients) {
   choose_steps(gradients);
-  const kernels::Work work =
-      kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, trial_reports_);
-  copy_answers(trial_reports_, stress, tangent);
-  fem::BatchReport report = summarise();
-  report.work = work.particle_steps;
-  return report;
+  return kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, trial_reports_);
 }
 
-fem::BatchReport RvePool::summarise() const {
-  fem::BatchReport out;
-  double noise = 0;
-  std::size_t failures = 0;
-  for (std::size_t k = 0; k < size(); ++k) {
-    const kernels::RveReport& r = trial_reports_[k];
-    if (kernels::is_failure(r.status) && failures++ == 0) {
-      out.message = fmt::format("RVE {}: {} (overlap {:.3f})", k, kernels::name_of(r.status), r.largest_overlap);
-    }
-    if (r.steps > out.slowest_steps) {
-      out.slowest = k;
-      out.slowest_steps = r.steps;
-    }
-    if (r.status == kernels::RveStatus::open) ++out.open;
-    if (r.status == kernels::RveStatus::step_limit) ++out.step_limit;
-    const double s = noise_share * r.unbalanced * std::max(r.pressure(), settings_.pressure_floor);
-    noise += s * s;
-  }
-  if (failures > 1) out.message += fmt::format(" and {} more", failures - 1);
-  out.usable = failures == 0;
-  out.stress_noise = std::sqrt(noise / static_cast<double>(size()));
-  return out;
+fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
+                                   std::span<fem::Tangent> tangent) {
+  const kernels::Work work = advance(gradients);
+  copy_answers(trial_reports_, stress, tangent);
+  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor);
+  report.work = work.particle_steps;
+  return report;
 }
 
 void RvePool::commit() {
@@ -186,7 +146,7 @@ io::RveSnapshot RvePool::snapshot(std::size_t rve) const {
   grains.packing = packing;
   load_rve(batch_.committed, rve, grains);
   io::RveSnapshot out;
-  out.name = fmt::format("point_{:05d}", rve);
+  out.name = point_name(rve);
   out.cell = {grains.cell.xx, grains.cell.xy, grains.cell.yx, grains.cell.yy};
   out.thickness = packing.thickness;
   out.radius = packing.radii;
@@ -206,6 +166,8 @@ io::RveSnapshot RvePool::snapshot(std::size_t rve) const {
   return out;
 }
 
+std::string point_name(std::size_t point) { return fmt::format("point_{:05d}", point); }
+
 std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> points) const {
   std::vector<io::RveSnapshot> out;
   for (const std::int64_t point : points) {
@@ -216,8 +178,10 @@ std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> po
 }
 
 std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points, const PackingNote& note) {
-  return std::make_unique<RvePool>(choose_packing(input, note), input.engine, n_points, input.newton.tangent,
-                                   input.output.microstructure);
+  PackedRve rve = choose_packing(input, note);
+  const PoolOptions options{input.engine, input.newton.tangent, input.output.microstructure};
+  if (rank_count() > 1) return make_rank_pool(std::move(rve), options, n_points, note);
+  return std::make_unique<RvePool>(rve, options, n_points);
 }
 
 }  // namespace voussoir::host

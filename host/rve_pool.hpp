@@ -5,6 +5,7 @@
 
 #include "fem/material_batch.hpp"
 #include "host/packing.hpp"
+#include "host/rve_pool_state.hpp"
 #include "host/snapshot_source.hpp"
 
 namespace voussoir::host {
@@ -12,11 +13,20 @@ namespace voussoir::host {
 /// The case's value type as the engine names it.
 [[nodiscard]] kernels::Precision engine_precision(const EngineCase& engine);
 
+/// What a pool is told besides its packing and its size; plain values, so that other processes can be told.
+struct PoolOptions {
+  EngineCase engine;
+  TangentChoice tangent = TangentChoice::contact;
+  kernels::MicrostructureRequest microstructure;  ///< what fields() shall hold besides; computed there, at each call
+};
+
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
   /// `n` clones of `rve`. @param microstructure what fields() shall hold besides; computed there, at each call
   RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent = TangentChoice::contact,
           const kernels::MicrostructureRequest& microstructure = {});
+  RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n)
+      : RvePool(rve, options.engine, n, options.tangent, options.microstructure) {}
 
   [[nodiscard]] std::size_t size() const override { return batch_.size(); }
   void begin_increment() override;
@@ -28,6 +38,16 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<std::byte> state() const override;
   void set_state(std::span<const std::byte> bytes) override;
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
+
+  /// For a pool that is one rank's part of a larger one: the engine's own reports, and states one by one.
+  /// `advance` is `evaluate`; what the RVEs answered is in trial_reports().
+  kernels::Work advance(std::span<const fem::Gradient> gradients);
+  [[nodiscard]] const std::vector<kernels::RveReport>& trial_reports() const { return trial_reports_; }
+  [[nodiscard]] const std::vector<kernels::RveReport>& committed_reports() const { return committed_reports_; }
+  [[nodiscard]] double pressure_floor() const { return settings_.pressure_floor; }  ///< of the reports' ratios [Pa]
+  [[nodiscard]] std::uint64_t identity() const;
+  [[nodiscard]] std::vector<std::byte> state_of(std::size_t rve) const;
+  void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
 
  private:
   EngineCase engine_;
@@ -41,9 +61,11 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
 
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
   void choose_steps(std::span<const fem::Gradient> gradients);
-  [[nodiscard]] fem::BatchReport summarise() const;
   [[nodiscard]] io::RveSnapshot snapshot(std::size_t rve) const;
 };
+
+/// Name of a point's snapshot.
+[[nodiscard]] std::string point_name(std::size_t point);
 
 /// The case's chosen packing at `n_points` Gauss points.
 [[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points,

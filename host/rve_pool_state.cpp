@@ -1,46 +1,18 @@
 // The committed state of a pool as bytes: what an evaluation starts from, nothing derived.
 
+#include "host/rve_pool_state.hpp"
+
 #include <array>
-#include <cstring>
+#include <numeric>
 #include <stdexcept>
 
+#include "host/byte_stream.hpp"
 #include "host/rve_pool.hpp"
 #include "io/hash.hpp"
 
 namespace voussoir::host {
 
 namespace {
-
-class Writer {
- public:
-  explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
-  template <class T>
-  void operator()(const T* from, std::size_t n) {
-    if (n == 0) return;
-    const std::size_t at = bytes_.size();
-    bytes_.resize(at + n * sizeof(T));
-    std::memcpy(bytes_.data() + at, from, n * sizeof(T));
-  }
-
- private:
-  std::vector<std::byte>& bytes_;
-};
-
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  template <class T>
-  void operator()(T* to, std::size_t n) {
-    const std::size_t length = n * sizeof(T);
-    if (length > bytes_.size()) throw std::runtime_error("the checkpoint's RVEs are not those of this case");
-    if (length > 0) std::memcpy(to, bytes_.data(), length);
-    bytes_ = bytes_.subspan(length);
-  }
-  [[nodiscard]] bool at_end() const { return bytes_.empty(); }
-
- private:
-  std::span<const std::byte> bytes_;
-};
 
 /// Field by field: the padding of a struct is no state.
 template <class Transfer, class Report>
@@ -74,11 +46,40 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
   }
 }
 
-/// What the RVEs are made of; their state is nothing without it.
-std::uint64_t identity(const kernels::RveBatch& batch) {
+/// Raised when the bytes of a record mean something else than before.
+constexpr std::uint64_t record_version = 2;
+
+constexpr const char* not_of_this_case = "the checkpoint's RVEs are not those of this case";
+
+}  // namespace
+
+std::vector<std::byte> join_state(std::uint64_t identity, std::span<const StateRecord> records) {
+  std::size_t size = 2 * sizeof(std::uint64_t);
+  for (const StateRecord& record : records) size += sizeof(std::uint64_t) + record.size();
+  std::vector<std::byte> bytes;
+  bytes.reserve(size);
+  ByteWriter write(bytes);
+  write.value(static_cast<std::uint64_t>(records.size()));
+  write.value(identity);
+  for (const StateRecord& record : records) write.list(record);
+  return bytes;
+}
+
+std::vector<StateRecord> split_state(std::span<const std::byte> bytes, std::uint64_t identity, std::size_t n) {
+  ByteReader read(bytes, not_of_this_case);
+  if (read.value<std::uint64_t>() != n) throw std::runtime_error("the checkpoint has another number of RVEs");
+  if (read.value<std::uint64_t>() != identity) throw std::runtime_error("the checkpoint's RVEs are of another packing");
+  std::vector<StateRecord> records(n);
+  for (StateRecord& record : records) record = read.take(read.value<std::uint64_t>());
+  if (!read.at_end()) throw std::runtime_error(not_of_this_case);
+  return records;
+}
+
+std::uint64_t RvePool::identity() const {
   std::uint64_t hash = io::fnv_start;
   const auto add = [&hash](const auto& values) { hash = io::fnv1a(std::as_bytes(std::span(values)), hash); };
-  for (const kernels::Packing& p : batch.packings) {
+  add(std::array{record_version});
+  for (const kernels::Packing& p : batch_.packings) {
     add(p.radii);
     add(p.class_of);
     add(std::array{p.thickness, p.local_damping});
@@ -89,37 +90,38 @@ std::uint64_t identity(const kernels::RveBatch& batch) {
   return hash;
 }
 
-}  // namespace
-
-std::vector<std::byte> RvePool::state() const {
+std::vector<std::byte> RvePool::state_of(std::size_t rve) const {
   std::vector<std::byte> bytes;
-  Writer write(bytes);
-  const std::uint64_t n = size();
-  const std::uint64_t packing = identity(batch_);
-  write(&n, 1);
-  write(&packing, 1);
-  for (const auto& report : committed_reports_) transfer_report(write, report);
-  for (std::size_t k = 0; k < size(); ++k) {
-    transfer_rve(write, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
-  }
+  const auto grains = static_cast<std::size_t>(batch_.packing(rve).size());
+  // 24 bytes a grain, 20 a contact, of which there are about two a grain; more makes the vector grow once.
+  bytes.reserve(256 + 72 * grains);
+  ByteWriter write(bytes);
+  transfer_report(write, committed_reports_[rve]);
+  transfer_rve(write, batch_.committed, rve, grains);
   return bytes;
 }
 
-void RvePool::set_state(std::span<const std::byte> bytes) {
-  Reader read(bytes);
-  std::uint64_t n = 0;
-  read(&n, 1);
-  if (n != size()) throw std::runtime_error("the checkpoint has another number of RVEs");
-  std::uint64_t packing = 0;
-  read(&packing, 1);
-  if (packing != identity(batch_)) throw std::runtime_error("the checkpoint's RVEs are of another packing");
-  for (auto& report : committed_reports_) transfer_report(read, report);
-  for (std::size_t k = 0; k < size(); ++k) {
-    transfer_rve(read, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
+void RvePool::set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records) {
+  for (std::size_t k = 0; k < rves.size(); ++k) {
+    ByteReader read(records[k], not_of_this_case);
+    transfer_report(read, committed_reports_[rves[k]]);
+    transfer_rve(read, batch_.committed, rves[k], static_cast<std::size_t>(batch_.packing(rves[k]).size()));
+    if (!read.at_end()) throw std::runtime_error(not_of_this_case);
   }
-  if (!read.at_end()) throw std::runtime_error("the checkpoint's RVEs are not those of this case");
   kernels::forget_candidates(batch_);
   steps_are_fixed_ = false;
+}
+
+std::vector<std::byte> RvePool::state() const {
+  std::vector<std::vector<std::byte>> states;
+  for (std::size_t k = 0; k < size(); ++k) states.push_back(state_of(k));
+  return join_state(identity(), std::vector<StateRecord>(states.begin(), states.end()));
+}
+
+void RvePool::set_state(std::span<const std::byte> bytes) {
+  std::vector<std::size_t> all(size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  set_states(all, split_state(bytes, identity(), size()));
 }
 
 }  // namespace voussoir::host

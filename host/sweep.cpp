@@ -17,6 +17,7 @@
 #include "host/commands.hpp"
 #include "host/exit_code.hpp"
 #include "host/interrupt.hpp"
+#include "host/ranks.hpp"
 #include "io/atomic_file.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
@@ -153,6 +154,7 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
 }  // namespace
 
 int command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& given) {
+  if (rank_count() > 1) throw std::invalid_argument("sweep starts processes of its own: run it without mpirun");
   SweepOptions options = given;
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / sweep_file.stem();
   Sweep sweep = load_sweep(sweep_file, options);

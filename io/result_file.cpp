@@ -39,6 +39,7 @@ void write_provenance(Hdf5File& file, const Provenance& provenance) {
   for_each_text(provenance,
                 [&](const char* name, const std::string& value) { file.set_attribute("/provenance", name, value); });
   file.set_attribute("/provenance", "threads", std::int64_t{provenance.threads});
+  file.set_attribute("/provenance", "ranks", std::int64_t{provenance.ranks});
 }
 
 void write_mesh(Hdf5File& file, const MeshData& mesh) {
@@ -230,6 +231,10 @@ Provenance read_provenance(const std::filesystem::path& run_file) {
   for_each_text(provenance,
                 [&](const char* name, std::string& value) { value = file.text_attribute("/provenance", name); });
   provenance.threads = static_cast<int>(file.integer_attribute("/provenance", "threads"));
+  const std::vector<std::string> names = file.attributes("/provenance");
+  if (std::find(names.begin(), names.end(), "ranks") != names.end()) {  // absent in files of the first versions
+    provenance.ranks = static_cast<int>(file.integer_attribute("/provenance", "ranks"));
+  }
   return provenance;
 }
 

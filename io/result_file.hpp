@@ -35,7 +35,8 @@ struct Provenance {
   std::string kokkos = "unknown";   ///< Kokkos version, backends, instruction set
   std::string command = "unknown";  ///< command line
   std::string date = "unknown";     ///< start of the run, ISO 8601, UTC
-  int threads = 1;
+  int threads = 1;  ///< of the first rank
+  int ranks = 1;    ///< processes
 };
 
 enum class FieldLocation {

@@ -23,7 +23,7 @@ FOLDERS = {
     "fem": ({"fem"}, {"Eigen", "SuiteSparse", "Gmsh", "OpenMP", "fmt"}),
     "io": ({"io"}, {"HDF5", "toml++", "JSON", "fmt", "POSIX"}),
     # host joins the others, so it holds their types (Kokkos views, Eigen matrices) and starts Kokkos.
-    "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX"}),
+    "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX", "MPI"}),
     "tests": (set(OURS), None),  # None: any
     "tools": (set(), {"CUDA"}),
 }
@@ -33,6 +33,7 @@ CONFINED = {
     "Gmsh": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
     # to give back the thread number that Gmsh changes
     "OpenMP": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
+    "MPI": re.compile(r"host/rank_channel\.cpp"),
 }
 
 LIBRARIES = {
@@ -44,6 +45,7 @@ LIBRARIES = {
     "toml++": r"toml\.hpp|toml\+\+/.*",
     "JSON": r"nlohmann/json(_fwd)?\.hpp",
     "OpenMP": r"omp\.h",
+    "MPI": r"mpi\.h",
     "CLI11": r"CLI/\w+\.hpp",
     "spdlog": r"spdlog/.*",
     "fmt": r"fmt/.*",

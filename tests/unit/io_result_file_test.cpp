@@ -59,7 +59,7 @@ class ResultFileTest : public testing::Test {
   }
 
   fs::path folder_ = fs::current_path() / "result";
-  Provenance provenance_{.case_kind = "tunnel", .input = "kind = \"tunnel\"\n", .fingerprint = "ab", .threads = 2};
+  Provenance provenance_{.case_kind = "tunnel", .input = "kind = \"tunnel\"\n", .fingerprint = "ab", .threads = 2, .ranks = 3};
 };
 
 TEST_F(ResultFileTest, EverythingReadsBack) {
@@ -79,6 +79,7 @@ TEST_F(ResultFileTest, EverythingReadsBack) {
 
   EXPECT_EQ(read_provenance(folder_ / "run.h5").input, provenance_.input);
   EXPECT_EQ(read_provenance(folder_ / "run.h5").threads, 2);
+  EXPECT_EQ(read_provenance(folder_ / "run.h5").ranks, 3);
   EXPECT_EQ(read_mesh(folder_ / "run.h5").coordinates, mesh().coordinates);
   EXPECT_EQ(read_mesh(folder_ / "run.h5").connectivity, mesh().connectivity);
   EXPECT_EQ(read_mesh(folder_ / "run.h5").geometry, mesh().geometry);

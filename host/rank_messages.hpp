@@ -1,0 +1,67 @@
+#pragma once
+/// What the first rank asks and the others answer. A message is a Command and its values; a reply is a `true` and its values, or
+/// a `false` and a sentence.
+
+#include <cstdint>
+
+#include "host/byte_stream.hpp"
+#include "host/packing.hpp"
+#include "host/rank_channel.hpp"
+
+namespace voussoir::host {
+
+enum class Command : std::uint8_t {
+  start,            ///< build's revision, threads -> host's name, threads
+  make,             ///< recipe of the pool -> committed reports
+  begin_increment,  ///< ->
+  evaluate,         ///< gradients -> seconds, particle-steps, trial reports
+  commit,           ///< ->
+  fields,           ///< -> number of fields, then each
+  states,           ///< first, number of RVEs -> their records
+  set_states,       ///< first, records -> committed reports of all
+  forget,           ///< the pool is no longer needed -> peak memory
+  quit              ///< no reply
+};
+
+inline Message message_of(Command command) { return {static_cast<std::byte>(command)}; }
+
+template <class... Values>
+Message message_of(Command command, const Values&... values) {
+  Message message = message_of(command);
+  ByteWriter write(message);
+  (write.value(values), ...);
+  return message;
+}
+
+/// As far as a pool needs it: the packing and its state, not how it was made.
+inline void write_rve(ByteWriter& write, const PackedRve& rve) {
+  write.list(rve.packing.radii);
+  write.list(rve.packing.materials);
+  write.list(rve.packing.class_of);
+  write.value(rve.packing.thickness);
+  write.value(rve.packing.local_damping);
+  write.list(rve.position);
+  write.list(rve.rotation);
+  write.value(rve.cell);
+  write.list(rve.contact_key);
+  write.list(rve.contact_history);
+  write.value(rve.seed);
+}
+
+inline PackedRve read_rve(ByteReader& read) {
+  PackedRve rve;
+  rve.packing.radii = read.list<double>();
+  rve.packing.materials = read.list<kernels::GrainMaterial>();
+  rve.packing.class_of = read.list<std::uint8_t>();
+  rve.packing.thickness = read.value<double>();
+  rve.packing.local_damping = read.value<double>();
+  rve.position = read.list<double>();
+  rve.rotation = read.list<double>();
+  rve.cell = read.value<kernels::Mat2>();
+  rve.contact_key = read.list<std::uint32_t>();
+  rve.contact_history = read.list<double>();
+  rve.seed = read.value<std::int64_t>();
+  return rve;
+}
+
+}  // namespace voussoir::host

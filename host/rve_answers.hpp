@@ -1,0 +1,18 @@
+#pragma once
+/// The engine's reports as fem sees them: the same sums in the same order, wherever the RVEs were run.
+
+#include <span>
+
+#include "fem/material_batch.hpp"
+#include "kernels/rve_batch.hpp"
+
+namespace voussoir::host {
+
+/// Stresses [Pa] and tangents [Pa] of the reports; all spans have the same length.
+void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
+                  std::span<fem::Tangent> tangent);
+
+/// What a whole evaluation says of itself, but for its work. @param pressure_floor of the engine's ratios [Pa]
+[[nodiscard]] fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor);
+
+}  // namespace voussoir::host

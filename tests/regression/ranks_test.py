@@ -1,0 +1,109 @@
+"""RVEs spread over processes: the bits of one process, and one end for all of them, whatever happens to one."""
+
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from program import PROGRAM, check, check_same, command, fresh, run
+
+version = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout
+if "no MPI" in version or shutil.which("mpirun") is None:
+    print(f"skipped: {version.strip()}")
+    raise SystemExit(77)
+
+# The container of a test has few cores and knows no user but root.
+os.environ |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+SETTINGS = ["packing.grains=100", "packing.candidates=1", "packing.folder=packings", "ground.mesh_size_opening=2.5 m",
+            "ground.mesh_size_far=8 m", "column.elements=4", "gravity.ratio=2", "gravity.uniform_step=0.3", "volume_loss.total=0.5 %",
+            "volume_loss.increments=1", "newton.tolerance=0.01", "output.rves=[3, 4]"]
+
+
+def ranks(n, folder, *further, settings=SETTINGS):
+    launcher = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(n)]
+    return launcher + command("tunnel_quick", folder, settings, "--threads", "1", *further)
+
+
+def start(words, wait_for):
+    """A run under mpirun, once it has written a file."""
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + 120
+    while not Path(wait_for).exists():
+        check(process.poll() is None and time.monotonic() < deadline, f"{wait_for} did not appear: {process.stderr}")
+        time.sleep(0.002)
+    return process
+
+
+def worker(process):
+    """Process id of the second rank."""
+    for child in Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split():
+        if b"OMPI_COMM_WORLD_RANK=1" in Path(f"/proc/{child}/environ").read_bytes().split(b"\0"):
+            return int(child)
+    raise SystemExit("FAILED: no second rank")
+
+
+def end(process, code):
+    """Waits for all ranks; returns what the program (not mpirun) said on stderr."""
+    errors = process.communicate(timeout=100)[1]
+    check(process.returncode == code, f"mpirun ended with {process.returncode} instead of {code}: {errors}")
+    return [line for line in errors.splitlines() if "voussoir: " in line or "resume" in line or "equilibrium" in line]
+
+
+# One process, two, three with a rank of another share; stopped on two and resumed on one and the other way round.
+straight = fresh("straight")
+run(command("tunnel_quick", straight, SETTINGS, "--threads", "2"))
+for n in (2, 3):
+    spread = fresh(f"ranks_{n}")
+    run(ranks(n, spread))
+    check_same(straight, spread)
+check("3 ranks: " in (spread / "run.log").read_text(), "the log does not say that there were ranks")
+
+stopped = fresh("stopped")
+process = start(ranks(2, stopped), stopped / "increments/0004.h5")
+process.send_signal(signal.SIGUSR1)  # mpirun passes it on
+said = end(process, 130)
+check(len(said) == 1 and "--resume" in said[0], f"not one line about resuming: {said}")
+run(command("tunnel_quick", stopped, SETTINGS, "--resume"))
+check_same(straight, stopped)
+stopped = fresh("stopped")
+process = start(command("tunnel_quick", stopped, SETTINGS), stopped / "increments/0003.h5")
+process.terminate()
+end(process, 130)
+run(ranks(2, stopped, "--resume"))
+check_same(straight, stopped)
+
+# Wrong input, no equilibrium: one message, the program's exit code.
+wrong = fresh("wrong")
+process = subprocess.Popen(ranks(2, wrong, settings=["packing.grains=two"]), stderr=subprocess.PIPE, text=True)
+said = end(process, 2)
+check(len(said) == 1 and "packing.grains" in said[0] and not wrong.exists(), f"wrong input: {said}")
+failed = fresh("failed")
+settings = [*SETTINGS, "newton.tolerance=1e-15", "newton.maximum_iterations=2", "newton.smallest_cut=1"]
+said = end(subprocess.Popen(ranks(2, failed, settings=settings), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True), 3)
+check(len(said) == 1 and "no equilibrium" in said[0], f"no equilibrium: {said}")
+
+# A rank that has no memory says so through the first one; a rank that is killed takes the others with it. Results stay usable.
+starved = fresh("starved")
+process = start(ranks(2, starved), starved / "column/increments/0001.h5")
+pid = worker(process)
+pages = int(Path(f"/proc/{pid}/statm").read_text().split()[0])
+resource.prlimit(pid, resource.RLIMIT_AS, (pages * resource.getpagesize(),) * 2)
+said = end(process, 4)
+check(len(said) == 1 and "rank 1 on " in said[0] and "memory" in said[0], f"no memory on a rank: {said}")
+killed = fresh("killed")
+process = start(ranks(2, killed), killed / "increments/0003.h5")
+os.kill(worker(process), signal.SIGKILL)
+begun = time.monotonic()
+end(process, 137)
+stopped = fresh("stopped")
+process = start(ranks(2, stopped), stopped / "increments/0002.h5")
+process.send_signal(signal.SIGINT)  # mpirun gives the ranks one second
+end(process, 1)
+check(time.monotonic() - begun < 60, "the other ranks went on without the one that was killed")
+run(ranks(2, killed, "--resume"))
+check_same(straight, killed)
+
+end(subprocess.Popen(["mpirun", "--oversubscribe", "-n", "2", PROGRAM, "sweep", "none.toml"], stderr=subprocess.PIPE, text=True), 2)
