@@ -45,23 +45,36 @@ def gauss_patches(coordinates, connectivity):
                     axis=1)
 
 
-def sample(coordinates, connectivity, values, points):
-    """A nodal field (node, components) at points (n, 2); NaN outside the mesh."""
-    sampled = np.full((len(points), values.shape[1]), np.nan)
+def gauss_weights(local):
+    """Weights of an element's four Gauss points (n, 4) at local coordinates (n, 2): bilinear between them, and held beyond,
+    since fields of RVEs do not bear extrapolation."""
+    a = np.clip(np.asarray(local) * np.sqrt(3), -1, 1)
+    return 0.25 * (1 + a[:, :1] * CORNERS[:, 0]) * (1 + a[:, 1:] * CORNERS[:, 1])
+
+
+def locate(coordinates, connectivity, points):
+    """The elements that hold points (n, 2): their nodes (n, 8) and the shape functions there (n, 8), NaN outside the mesh."""
+    nodes_of, weights = np.zeros((len(points), 8), dtype=int), np.full((len(points), 8), np.nan)
     nodes = coordinates[connectivity]
     slack = 1e-6 * np.ptp(coordinates[:, 0])
     low, high = nodes.min(axis=1) - slack, nodes.max(axis=1) + slack
     for k, point in enumerate(points):
         for element in np.flatnonzero(np.all((low <= point) & (point <= high), axis=1)):
-            local = _local_coordinates(nodes[element], point)
+            local = local_coordinates(nodes[element], point)
             if local is not None:
-                sampled[k] = shape(*local) @ values[connectivity[element]]
+                nodes_of[k], weights[k] = connectivity[element], shape(*local)
                 break
-    return sampled
+    return nodes_of, weights
 
 
-def _local_coordinates(nodes, point, tolerance=1e-6):
-    """Inverse of the element's map by Newton; None outside."""
+def sample(coordinates, connectivity, values, points):
+    """A nodal field (node, components) at points (n, 2); NaN outside the mesh."""
+    nodes, weights = locate(coordinates, connectivity, points)
+    return np.einsum("pn,pnk->pk", weights, values[nodes])
+
+
+def local_coordinates(nodes, point, tolerance=1e-6):
+    """Inverse of an element's map (nodes (8, 2)) by Newton; None outside."""
     local = np.zeros(2)
     for _ in range(20):
         step = 1e-6

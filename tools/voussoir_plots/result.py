@@ -1,11 +1,14 @@
 """A run's files as arrays. Dataset names and shapes: io/FORMAT.md."""
 
 import re
+import tomllib
 from functools import cached_property
 from pathlib import Path
 
 import h5py
 import numpy as np
+
+from .settings import Settings
 
 
 class Missing(Exception):
@@ -21,6 +24,7 @@ class Increment:
             self.attributes = {name: _plain(value) for name, value in file.attrs.items()}
             self.names = {f"{group}/{name}" for group in ("node", "gauss", "element", "rve") if group in file
                           for name in file[group]}
+            self.snapshots = sorted(file["snapshots"]) if "snapshots" in file else []
 
     def __getitem__(self, attribute):
         return self.attributes[attribute]
@@ -33,17 +37,23 @@ class Increment:
             values = file[name][()]
         return values[..., 0] if values.shape[-1] == 1 else values
 
+    def snapshot(self, name):
+        """Arrays of one RVE, by the names of io/FORMAT.md."""
+        with h5py.File(self.path, "r") as file:
+            return {key: data[()] for key, data in file[f"snapshots/{name}"].items()}
+
 
 class Result:
-    """Mesh and increments of a run; `volume_loss` [%] chooses those of the troughs."""
+    """Mesh and increments of a run; `settings` say where and when it is looked at."""
 
-    def __init__(self, folder, volume_loss=None):
+    def __init__(self, folder, settings=None):
         self.folder = Path(folder)
-        self.wanted = volume_loss
+        self.settings = settings or Settings()
         # The folder, not run.h5's links: a killed run may have one increment more than its index.
         paths = [p for p in (self.folder / "increments").glob("*.h5") if re.fullmatch(r"\d+", p.stem)]
         self.increments = [Increment(p) for p in sorted(paths, key=lambda p: int(p.stem))]
         with h5py.File(self.folder / "run.h5", "r") as file:
+            self.case = tomllib.loads(_plain(file["input"][()])) if "input" in file else {}
             self.has_mesh = "mesh" in file
             if self.has_mesh:
                 mesh = file["mesh"]
@@ -55,6 +65,7 @@ class Result:
                            for name, table in file.get("tables", {}).items()}
         if not self.increments:
             raise Missing("there are no increments yet")
+        self._histories = {}
 
     def need(self, *names):
         """Numbers of the mesh's geometry."""
@@ -74,21 +85,53 @@ class Result:
         raise Missing(f"there is no stage {' or '.join(names)}")
 
     @cached_property
-    def losses(self):
-        """Increments of the volume loss with V_l > 0 to draw troughs for: four of them unless some were asked for."""
-        found = [i for i in self.stage("volume_loss") if i["volume_loss"] > 0]
-        if not found:
+    def loss_increments(self):
+        """Increments of the volume loss, from V_l = 0 on where that was written; at least one with V_l > 0."""
+        found = self.stage("volume_loss")
+        if found[-1]["volume_loss"] <= 0:
             raise Missing("no increment has a volume loss")
+        return found
+
+    @cached_property
+    def volume_loss(self):
+        """V_l of `loss_increments` [-]."""
+        return np.array([i["volume_loss"] for i in self.loss_increments])
+
+    def history(self, name):
+        """A field over `loss_increments`, e.g. "gauss/stress": (increment, element, 4, components)."""
+        if name not in self._histories:
+            self._histories[name] = np.array([i.field(name) for i in self.loss_increments])
+        return self._histories[name]
+
+    def nearest(self, losses):
+        """Increments of the volume loss whose V_l lie nearest to those wanted [-], each once, V_l > 0; none that is farther
+        away than the increments are apart."""
+        found = [i for i in self.loss_increments if i["volume_loss"] > 0]
         values = np.array([i["volume_loss"] for i in found])
-        wanted = np.array(self.wanted) / 100 if self.wanted else values[-1] * np.array([0.25, 0.5, 0.75, 1])
-        chosen = sorted({int(np.argmin(np.abs(values - v))) for v in wanted})
-        return [found[k] for k in chosen]
+        apart = np.max(np.diff(values, prepend=0))
+        chosen = {int(np.argmin(np.abs(values - v))) for v in losses if np.min(np.abs(values - v)) <= apart * 1.001}
+        return [found[k] for k in sorted(chosen)]
+
+    @cached_property
+    def losses(self):
+        """Increments to draw troughs and profiles for: four of them unless some were asked for."""
+        wanted = self.settings.losses or tuple(self.volume_loss[-1] * np.array([0.25, 0.5, 0.75, 1]))
+        found = self.nearest(wanted)
+        if not found:
+            raise Missing(f"no increment is near V_l = {', '.join(f'{100 * v:g} %' for v in wanted)}")
+        return found
 
     @property
     def cover(self):
         """Depth of the crown below the surface [m]."""
         axis_depth, diameter = self.need("axis_depth", "diameter")
         return axis_depth - diameter / 2
+
+    @property
+    def crown_height(self):
+        """y of the crown [m]."""
+        axis_depth, diameter, surface_y = self.need("axis_depth", "diameter", "surface_y")
+        return surface_y - axis_depth + diameter / 2
 
     def crown(self):
         """Node of the opening on the axis of symmetry, at the top."""
@@ -97,6 +140,16 @@ class Result:
             raise Missing("run.h5 has no boundary tunnel")
         nodes = self.boundaries["tunnel"]
         return nodes[np.argmax(self.coordinates[nodes, 1])]
+
+    @property
+    def soil(self):
+        """"gravel", "medium dense sand" or "dense sand", as the case describes it; the study's trends differ."""
+        soil, packing = self.case.get("soil", {}), self.case.get("packing", {})
+        largest = [float(str(size).split()[0]) * (1e3 if str(size).endswith(" m") else 1) for size in soil.get("sizes", [])]
+        if largest and max(largest) > 10:
+            return "gravel"
+        loose = packing.get("void_ratio", 0) > 0.22 or packing.get("consolidation_friction", 0) > 0.1
+        return "medium dense sand" if loose else "dense sand"
 
 
 def _plain(value):

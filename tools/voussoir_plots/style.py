@@ -1,6 +1,7 @@
 """One look for all figures."""
 
 import matplotlib
+import numpy as np
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
@@ -13,6 +14,11 @@ def use_style():
         "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True, "lines.linewidth": 1.6,
         "image.cmap": "viridis", "legend.framealpha": 0.9,
     })
+
+
+def colours(name, count):
+    """Colours of a sequence, without a map's palest end."""
+    return plt.get_cmap(name)(np.linspace(0.0, 0.87, max(count, 2)))[:count]
 
 
 def percent(fraction):

@@ -4,7 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# alpha = 0.5 is the Gauss curve itself; larger is flatter at the bottom, with steeper flanks.
+# alpha = 0.5 is the Gauss curve itself; larger is flatter at the bottom, with steeper flanks. Towards 0 the curve becomes
+# S_max / (1 + (x/i)^2 / 3), the heaviest tails that eq. (20) has: a trough that is more pointed still, with a wider foot, leaves
+# alpha at the lower end, where it means nothing more. i stays the inflection of the best such curve.
 ALPHA_RANGE = (0.02, 20.0)
 
 
@@ -26,6 +28,11 @@ class TroughFit:
     inflection: float   # i [m]
     alpha: float        # [-]
     misfit: float       # rms of the residual relative to S_max [-]
+
+    @property
+    def at_bound(self):
+        """alpha lies at an end of its range: the trough is not of the family's shape."""
+        return not 1.05 * ALPHA_RANGE[0] < self.alpha < 0.95 * ALPHA_RANGE[1]
 
     @property
     def n(self):

@@ -7,32 +7,66 @@ import numpy as np
 
 from . import q8, trough_fit
 from .result import Missing
-from .style import percent, save
+from .style import colours, percent, save
 
-DEPTHS = (0.0, 0.25, 0.5, 0.75, 1.0)  # z/C
-COLUMNS = ("z_over_C", "depth_m", "volume_loss", "settlement_max_m", "inflection_m", "alpha", "n", "K", "rms_misfit",
-           "trough_area_over_lost_area")
-
-
-def surface_profile(result, increment):
-    """Distance from the axis and settlement [m] at the nodes of the surface."""
-    if "top" not in result.boundaries:
-        raise Missing("run.h5 has no boundary top")
-    top = result.boundaries["top"]
-    top = top[np.argsort(result.coordinates[top, 0])]
-    return result.coordinates[top, 0], -increment.field("node/displacement")[top, 1]
+COLUMNS = ("z_over_C", "depth_m", "volume_loss", "settlement_max_m", "settlement_axis_m", "inflection_m", "alpha",
+           "alpha_at_bound", "n", "K", "rms_misfit", "trough_area_over_lost_area")
 
 
-def profile(result, increment, depth):
-    """The same along a horizontal line at a depth [m], interpolated in the finite elements."""
-    if depth == 0:
-        return surface_profile(result, increment)
-    (surface_y,) = result.need("surface_y")
-    x = np.linspace(0, result.coordinates[:, 0].max(), 61)
-    line = np.column_stack([x, np.full_like(x, surface_y - depth)])
-    u = q8.sample(result.coordinates, result.connectivity, increment.field("node/displacement"), line)
-    inside = np.isfinite(u[:, 1])
-    return x[inside], -u[inside, 1]
+class Line:
+    """A level line of the ground as it was before the loss; where in the elements it runs is found once."""
+
+    def __init__(self, result, depth):
+        (surface_y,) = result.need("surface_y")
+        x, y = result.coordinates.T
+        on_surface = np.flatnonzero(np.abs(y - surface_y) < 1e-9 * surface_y) if depth == 0 else []
+        # The surface's own nodes; elsewhere points in the elements.
+        self.x = np.sort(x[on_surface]) if depth == 0 else np.linspace(0, x.max(), 81)
+        line = np.column_stack([self.x, np.full_like(self.x, surface_y - depth)])
+        self.nodes, self.weights = q8.locate(result.coordinates, result.connectivity, line)
+        inside = np.isfinite(self.weights[:, 0])
+        self.x, self.nodes, self.weights = self.x[inside], self.nodes[inside], self.weights[inside]
+        if len(self.x) < 4:
+            raise Missing(f"the mesh has too few points at the depth {depth:g} m")
+
+    def settlement(self, increment):
+        """[m], along `x`."""
+        return -np.einsum("pn,pn->p", self.weights, increment.field("node/displacement")[self.nodes, 1])
+
+
+class Trough:
+    """The settlements of a line at one V_l, and their curve."""
+
+    def __init__(self, result, increment, ratio):
+        axis_depth, diameter = result.need("axis_depth", "diameter")
+        line = line_at(result, ratio)
+        self.ratio, self.loss = ratio, increment["volume_loss"]
+        self.x, self.settlement = line.x, line.settlement(increment)
+        self.fit = trough_fit.fit(self.x, self.settlement)
+        self.depth = ratio * result.cover
+        self.area_ratio = 2 * np.trapezoid(self.settlement, self.x) / (self.loss * np.pi * diameter**2 / 4)
+        self.width = self.fit.inflection / (axis_depth - self.depth)  # K [-]
+
+    def row(self):
+        fit = self.fit
+        return (self.ratio, self.depth, self.loss, self.settlement.max(), self.settlement[0], fit.inflection, fit.alpha,
+                float(fit.at_bound), fit.n, self.width, fit.misfit, self.area_ratio)
+
+
+def line_at(result, ratio):
+    """The line at z/C = ratio."""
+    lines = result.__dict__.setdefault("_lines", {})
+    if ratio not in lines:
+        lines[ratio] = Line(result, ratio * result.cover)
+    return lines[ratio]
+
+
+def all_troughs(result):
+    """{(z/C, V_l): trough} at all depths of all increments of the volume loss."""
+    if not hasattr(result, "_troughs"):
+        result._troughs = {(ratio, i["volume_loss"]): Trough(result, i, ratio) for ratio in result.settings.depths
+                           for i in result.loss_increments if i["volume_loss"] > 0}
+    return result._troughs
 
 
 def mirrored(x, y):
@@ -40,50 +74,43 @@ def mirrored(x, y):
 
 
 def draw(result, path):
-    axis_depth, diameter = result.need("axis_depth", "diameter")
-    losses = result.losses
-    figure, axes = plt.subplots(1, 2, figsize=(12.5, 4.8))
-    rows = []
-    colours = plt.get_cmap("viridis")(np.linspace(0.0, 0.85, max(len(losses), 2)))
-    for increment, colour in zip(losses, colours):
-        rows.append(_add(axes[0], result, increment, 0.0, colour, percent(increment["volume_loss"])))
-    last = losses[-1]
-    colours = plt.get_cmap("cividis")(np.linspace(0.0, 0.9, len(DEPTHS)))
-    for ratio, colour in zip(DEPTHS, colours):
-        row = _add(axes[1], result, last, ratio, colour, f"{ratio:g}")
-        if ratio > 0:  # the surface at this volume loss is a row already
-            rows.append(row)
-    axes[0].set_title("Settlement of the surface")
-    axes[1].set_title(f"Settlement at depth, $V_l$ = {percent(last['volume_loss'])}")
-    for axis, title in zip(axes, ("$V_l$", "$z/C$")):
+    """One picture a depth, the chosen volume losses in each; all numbers in a table beside."""
+    (diameter,) = result.need("diameter")
+    troughs, depths = all_troughs(result), result.settings.depths
+    columns = min(3, len(depths))
+    rows = -(-len(depths) // columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(5.0 * columns, 3.9 * rows), squeeze=False, sharex=True)
+    for axis, ratio in zip(axes.flat, depths):
+        for increment, colour in zip(result.losses, colours("viridis", len(result.losses))):
+            _add(axis, troughs[ratio, increment["volume_loss"]], colour)
+        axis.set_title(f"$z/C$ = {ratio:g}" + ("  (surface)" if ratio == 0 else "  (crown)" if ratio == 1 else ""))
         axis.invert_yaxis()
-        axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
         axis.set_ylabel("settlement  $S$  [m]")
-        axis.legend(title=title, loc="lower right")
-    figure.suptitle(f"Settlement troughs, $C/D$ = {result.cover / diameter:.2g}, $D$ = {diameter:g} m"
-                    "   (symbols: computed, lines: modified Gauss curve)", fontsize=12)
+        axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
+        axis.xaxis.set_tick_params(labelbottom=True)
+    spare = axes.flat[len(depths):]
+    for axis in spare:
+        axis.set_axis_off()
+    handles, labels = axes.flat[0].get_legend_handles_labels()
+    place = spare[0] if len(spare) else axes.flat[0]
+    place.legend(handles, labels, title="$V_l$", loc="center" if len(spare) else "lower right")
+    figure.suptitle(f"Settlement troughs, $C/D$ = {result.cover / diameter:.2g}, $D$ = {diameter:g} m   (symbols: computed, lines: "
+                    r"modified Gauss curve, dashed where its $\alpha$ is at its bound)", fontsize=12)
     figure.tight_layout()
     save(figure, path)
-    _write_table(path.with_suffix(".csv"), rows, axis_depth, diameter)
+    _write_table(path.with_suffix(".csv"), troughs.values())
 
 
-def _add(axis, result, increment, ratio, colour, label):
-    x, settlement = profile(result, increment, ratio * result.cover)
-    if len(x) < 4:
-        raise Missing(f"the mesh has too few points at z/C = {ratio:g}")
-    fit = trough_fit.fit(x, settlement)
-    fine = np.linspace(-x.max(), x.max(), 400)
-    axis.plot(fine, fit(fine), color=colour, label=label)
-    axis.plot(*mirrored(x, settlement), "o", color=colour, markersize=3.5, markerfacecolor="none", markeredgewidth=0.8)
-    area = 2 * np.trapezoid(settlement, x)
-    return ratio, ratio * result.cover, increment["volume_loss"], fit, area
+def _add(axis, trough, colour):
+    fine = np.linspace(-trough.x.max(), trough.x.max(), 400)
+    axis.plot(fine, trough.fit(fine), "--" if trough.fit.at_bound else "-", color=colour, label=percent(trough.loss))
+    axis.plot(*mirrored(trough.x, trough.settlement), "o", color=colour, markersize=3, markerfacecolor="none",
+              markeredgewidth=0.7)
 
 
-def _write_table(path, rows, axis_depth, diameter):
+def _write_table(path, troughs):
     with open(path, "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(COLUMNS)
-        for ratio, depth, loss, fit, area in rows:
-            numbers = (ratio, depth, loss, fit.largest, fit.inflection, fit.alpha, fit.n,
-                       fit.inflection / (axis_depth - depth), fit.misfit, area / (loss * np.pi * diameter**2 / 4))
-            writer.writerow([f"{value:.6g}" for value in numbers])
+        for trough in troughs:
+            writer.writerow([f"{value:.6g}" for value in trough.row()])

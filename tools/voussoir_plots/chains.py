@@ -1,0 +1,74 @@
+"""Force chains of RVEs that were written grain by grain (output.rves): normal forces as bars between grains."""
+
+import re
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import EllipseCollection, LineCollection
+
+from . import points
+from .result import Missing
+from .style import percent, save
+
+STRONG = 1.0     # a contact is strong from this share of the mean normal force on (C1 of the study's pictures)
+STRONGEST = 2.0  # C2
+
+
+def normal_forces(snapshot):
+    """Compression at each contact [N]: `force` acts on grain i, the branch points from i to j."""
+    branch = snapshot["branch"]
+    unit = branch / np.linalg.norm(branch, axis=1, keepdims=True)
+    return -np.einsum("ck,ck->c", snapshot["force"], unit)
+
+
+def nearest_snapshot(result, increment, point):
+    """Name and distance [m] of the snapshot nearest to a point."""
+    numbers = {name: int(re.search(r"(\d+)$", name)[1]) for name in increment.snapshots if re.search(r"\d+$", name)}
+    if not numbers:
+        raise Missing("no RVE was written grain by grain (output.rves)")
+    where = points.original_points(result)
+    away = {name: np.linalg.norm(where[number] - point.position) for name, number in numbers.items()}
+    name = min(away, key=away.get)
+    return name, away[name]
+
+
+def draw(result, path):
+    chosen = [result.loss_increments[0], *result.nearest(result.settings.field_losses)]
+    if not chosen[-1].snapshots:
+        raise Missing("no RVE was written grain by grain (output.rves)")
+    followed = points.all_points(result)
+    figure, axes = plt.subplots(len(followed), len(chosen), figsize=(3.6 * len(chosen), 3.9 * len(followed)), squeeze=False)
+    for row, point in zip(axes, followed):
+        name, away = nearest_snapshot(result, chosen[-1], point)
+        for axis, increment in zip(row, chosen):
+            _draw_rve(axis, increment.snapshot(name))
+            axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])}", fontsize=10)
+        row[0].set_ylabel(f"{point.name}" + (f"\n(RVE {away:.2f} m away)" if away > 1e-9 else ""), fontsize=11)
+    figure.suptitle("Force chains: width of a bar by normal force; red from the RVE's mean on, dark red from twice the mean on",
+                    fontsize=12)
+    figure.tight_layout()
+    save(figure, path)
+
+
+def _draw_rve(axis, snapshot):
+    cell, position = snapshot["cell"], np.column_stack([snapshot["x"], snapshot["y"]])
+    # Into the cell: positions are stored anywhere.
+    inside = position - (cell @ np.floor(np.linalg.solve(cell, position.T))).T
+    diameter = 2 * snapshot["radius"]
+    axis.add_collection(EllipseCollection(diameter, diameter, np.zeros_like(diameter), units="xy", offsets=inside,
+                                          offset_transform=axis.transData, facecolors="0.9", edgecolors="0.6", linewidths=0.3))
+    if len(snapshot["contact_i"]):
+        force = normal_forces(snapshot)
+        share = force / force.mean()
+        start = inside[snapshot["contact_i"]]
+        bars = np.stack([start, start + snapshot["branch"]], axis=1)
+        order = np.argsort(share)
+        colour = np.where(share >= STRONGEST, "darkred", np.where(share >= STRONG, "red", "steelblue"))
+        axis.add_collection(LineCollection(bars[order], linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order]))
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) @ cell.T
+    axis.plot(*corners.T, color="black", linewidth=0.8)
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.set_xticks([])
+    axis.set_yticks([])
+    axis.autoscale_view()

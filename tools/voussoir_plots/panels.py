@@ -1,0 +1,64 @@
+"""Fields over the deformed mesh at several volume losses: what localises, and whether it does so together."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import PolyCollection
+
+from . import q8
+from .result import Missing
+from .style import percent, save
+
+# Field, factor, label, colour map, symmetric about the value at V_l = 0.
+FIELDS = [
+    ("gauss/deviatoric_strain", 100, r"deviatoric strain  $\varepsilon_q$  [%]", "magma_r", False),
+    ("gauss/grain_rotation", 180 / np.pi, "mean grain rotation, counter-\nclockwise positive  [deg]", "coolwarm", True),
+    ("gauss/void_ratio", 1, "void ratio  $e$  [-]", "viridis", False),
+]
+
+
+def since_start(result, name, increment):
+    """A field at an increment; rotations are counted from V_l = 0."""
+    values = increment.field(name)
+    return values - result.loss_increments[0].field(name) if name == "gauss/grain_rotation" else values
+
+
+def limits(values, symmetric):
+    """Of the colours: all but the most extreme hundredth of a per cent, so that one RVE does not dim the rest."""
+    finite = values[np.isfinite(values)]
+    low, high = np.quantile(finite, [0.0, 0.999])
+    if symmetric:
+        high = np.quantile(np.abs(finite), 0.999) or 1.0
+        low = -high
+    return (low, high) if high > low else (low, low + 1e-12)
+
+
+def draw(result, path):
+    chosen = result.nearest(result.settings.field_losses)
+    if not chosen:
+        raise Missing("no increment is near the volume losses of the fields")
+    fields = [entry for entry in FIELDS if entry[0] in chosen[0].names]
+    if not fields:
+        raise Missing("there is no field of the Gauss points")
+    (diameter, surface_y) = result.need("diameter", "surface_y")
+    figure, axes = plt.subplots(len(fields), len(chosen), figsize=(4.0 * len(chosen) + 1.2, 4.6 * len(fields)), squeeze=False,
+                                sharex=True, sharey=True, layout="constrained")
+    for row, (name, factor, label, colour_map, symmetric) in zip(axes, fields):
+        values = [factor * since_start(result, name, i) for i in chosen]
+        range_of = limits(np.concatenate([v.ravel() for v in values]), symmetric)
+        for axis, increment, value in zip(row, chosen, values):
+            moved = result.coordinates + increment.field("node/displacement")
+            patches = q8.gauss_patches(moved, result.connectivity).reshape(-1, 4, 2)
+            drawn = PolyCollection(patches, array=value.ravel(), cmap=colour_map, edgecolors="face", linewidths=0.3)
+            drawn.set_clim(*range_of)
+            axis.add_collection(drawn)
+            axis.set_aspect("equal")
+            axis.grid(False)
+            axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])},  largest {np.nanmax(np.abs(value)):.3g}", fontsize=10)
+        figure.colorbar(drawn, ax=list(row), label=label, shrink=0.85, extend="max" if not symmetric else "both", pad=0.01)
+        row[0].set_ylabel("$y$  [m]")
+    axes[0, 0].set_xlim(0, min(result.coordinates[:, 0].max(), 4 * diameter))
+    axes[0, 0].set_ylim(result.crown_height - 1.6 * diameter, surface_y * 1.01)
+    for axis in axes[-1]:
+        axis.set_xlabel("$x$  [m]")
+    figure.suptitle("Localisation, on the deformed mesh", fontsize=12)
+    save(figure, path)

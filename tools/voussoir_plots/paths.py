@@ -1,0 +1,85 @@
+"""What the RVEs at Aa, Ab, Ac and B go through: stress ratio, volume, void ratio, and the contact network where it was written."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from . import points
+from .result import Missing
+from .style import save
+
+COLOURS = {"Aa": "C3", "Ab": "C1", "Ac": "C0", "B": "C2"}
+
+# Field, label, factor; those of the contact network are written only where output.microstructure asks for them.
+NETWORK = [
+    ("gauss/mechanical_coordination", r"mechanical coordination  $Z_m$  [-]"),
+    ("gauss/strong_coordination_1", r"strong network, $f_n \geq \langle f_n \rangle$:  $Z_m$  [-]"),
+    ("gauss/strong_coordination_2", r"strong network, $f_n \geq 2 \langle f_n \rangle$:  $Z_m$  [-]"),
+    ("gauss/strong_coordination_2_5", r"strong network, $f_n \geq 2.5 \langle f_n \rangle$:  $Z_m$  [-]"),
+    ("gauss/fabric_anisotropy", "fabric anisotropy  $a$  [-]"),
+    ("gauss/coordination", "coordination  $Z$  [-]"),
+]
+
+
+def stress_ratio(result, point):
+    """q/p over the volume loss [-]; NaN where the point is not compressed."""
+    p, q = (points.history(result, f"gauss/{name}_stress", point) for name in ("mean", "deviatoric"))
+    return np.divide(q, p, out=np.full_like(p, np.nan), where=p > 0)
+
+
+def draw(result, path):
+    loss = 100 * result.volume_loss
+    figure, axes = plt.subplots(2, 3, figsize=(15.5, 8.4))
+    for point in points.all_points(result):
+        style = {"color": COLOURS[point.name], "label": points.describe(result, point), "linewidth": 1.4}
+        ratio = stress_ratio(result, point)
+        p, q, volumetric, sheared, void = (points.history(result, f"gauss/{name}", point) for name in (
+            "mean_stress", "deviatoric_stress", "volumetric_strain", "deviatoric_strain", "void_ratio"))
+        axes[0, 0].plot(loss, ratio, **style)
+        axes[0, 1].plot(100 * sheared, ratio, **style)
+        axes[0, 2].plot(p / 1e3, q / 1e3, **style)
+        axes[0, 2].plot(p[0] / 1e3, q[0] / 1e3, "o", color=style["color"], markersize=5)
+        axes[1, 0].plot(loss, 100 * volumetric, **style)
+        axes[1, 1].plot(100 * sheared, 100 * volumetric, **style)
+        axes[1, 2].plot(loss, void, **style)
+    for axis in (axes[0, 0], axes[1, 0], axes[1, 2]):
+        axis.set_xlabel("volume loss  $V_l$  [%]")
+        axis.set_xlim(left=0)
+    for axis in (axes[0, 1], axes[1, 1]):
+        axis.set_xlabel(r"deviatoric strain  $\varepsilon_q$  [%]")
+        axis.set_xlim(left=0)
+    for axis in axes[0, :2]:
+        axis.set_ylabel("stress ratio  $q/p$  [-]")
+        axis.set_ylim(0, 1.05)
+    axes[0, 2].set_xlabel("mean stress  $p$  [kPa]")
+    axes[0, 2].set_ylabel("deviatoric stress  $q$  [kPa]")
+    axes[0, 2].set_title("stress path, from the symbol on", fontsize=11)
+    for axis in axes[1, :2]:
+        axis.set_ylabel(r"$\varepsilon_v$, contraction positive  [%]")
+        axis.axhline(0, color="0.4", linewidth=0.8)
+    axes[1, 2].set_ylabel("void ratio  $e$  [-]")
+    axes[0, 0].legend(title="point  ($x$, height above the crown)")
+    figure.suptitle("RVEs above the crown and in the shear band", fontsize=12)
+    figure.tight_layout()
+    save(figure, path)
+
+
+def draw_network(result, path):
+    first = result.loss_increments[-1]
+    present = [(name, label) for name, label in NETWORK if name in first.names]
+    if len(present) < 2:  # the plain coordination is always there
+        raise Missing("the contact network was not written (output.microstructure)")
+    rows = -(-len(present) // 3)
+    figure, axes = plt.subplots(rows, 3, figsize=(15.5, 4.2 * rows), squeeze=False)
+    for axis in axes.flat[len(present):]:
+        axis.set_axis_off()
+    for axis, (name, label) in zip(axes.flat, present):
+        for point in points.all_points(result):
+            axis.plot(100 * result.volume_loss, points.history(result, name, point), color=COLOURS[point.name], linewidth=1.3,
+                      label=points.describe(result, point))
+        axis.set_ylabel(label)
+        axis.set_xlabel("volume loss  $V_l$  [%]")
+        axis.set_xlim(left=0)
+    axes[0, 0].legend(title="point  ($x$, height above the crown)")
+    figure.suptitle("Contact network of the RVEs above the crown and in the shear band", fontsize=12)
+    figure.tight_layout()
+    save(figure, path)

@@ -1,0 +1,51 @@
+"""Principal stresses along a line above the crown, beside the direction of the RVEs' fabric."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from . import points, tensors
+from .style import colours, percent, save
+
+
+def line(result):
+    """Gauss points of the line, those of the elements that it crosses, out to 3 D."""
+    (diameter,) = result.need("diameter")
+    return points.on_level(result, result.crown_height + result.settings.line * diameter, 3 * diameter)
+
+
+def stress_angles(result, increment):
+    """x [m] and the angle of the compressive major axis from the vertical [rad] at the line's points."""
+    chosen = line(result)
+    stress = increment.field("gauss/stress").reshape(-1, 3)[chosen]
+    return points.original_points(result)[chosen, 0], tensors.major_from_vertical(stress)
+
+
+def fabric_angles(result, increment):
+    """The direction of most contact normals from the vertical [rad]; it is written from the horizontal."""
+    return tensors.axis_angle(increment.field("gauss/fabric_direction").ravel()[line(result)] - np.pi / 2)
+
+
+def draw(result, path):
+    (diameter,) = result.need("diameter")
+    has_fabric = "gauss/fabric_direction" in result.losses[0].names
+    figure, axes = plt.subplots(1, 2 if has_fabric else 1, figsize=(12.5 if has_fabric else 7, 4.8), squeeze=False, sharey=True)
+    for increment, colour in zip(result.losses, colours("viridis", len(result.losses))):
+        label = percent(increment["volume_loss"])
+        x, angle = stress_angles(result, increment)
+        axes[0, 0].plot(x / diameter, np.degrees(angle), "o-", color=colour, markersize=3.5, linewidth=1, label=label)
+        if has_fabric:
+            fabric = fabric_angles(result, increment)
+            axes[0, 1].plot(x / diameter, np.degrees(fabric), "s-", color=colour, markersize=3.5, linewidth=1, label=label)
+    axes[0, 0].set_ylabel("angle from the vertical  [deg]")
+    axes[0, 0].set_title(r"major principal stress")
+    if has_fabric:
+        axes[0, 1].set_title(r"fabric direction  $\theta_a$")
+    for axis in axes[0]:
+        axis.set_xlabel("distance from the tunnel axis  $x/D$  [-]")
+        axis.set_ylim(-95, 95)
+        axis.set_yticks(range(-90, 91, 30))
+        axis.set_xlim(left=0)
+        axis.legend(title="$V_l$")
+    figure.suptitle(f"Along the line {result.settings.line:g} $D$ above the crown; counter-clockwise positive", fontsize=12)
+    figure.tight_layout()
+    save(figure, path)
