@@ -8,10 +8,20 @@ import argparse
 import sys
 from pathlib import Path
 
-from voussoir_plots import settings
+from voussoir_plots import settings, trend_table
 from voussoir_plots.catalogue import FIGURES
 from voussoir_plots.result import Missing, Result
 from voussoir_plots.style import use_style
+
+TRENDS = {"trends.md": trend_table.write}
+
+
+def chosen(arguments):
+    """What to write, by the name of its file."""
+    if arguments.trends:
+        return TRENDS
+    everything = {**FIGURES, **TRENDS}
+    return {name: draw for name, draw in everything.items() if not arguments.only or Path(name).stem in arguments.only}
 
 
 def main():
@@ -19,10 +29,11 @@ def main():
     parser.add_argument("result", type=Path, help="folder of a run")
     parser.add_argument("-o", "--output", type=Path, help="folder for the figures; default: the run's own")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="only these, by their names without .png")
+    parser.add_argument("--trends", action="store_true", help="only trends.md: the study's trends, each seen or not")
     settings.add_options(parser)
     arguments = parser.parse_args()
     output = arguments.output or arguments.result
-    unknown = set(arguments.only or ()) - {Path(name).stem for name in FIGURES}
+    unknown = set(arguments.only or ()) - {Path(name).stem for name in (*FIGURES, *TRENDS)}
     if unknown:
         parser.error(f"there is no figure {', '.join(sorted(unknown))}")
     use_style()
@@ -32,9 +43,7 @@ def main():
         print(f"{arguments.result}: no readable result: {reason}", file=sys.stderr)
         return 2
     output.mkdir(parents=True, exist_ok=True)
-    for name, draw in FIGURES.items():
-        if arguments.only and Path(name).stem not in arguments.only:
-            continue
+    for name, draw in chosen(arguments).items():
         try:
             draw(result, output / name)
         except Missing as reason:

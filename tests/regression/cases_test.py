@@ -9,14 +9,17 @@ from program import PROGRAM, ROOT, check, check_expected, command, draw_and_read
 # Settings that shorten a case; columns of expected.csv that it cannot be held to then (None: nothing is known of the
 # case); figures.
 FIGURES = ["settlement_troughs.png", "displacement.png", "deviatoric_strain.png", "ground_reaction.png",
-           "geostatic_stress.png", "convergence.png"]
+           "geostatic_stress.png", "convergence.png", "trough_widths.png", "settlement_growth.png", "stress_profiles.png",
+           "stress_rotation.png", "trends.md"]
 ONE_PACKING = ["packing.candidates=1", "packing.folder=packings"]
 RUNS = {
     "tunnel_elastic": ([], (), FIGURES),
     "tunnel_quick": (["packing.folder=packings", "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m",
-                      "gravity.uniform_step=0.1", "volume_loss.total=1 %", "volume_loss.increments=4"],
+                      "gravity.uniform_step=0.1", "volume_loss.total=1 %", "volume_loss.increments=4", "output.rves=[0, 5]",
+                      'output.microstructure=["fabric", "coordination", "strong_networks"]'],
                      ("load_parameter", "area_loss", "crown_settlement", "surface_settlement"),
-                     [*FIGURES, "void_ratio.png", "grain_rotation.png"]),
+                     [*FIGURES, "void_ratio.png", "grain_rotation.png", "localisation.png", "rve_paths.png", "rve_network.png",
+                      "force_chains.png"]),
     "column": (["packing.grains=300", *ONE_PACKING, "column.elements=6"], (), []),
     "biaxial": (["packing.grains=300", "packing.seeds=[1]", "packing.folder=packings", 'biaxial.pressures=["100 kPa"]',
                  "biaxial.strain=6 %"], ("peak_angle", "peak_strain", "contraction"), []),

@@ -30,7 +30,7 @@ def draw(result, path):
     middle.bar(index, column["iterations"], width=0.5, color="C0", label="iterations")
     middle.set_ylabel("number  [-]")
     middle.legend()
-    bottom.plot(index, np.cumsum(column["wall_s"]) / 60, color="C0")
+    _draw_times(bottom, index, increments, column["wall_s"])
     bottom.set_ylabel("wall time so far  [min]")
     bottom.set_xlabel("increment")
     bottom.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -38,6 +38,22 @@ def draw(result, path):
     figure.suptitle(f"Convergence: {int(good.sum())} of {len(increments)} increments converged", fontsize=12)
     figure.tight_layout()
     save(figure, path)
+
+
+def _draw_times(axis, index, increments, wall):
+    """Wall time so far, by part where the run says so; the output of an increment stands with the next one."""
+    parts = [("time_grains", "grains and tangents", "C0"), ("time_solve", "solution", "C1"), ("time_assembly", "assembly", "C2"),
+             ("time_output", "output", "C3")]
+    times = {name: np.cumsum([float(i.attributes.get(name, 0.0)) for i in increments]) / 60 for name, _, _ in parts}
+    base = np.zeros(len(index))
+    for name, label, colour in parts:
+        if times[name][-1] > 0:
+            axis.fill_between(index, base, base + times[name], color=colour, alpha=0.75, linewidth=0,
+                              label=f"{label}: {times[name][-1]:.2g} min")
+            base = base + times[name]
+    total = np.cumsum(wall) / 60 + times["time_output"]
+    axis.plot(index, total, color="black", linewidth=1.2, label=f"all: {total[-1]:.3g} min")
+    axis.legend(loc="upper left")
 
 
 def _mark_stages(named, others, increments):

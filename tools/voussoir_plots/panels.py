@@ -33,14 +33,12 @@ def limits(values, symmetric):
 
 
 def draw(result, path):
-    chosen = result.nearest(result.settings.field_losses)
-    if not chosen:
-        raise Missing("no increment is near the volume losses of the fields")
+    chosen = result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]
     fields = [entry for entry in FIELDS if entry[0] in chosen[0].names]
     if not fields:
         raise Missing("there is no field of the Gauss points")
     (diameter, surface_y) = result.need("diameter", "surface_y")
-    figure, axes = plt.subplots(len(fields), len(chosen), figsize=(4.0 * len(chosen) + 1.2, 4.6 * len(fields)), squeeze=False,
+    figure, axes = plt.subplots(len(fields), len(chosen), figsize=(4.0 * len(chosen) + 1.2, 4.0 * len(fields)), squeeze=False,
                                 sharex=True, sharey=True, layout="constrained")
     for row, (name, factor, label, colour_map, symmetric) in zip(axes, fields):
         values = [factor * since_start(result, name, i) for i in chosen]

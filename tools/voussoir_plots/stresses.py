@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from . import q8
+from . import q8, tensors
 from .result import Missing
 from .style import save
 
@@ -23,15 +23,18 @@ def far_from_opening(result, points):
 def draw(result, path):
     unit_weight, surcharge, surface_y = result.need("unit_weight", "surcharge", "surface_y")
     increment = after_gravity(result)
-    stress = -increment.field("gauss/stress") / 1e3  # [kPa], compression positive
+    tensor = increment.field("gauss/stress")
+    stress = -tensor / 1e3  # [kPa], compression positive
     points = q8.gauss_coordinates(result.coordinates, result.connectivity)
     depth = surface_y - points[..., 1]
     far = far_from_opening(result, points)
     weight = (unit_weight * depth + surcharge) / 1e3
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 5.2))
-    _draw_vertical(left, depth, stress[..., 1], far, weight)
-    _draw_ratio(right, stress, far)
-    _draw_fit(right, result)
+    figure, axes = plt.subplots(2, 2, figsize=(12.5, 10))
+    _draw_vertical(axes[0, 0], depth, stress[..., 1], far, weight)
+    _draw_ratio(axes[0, 1], stress, far)
+    _draw_fit(axes[0, 1], result)
+    _draw_rows(axes[1, 0], result, unit_weight, surcharge)
+    _draw_deflection(axes[1, 1], stress[..., 1], tensors.major_from_vertical(tensor), far)
     worst = np.max(np.abs(stress[..., 1] - weight)[far] / (0.05 * weight[far] + 1))
     figure.suptitle(f"After gravity: $\\gamma$ = {unit_weight / 1e3:g} kN/m³, surcharge {surcharge / 1e3:g} kPa; "
                     f"largest departure {worst:.2f} of the allowed 5 % + 1 kPa", fontsize=12)
@@ -60,17 +63,22 @@ def _draw_ratio(axis, stress, far):
     if not good.any():
         raise Missing("no point is compressed vertically")
     axis.semilogx(vertical[good], horizontal[good] / vertical[good], ".", color="C0", markersize=4, label="Gauss points")
-    ticks = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000])
-    shown = ticks[(ticks >= 0.45 * vertical[good].min()) & (ticks <= 2.2 * vertical[good].max())]
-    if len(shown) > 1:
-        axis.set_xlim(min(shown[0], 0.9 * vertical[good].min()), max(shown[-1], 1.1 * vertical[good].max()))
-    axis.set_xticks(shown, [str(t) for t in shown])
-    axis.minorticks_off()
+    _plain_ticks(axis, vertical[good])
     low, high = axis.get_ylim()
     axis.set_ylim(min(0.2, low), max(1.1, high))
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
     axis.set_ylabel(r"$K_0 = \sigma_{xx} / \sigma_{yy}$  [-]")
     axis.set_title("away from the opening")
+
+
+def _plain_ticks(axis, values):
+    """1, 2, 5, ... on a logarithmic axis of stresses [kPa]."""
+    ticks = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000])
+    shown = ticks[(ticks >= 0.45 * values.min()) & (ticks <= 2.2 * values.max())]
+    if len(shown) > 1:
+        axis.set_xlim(min(shown[0], 0.9 * values.min()), max(shown[-1], 1.1 * values.max()))
+    axis.set_xticks(shown, [str(t) for t in shown])
+    axis.minorticks_off()
 
 
 def _draw_fit(axis, result):
@@ -80,4 +88,36 @@ def _draw_fit(axis, result):
     k0 = result.tables["k0"]
     # Straight between knots; the program's own curve is a monotone cubic through them.
     axis.plot(k0["vertical_stress"] / 1e3, k0["ratio"], "-", color="black", linewidth=1, label="fitted to the column")
+    axis.legend()
+
+
+def _draw_rows(axis, result, unit_weight, surcharge):
+    """Mean errors of level rows with their standard deviation, as the program found them."""
+    axis.set_xlabel(r"$\sigma_{yy} - (\gamma z +$ surcharge$)$  [kPa]")
+    axis.set_ylabel("depth  $z$  [m]")
+    axis.set_title("level rows: mean and standard deviation")
+    if "geostatic_rows" not in result.tables:
+        axis.text(0.5, 0.5, "run.h5 has no table geostatic_rows", transform=axis.transAxes, ha="center")
+        return
+    rows = result.tables["geostatic_rows"]
+    allowed = (0.02 * (unit_weight * rows["depth"] + surcharge) + 0.5e3) / 1e3
+    axis.fill_betweenx(rows["depth"], -allowed, allowed, color="0.85", label="± (2 % + 0.5 kPa), of the mean")
+    axis.errorbar(rows["error"] / 1e3, rows["depth"], xerr=rows["scatter"] / 1e3, fmt="o", color="C0", markersize=4,
+                  linewidth=1, capsize=2)
+    axis.axvline(0, color="black", linewidth=1)
+    axis.invert_yaxis()
+    axis.legend(loc="upper right")
+
+
+def _draw_deflection(axis, vertical, angle, far):
+    good = far & (vertical > 0)
+    axis.semilogx(vertical[good], np.degrees(angle[good]), ".", color="C0", markersize=4)
+    axis.plot([100, 100], [-1, 1], color="0.4", linewidth=1)
+    for limit in (-1, 1):
+        axis.plot([100, max(200, vertical[good].max())], [limit, limit], color="0.4", linewidth=1,
+                  label="1° from 100 kPa on" if limit > 0 else None)
+    _plain_ticks(axis, vertical[good])
+    axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
+    axis.set_ylabel("principal axis from the vertical  [deg]")
+    axis.set_title("away from the opening")
     axis.legend()

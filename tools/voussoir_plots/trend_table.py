@@ -1,0 +1,135 @@
+"""The trends of one run, as a table: writes trends.md."""
+
+import numpy as np
+
+from . import paths, points, profiles, rotation, settlements, trends, troughs, widths
+from .reaction import curve
+from .result import Missing
+
+BAND = 0.05  # eps_q from which soil counts as sheared
+
+
+def write(result, path):
+    rows = table(result)
+    axis_depth, diameter = result.need("axis_depth", "diameter")
+    lines = [f"# Trends: {result.folder.resolve().name}", "",
+             f"C/D = {result.cover / diameter:.3g}, D = {diameter:g} m, {result.soil}, {len(result.connectivity)} elements; V_l to "
+             f"{trends.percent(result.volume_loss[-1])} in {len(result.loss_increments) - 1} increments. The trends are those of the study "
+             "(tools/voussoir_plots/README.md says how each is judged).", "", "| trend | verdict | numbers |", "|---|---|---|"]
+    lines += [f"| {row.statement} | **{row.verdict}** | {row.numbers} |" for row in rows]
+    lines += ["", "Points: " + "; ".join(describe(result, p) for p in points.all_points(result)) + "."]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def describe(result, point):
+    (diameter,) = result.need("diameter")
+    height = (point.position[1] - result.crown_height) / diameter
+    return f"{point.name} = Gauss point {point.index} at x = {point.position[0]:.2f} m, {height:.2f} D above the crown"
+
+
+def table(result):
+    """All trends of a tunnel's run; one that lacks something says so."""
+    rows = []
+    for make in (_settlements, _bands, _troughs, _stresses, _reaction, _paths, _rotation, _localisation):
+        try:
+            rows += make(result)
+        except Missing as reason:
+            rows.append(trends.Trend(make.__doc__, trends.NO_DATA, str(reason)))
+    return rows
+
+
+def _cover_ratio(result):
+    (diameter,) = result.need("diameter")
+    return result.cover / diameter
+
+
+def _settlements(result):
+    """Settlement against V_l"""
+    (diameter,) = result.need("diameter")
+    found = {z: settlements.on_axis(result, z) for z in result.settings.depths}
+    rows = [trends.settlement_slows(result.volume_loss, found, diameter)]
+    if 0.0 in found:
+        rows.append(trends.surface_accelerates(result.volume_loss, found[0.0], diameter).where(
+            _cover_ratio(result) < 2.5, "reported for C/D = 2"))
+    return rows
+
+
+def _bands(result):
+    """Shear bands"""
+    (diameter,) = result.need("diameter")
+    where = points.original_points(result)
+    height = (where[:, 1] - result.crown_height) / result.cover
+    reach = {i["volume_loss"]: trends.band_height(height, where[:, 0], i.field("gauss/deviatoric_strain").ravel(),
+                                                  result.settings.aside * diameter, BAND)
+             for i in result.nearest(result.settings.field_losses)}
+    if not reach:
+        raise Missing("no increment is near the volume losses of the fields")
+    return [trends.bands(reach, _cover_ratio(result), BAND).where(result.soil == "dense sand", "reported for dense sand")]
+
+
+def _troughs(result):
+    """Settlement troughs"""
+    found = troughs.all_troughs(result)
+    by_depth = {z: [t for (ratio, _), t in found.items() if ratio == z] for z in result.settings.depths}
+    loss = np.array([t.loss for t in next(iter(by_depth.values()))])
+    low, high = result.settings.range_of_k
+    return [
+        trends.gauss_fits({z: np.array([t.fit.misfit for t in ts]) for z, ts in by_depth.items()},
+                          {z: np.array([t.fit.at_bound for t in ts]) for z, ts in by_depth.items()}),
+        trends.troughs_narrow(loss, {z: np.array([t.fit.inflection for t in ts]) for z, ts in by_depth.items()}),
+        trends.surface_width_in_range(*widths.surface_width(result)[:2], low, high),
+    ]
+
+
+def _stresses(result):
+    """Stresses above the crown and beside the tunnel"""
+    (diameter,) = result.need("diameter")
+
+    def means(profile, near):
+        rows = []
+        for increment in result.loss_increments:
+            place, xx, yy = profile(result, increment)
+            inside = near(place)
+            rows.append((xx[inside].mean(), yy[inside].mean()))
+        return np.array(rows).T
+    above = means(profiles.above, lambda height: height <= diameter)
+    beside = means(profiles.beside, lambda x: x <= 1.5 * diameter)
+    return [trends.stresses_above(result.volume_loss, *(s / s[0] for s in above)),
+            trends.stresses_beside(result.volume_loss, *(s / s[0] for s in beside))]
+
+
+def _reaction(result):
+    """Ground reaction curve"""
+    loss, ratio, _ = curve(result)
+    return [trends.reaction(loss, ratio, result.soil)]
+
+
+def _paths(result):
+    """RVEs above the crown"""
+    loss, followed = result.volume_loss, points.above_crown(result)
+    ratios = {p.name: paths.stress_ratio(result, p) for p in followed}
+    volumes = {p.name: points.history(result, "gauss/volumetric_strain", p) for p in followed}
+    dense_sand = result.soil == "dense sand"
+    rows = [trends.falls_linearly(loss, ratios), trends.softening_order(loss, ratios).where(dense_sand, "reported for dense sand")]
+    if "Ac" in volumes:
+        rows.append(trends.contracts_until(loss, volumes["Ac"]).where(dense_sand, "reported for dense sand"))
+    if result.soil == "medium dense sand":
+        rows.append(trends.ends_contracted({name: v for name, v in volumes.items() if name != "Aa"}))
+    if not dense_sand:
+        rows.append(trends.no_softening(loss, ratios, result.soil))
+    return rows
+
+
+def _rotation(result):
+    """Principal stresses above the crown turn with the RVEs' fabric"""
+    stress = {i["volume_loss"]: rotation.stress_angles(result, i)[1] for i in result.losses}
+    fabric = {i["volume_loss"]: rotation.fabric_angles(result, i) for i in result.losses}
+    return [trends.follows_fabric(stress, fabric)]
+
+
+def _localisation(result):
+    """Localisation of strain, rotation and void ratio"""
+    first, last = result.loss_increments[0], result.loss_increments[-1]
+    rotation_ = (last.field("gauss/grain_rotation") - first.field("gauss/grain_rotation")).ravel()
+    dilation = (last.field("gauss/void_ratio") - first.field("gauss/void_ratio")).ravel()
+    return [trends.localise_together(last.field("gauss/deviatoric_strain").ravel(), rotation_, dilation)]

@@ -1,0 +1,235 @@
+"""The trends that the study reports (method.md, section 5), each computed from a run and stated seen or not.
+
+A trend is judged by a pure function of arrays (tests/regression/trends_test.py has their known answers); `table` takes the arrays
+from a run. "Not applicable" says that the study reports the trend of another soil or cover; its numbers are given all the same.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+SEEN, NOT_SEEN, NOT_APPLICABLE = "seen", "not seen", "not applicable"
+NOT_REACHED, NO_DATA = "not reached", "no data"  # the run ends before, or lacks a field
+
+
+@dataclass
+class Trend:
+    statement: str
+    verdict: str
+    numbers: str
+
+    def where(self, applies, reason):
+        """The same, but not applicable where the study does not report it."""
+        return self if applies else Trend(self.statement, NOT_APPLICABLE, f"{reason}; here: {self.numbers}")
+
+
+def verdict(holds):
+    return SEEN if holds else NOT_SEEN
+
+
+def not_reached(statement, wanted, last):
+    return Trend(statement, NOT_REACHED, f"needs V_l = {percent(wanted)}, the run ends at {percent(last)}")
+
+
+def percent(fraction):
+    return f"{100 * fraction:.3g} %"
+
+
+def numbers(values, form="{:.3g}"):
+    return ", ".join(form.format(v) for v in values)
+
+
+def slope(x, y, low, high):
+    """Of the straight line through the points with low <= x <= high; NaN where there are fewer than two."""
+    inside = (x >= low - 1e-9) & (x <= high + 1e-9)
+    return np.polyfit(x[inside], y[inside], 1)[0] if inside.sum() > 1 else np.nan
+
+
+def at(x, y, where):
+    return float(np.interp(where, x, y))
+
+
+def settlement_slows(loss, settlements, diameter):
+    """settlements: {z/C: S [m]}; the crown's own (z/C = 1) is prescribed and does not count."""
+    statement = "Settlement above the crown grows more slowly with V_l below 10 %"
+    if loss[-1] < 0.0999:
+        return not_reached(statement, 0.10, loss[-1])
+    pairs = {z: (slope(loss, s, 0, 0.02) / diameter, slope(loss, s, 0.08, 0.10) / diameter) for z, s in settlements.items()}
+    text = "; ".join(f"z/C = {z:g}: {a:.2f} to {b:.2f}" for z, (a, b) in pairs.items())
+    holds = all(b < 0.9 * a for z, (a, b) in pairs.items() if z < 1)
+    return Trend(statement, verdict(holds), f"slope dS/dV_l / D at V_l = 0 to 2 % and 8 to 10 %: {text}")
+
+
+def surface_accelerates(loss, settlement, diameter):
+    statement = "Surface settlement accelerates again near V_l = 15 %"
+    if loss[-1] < 0.1749:
+        return not_reached(statement, 0.175, loss[-1])
+    rates = {v: slope(loss, settlement, v - 0.0125, v + 0.0125) / diameter for v in (0.10, 0.125, 0.15, 0.175)}
+    before, after = rates[0.10], max(rates[0.15], rates[0.175])
+    text = ", ".join(f"{rate:.3f} at {percent(v)}" for v, rate in rates.items())
+    return Trend(statement, verdict(after > 1.25 * before), f"slope dS/dV_l / D: {text}")
+
+
+def band_height(height, x, strain, aside, threshold):
+    """How far the band reaches (heights of points above the crown over the cover): off the axis (x > aside) and at it."""
+    sheared = (strain >= threshold) & (height > 0)
+    off, on = height[sheared & (x > aside)], height[sheared & (x <= aside)]
+    return (float(off.max()) if off.size else 0.0), (float(on.max()) if on.size else 0.0)
+
+
+def bands(reach, cover_ratio, threshold):
+    """reach: {V_l: (band beside the axis, sheared soil at the axis), both as heights above the crown over C}."""
+    text = "; ".join(f"{percent(v)}: {a:.2f} C beside, {b:.2f} C at the axis" for v, (a, b) in reach.items())
+    text = f"soil with eps_q of {percent(threshold)} and more reaches, above the crown, at V_l = {text}"
+    beside, middle = list(reach.values())[-1]
+    if cover_ratio < 2.5:
+        statement, holds = "Shear bands reach the surface (C/D = 2)", beside > 0.9
+    elif cover_ratio < 3.5:
+        statement, holds = "Shear bands close into an arch below the surface (C/D = 3)", 0.1 < max(beside, middle) < 0.9 and middle > 0.1
+    else:
+        statement, holds = "Shear bands stay low, the arch is stable (C/D = 4)", max(beside, middle) < 0.7
+    if not holds and max(reach) < 0.199:
+        return Trend(statement, NOT_REACHED, f"the run ends before V_l = 20 %; {text}")
+    return Trend(statement, verdict(holds), text)
+
+
+def gauss_fits(misfits, at_bounds):
+    """misfits: {z/C: rms misfit over S_max, over the losses}."""
+    worst = max(float(np.max(m)) for m in misfits.values())
+    text = "; ".join(f"z/C = {z:g}: {percent(float(np.max(m)))}" for z, m in misfits.items())
+    share = np.mean([float(np.mean(b)) for b in at_bounds.values()])
+    return Trend("The modified Gauss curve fits the troughs at all depths", verdict(worst <= 0.05),
+                 f"largest rms misfit over S_max: {text}; alpha at its lower bound in {percent(share)} of the fits (the trough is more "
+                 "pointed, with a wider foot, than the family)")
+
+
+def troughs_narrow(loss, inflection):
+    """inflection: {z/C: i [m] over the losses}."""
+    first = int(np.argmin(np.abs(loss - 0.01)))
+    text = "; ".join(f"z/C = {z:g}: {i[first]:.2f} to {i[-1]:.2f} m" for z, i in inflection.items())
+    return Trend("Troughs narrow with V_l", verdict(all(i[-1] < 0.95 * i[first] for i in inflection.values())),
+                 f"inflection from V_l = {percent(loss[first])} to {percent(loss[-1])}: {text}")
+
+
+def surface_width_in_range(loss, width, low, high):
+    inside = (width >= low) & (width <= high)
+    return Trend(f"K_s lies mostly in Mair and Taylor's range ({low:g} to {high:g})", verdict(inside.mean() > 0.5),
+                 f"in it at {percent(inside.mean())} of the increments; K_s = {at(loss, width, loss[0]):.2f} at V_l = {percent(loss[0])}, "
+                 f"{at(loss, width, 0.05):.2f} at 5 %, {width[-1]:.2f} at {percent(loss[-1])}")
+
+
+def stresses_above(loss, horizontal, vertical, until=0.05):
+    """Mean stresses above the crown over their values at V_l = 0."""
+    wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if v <= loss[-1] + 1e-9]
+    last = min(until, loss[-1])
+    holds = at(loss, horizontal, last) > 1.05 and at(loss, vertical, last) < 0.95
+    text = "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
+    return Trend("Above the crown sigma_xx rises and sigma_yy falls", verdict(holds),
+                 f"mean over the first D above the crown, over its value at V_l = 0, xx and yy at {text}")
+
+
+def stresses_beside(loss, horizontal, vertical, until=0.05):
+    wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if v <= loss[-1] + 1e-9]
+    last = min(until, loss[-1])
+    holds = at(loss, horizontal, last) < 0.95 and at(loss, vertical, last) > 1.05
+    text = "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
+    return Trend("At the sides the opposite: sigma_xx falls and sigma_yy rises", verdict(holds),
+                 f"mean from the opening to D beside it, over its value at V_l = 0, xx and yy at {text}")
+
+
+def reaction(loss, ratio, soil):
+    """The ground reaction curve: a minimum and recovery in dense soils, a monotone fall in medium dense sand."""
+    least = int(np.argmin(ratio))
+    recovery = ratio[-1] - ratio[least]
+    text = (f"minimum {ratio[least]:.3f} at V_l = {percent(loss[least])}, {ratio[-1]:.3f} at the end ({percent(loss[-1])}): "
+            f"recovery {recovery:.3f} of the stress before the loss")
+    if soil == "medium dense sand":
+        return Trend("The ground reaction curve falls monotonically to its end value (medium dense sand)",
+                     verdict(recovery < 0.02), text)
+    return Trend("The ground reaction curve drops to a minimum, then recovers (dense soils)", verdict(recovery >= 0.02), text)
+
+
+def falls_linearly(loss, ratios, until=0.02):
+    """ratios: {point: q/p}; a straight line from V_l = 0 on, until 2 %, explains 95 % and descends."""
+    inside = loss <= until + 1e-9
+    found = {}
+    for name, ratio in ratios.items():
+        x, y = loss[inside], ratio[inside]
+        fit = np.polyval(np.polyfit(x, y, 1), x)
+        spread = np.sum((y - y.mean())**2)
+        found[name] = (1 - np.sum((y - fit)**2) / spread if spread > 0 else 0.0, np.polyfit(x, y, 1)[0],
+                       loss[np.argmin(ratio)], ratio.min())
+    text = "; ".join(f"{name}: slope {b:.1f}, R2 {r:.3f}, least {low:.2f} at {percent(v)}" for name, (r, b, v, low) in found.items())
+    holds = all(b < 0 and r > 0.95 for r, b, _, _ in found.values())
+    return Trend("q/p falls linearly for V_l < 2 % (unloading)", verdict(holds), text)
+
+
+def peak_after_unloading(loss, ratio):
+    """V_l and value of the first peak of q/p after its minimum: the first maximum from which it falls by 5 % of itself; the largest
+    value where it never does. With it, whether it did."""
+    start = int(np.argmin(ratio))
+    best = start
+    for k in range(start, len(ratio)):
+        if ratio[k] > ratio[best]:
+            best = k
+        elif ratio[k] < 0.95 * ratio[best]:
+            return loss[best], ratio[best], True
+    return loss[best], ratio[best], False
+
+
+def softening_order(loss, ratios):
+    peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
+    text = "; ".join(f"{name}: {value:.2f} at V_l = {percent(v)}, {'falls after it' if fell else 'no softening until the end'}"
+                     for name, (v, value, fell) in peaks.items())
+    order = [peaks[name][0] for name in ("Aa", "Ab", "Ac") if name in peaks]
+    holds = all(a <= b for a, b in zip(order, order[1:])) and peaks["Aa"][2]
+    return Trend("Aa softens first, then Ab peaks, Ac last", verdict(holds), f"peak of q/p after unloading: {text}")
+
+
+def no_softening(loss, ratios, soil):
+    peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
+    text = "; ".join(f"{name}: end over peak {ratio[-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items())
+    return Trend(f"No softening at Aa, Ab, Ac ({soil})", verdict(not any(fell for _, _, fell in peaks.values())), text)
+
+
+def contracts_until(loss, volumetric, wanted=0.15):
+    statement = f"Ac contracts until V_l = {percent(wanted)}"
+    most = int(np.argmax(volumetric))
+    text = (f"largest contraction {percent(volumetric[most])} at V_l = {percent(loss[most])}, {percent(volumetric[-1])} at the end "
+            f"({percent(loss[-1])})")
+    if loss[-1] < wanted - 1e-9 and most == len(loss) - 1:
+        return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; {text}")
+    return Trend(statement, verdict(loss[most] >= wanted - 0.03), text)
+
+
+def ends_contracted(volumetrics):
+    text = "; ".join(f"{name}: {percent(v[-1])}" for name, v in volumetrics.items())
+    return Trend("Ab and Ac contract (medium dense sand)", verdict(all(v[-1] > 0 for v in volumetrics.values())),
+                 f"volumetric strain at the end, contraction positive: {text}")
+
+
+def follows_fabric(stress, fabric):
+    """{V_l: angles [rad]} of both along the line; axes have no arrow, so differences are taken modulo 180 deg."""
+    away = {v: np.degrees(np.abs((stress[v] - fabric[v] + np.pi / 2) % np.pi - np.pi / 2)) for v in stress}
+    together = {v: float(np.abs(np.mean(np.exp(2j * (stress[v] - fabric[v]))))) for v in stress}
+    text = "; ".join(f"{percent(v)}: {d.mean():.0f} deg, {together[v]:.2f}" for v, d in away.items())
+    holds = all(d.mean() < 20 for d in away.values())
+    return Trend("Principal stresses above the crown turn with the RVEs' fabric", verdict(holds),
+                 f"mean angle between major stress and theta_a along the line, and agreement from 0 to 1, at V_l = {text}")
+
+
+def ranks(values):
+    return np.argsort(np.argsort(values)).astype(float)
+
+
+def localise_together(strain, rotation, dilation, share=0.05):
+    """Rank correlation of eps_q with |grain rotation| and with the change of void ratio, and how many of the most sheared points
+    are also among the most turned and dilated."""
+    count = max(1, int(share * len(strain)))
+    most = {name: set(np.argsort(-values)[:count]) for name, values in
+            (("strain", strain), ("rotation", np.abs(rotation)), ("dilation", dilation))}
+    overlap = [len(most["strain"] & most[name]) / count for name in ("rotation", "dilation")]
+    correlation = [np.corrcoef(ranks(strain), ranks(values))[0, 1] for values in (np.abs(rotation), dilation)]
+    return Trend("Deviatoric strain, grain rotation and void ratio localise together", verdict(min(overlap) > 0.5),
+                 f"of the {percent(share)} most sheared points {percent(overlap[0])} are among the most turned, {percent(overlap[1])} among "
+                 f"the most dilated (by chance {percent(share)}); rank correlations {numbers(correlation, '{:.2f}')}")
