@@ -50,8 +50,8 @@ def draw_and_read_back(folder, figures):
     """The figures named are drawn, and VTK reads every field and time of the XDMF file (skipped where there is no VTK)."""
     drawn = run([sys.executable, str(ROOT / "tools/figures.py"), str(folder)])
     for name in figures:
-        check((Path(folder) / name).stat().st_size > (10000 if name.endswith(".png") else 500) if (Path(folder) / name).exists() else False,
-              f"{folder}: {name} was not drawn: {drawn.stdout}")
+        file, least = Path(folder) / name, 10000 if name.endswith(".png") else 500
+        check(file.exists() and file.stat().st_size > least, f"{folder}: {name} was not drawn: {drawn.stdout}")
     read = subprocess.run([sys.executable, str(ROOT / "tools/xdmf_check.py"), str(folder)], capture_output=True, text=True,
                           timeout=120)
     check(read.returncode in (0, 77), f"{folder}: {read.stderr}")
