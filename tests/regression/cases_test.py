@@ -30,7 +30,7 @@ RUNS = {
 }
 # The study's tunnels: few grains and elements and a first step of the volume loss, those of other depths in elastic ground;
 # their meshes are counted in full size.
-STUDY = [*ONE_PACKING, "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=17 m", "column.elements=5",
+STUDY = [*ONE_PACKING, "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=17 m", "ground.width=8 m", "column.elements=5",
          "gravity.uniform_step=0.2", "volume_loss.total=0.25 %", "volume_loss.increments=1", "output.rves=[0]"]
 STUDY_ELEMENTS = {"tunnel_cps_d_cd2": 821, "tunnel_cps_d_cd3": 836, "tunnel_cps_d_cd4": 892, "tunnel_cps_md_cd3": 836,
                   "tunnel_cpg_d_cd3": 836}

@@ -21,30 +21,34 @@ def normal_forces(snapshot):
     return -np.einsum("ck,ck->c", snapshot["force"], unit)
 
 
-def nearest_snapshot(result, increment, point):
-    """Name and distance [m] of the snapshot nearest to a point."""
+def rows(result, increment):
+    """(label, snapshot) of the RVEs that were written: those within D/4 of a point that is followed, by its name, then the others."""
     numbers = {name: int(re.search(r"(\d+)$", name)[1]) for name in increment.snapshots if re.search(r"\d+$", name)}
     if not numbers:
         raise Missing("no RVE was written grain by grain (output.rves)")
+    (diameter,) = result.need("diameter")
     where = points.original_points(result)
-    away = {name: np.linalg.norm(where[number] - point.position) for name, number in numbers.items()}
-    name = min(away, key=away.get)
-    return name, away[name]
+    found, rest = [], dict(numbers)
+    for point in points.all_points(result):
+        away = {name: np.linalg.norm(where[number] - point.position) for name, number in numbers.items()}
+        name = min(away, key=away.get)
+        if away[name] < 0.25 * diameter:
+            found.append((point.name + (f"\n(RVE {away[name]:.2f} m away)" if away[name] > 1e-9 else ""), name))
+            rest.pop(name, None)
+    return found + [(f"x = {where[number][0]:.1f} m, {(where[number][1] - result.crown_height) / diameter:+.2f} D", name)
+                    for name, number in rest.items()]
 
 
 def draw(result, path):
-    chosen = [result.loss_increments[0], *result.nearest(result.settings.field_losses)]
-    if not chosen[-1].snapshots:
-        raise Missing("no RVE was written grain by grain (output.rves)")
-    followed = points.all_points(result)
-    figure, axes = plt.subplots(len(followed), len(chosen), figsize=(3.6 * len(chosen), 3.9 * len(followed)), squeeze=False)
-    for row, point in zip(axes, followed):
-        name, away = nearest_snapshot(result, chosen[-1], point)
+    chosen = [result.loss_increments[0], *(result.nearest(result.settings.field_losses) or [result.loss_increments[-1]])]
+    found = rows(result, chosen[-1])
+    figure, axes = plt.subplots(len(found), len(chosen), figsize=(3.6 * len(chosen), 3.9 * len(found)), squeeze=False)
+    for row, (label, name) in zip(axes, found):
         for axis, increment in zip(row, chosen):
             _draw_rve(axis, increment.snapshot(name))
             axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])}", fontsize=10)
-        row[0].set_ylabel(f"{point.name}" + (f"\n(RVE {away:.2f} m away)" if away > 1e-9 else ""), fontsize=11)
-    figure.suptitle("Force chains: width of a bar by normal force; red from the RVE's mean on, dark red from twice the mean on",
+        row[0].set_ylabel(label, fontsize=11)
+    figure.suptitle("Force chains: width of a bar by normal force;\nred from the RVE's mean on, dark red from twice the mean on",
                     fontsize=12)
     figure.tight_layout()
     save(figure, path)

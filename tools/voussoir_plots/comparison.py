@@ -36,6 +36,7 @@ def draw(results, path):
             axis.set_ylabel("stress ratio  $q/p$  [-]")
             axis.set_ylim(0, 1.05)
     axes[0, 0].set_ylabel(r"$\sigma_v / \sigma_{v,0}$ above the crown  [-]")
+    axes[0, 0].set_ylim(bottom=0)
     axes[0, 0].set_title("ground reaction curve")
     axes[0, 1].set_ylabel("settlement at $x$ = 0  [mm]")
     axes[0, 1].set_title("settlement above the crown")

@@ -57,7 +57,8 @@ def draw(result, path):
         axis.set_ylabel(r"$\varepsilon_v$, contraction positive  [%]")
         axis.axhline(0, color="0.4", linewidth=0.8)
     axes[1, 2].set_ylabel("void ratio  $e$  [-]")
-    axes[0, 0].legend(title="point  ($x$, height above the crown)")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), title="point  ($x$, height above the crown)", loc="upper center",
+                  bbox_to_anchor=(0.5, 0.0), ncol=4)
     figure.suptitle("RVEs above the crown and in the shear band", fontsize=12)
     figure.tight_layout()
     save(figure, path)
@@ -79,7 +80,8 @@ def draw_network(result, path):
         axis.set_ylabel(label)
         axis.set_xlabel("volume loss  $V_l$  [%]")
         axis.set_xlim(left=0)
-    axes[0, 0].legend(title="point  ($x$, height above the crown)")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), title="point  ($x$, height above the crown)", loc="upper center",
+                  bbox_to_anchor=(0.5, 0.0), ncol=4)
     figure.suptitle("Contact network of the RVEs above the crown and in the shear band", fontsize=12)
     figure.tight_layout()
     save(figure, path)

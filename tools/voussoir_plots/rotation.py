@@ -32,10 +32,9 @@ def draw(result, path):
     for increment, colour in zip(result.losses, colours("viridis", len(result.losses))):
         label = percent(increment["volume_loss"])
         x, angle = stress_angles(result, increment)
-        axes[0, 0].plot(x / diameter, np.degrees(angle), "o-", color=colour, markersize=3.5, linewidth=1, label=label)
+        _add(axes[0, 0], x / diameter, angle, "o", colour, label)
         if has_fabric:
-            fabric = fabric_angles(result, increment)
-            axes[0, 1].plot(x / diameter, np.degrees(fabric), "s-", color=colour, markersize=3.5, linewidth=1, label=label)
+            _add(axes[0, 1], x / diameter, fabric_angles(result, increment), "s", colour, label)
     axes[0, 0].set_ylabel("angle from the vertical  [deg]")
     axes[0, 0].set_title(r"major principal stress")
     if has_fabric:
@@ -49,3 +48,11 @@ def draw(result, path):
     figure.suptitle(f"Along the line {result.settings.line:g} $D$ above the crown; counter-clockwise positive", fontsize=12)
     figure.tight_layout()
     save(figure, path)
+
+
+def _add(axis, x, angle, marker, colour, label):
+    """Symbols, joined but where the axis passes through +-90 deg, which is one direction."""
+    degrees = np.degrees(angle)
+    axis.plot(x, degrees, marker, color=colour, markersize=3.5, label=label)
+    cuts = np.flatnonzero(np.abs(np.diff(degrees)) > 90) + 1
+    axis.plot(np.insert(x, cuts, np.nan), np.insert(degrees, cuts, np.nan), color=colour, linewidth=1)

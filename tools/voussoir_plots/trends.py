@@ -183,7 +183,10 @@ def softening_order(loss, ratios):
                      for name, (v, value, fell) in peaks.items())
     order = [peaks[name][0] for name in ("Aa", "Ab", "Ac") if name in peaks]
     holds = all(a <= b for a, b in zip(order, order[1:])) and peaks["Aa"][2]
-    return Trend("Aa softens first, then Ab peaks, Ac last", verdict(holds), f"peak of q/p after unloading: {text}")
+    statement, text = "Aa softens first, then Ab peaks, Ac last", f"peak of q/p after unloading: {text}"
+    if holds and loss[-1] < 0.199 and not all(fell for _, _, fell in peaks.values()):
+        return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
+    return Trend(statement, verdict(holds), text)
 
 
 def no_softening(loss, ratios, soil):
