@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "fem/boundary.hpp"
+#include "host/engine_presets.hpp"
 #include "host/material_factory.hpp"
 #include "io/result_file.hpp"
 
@@ -154,6 +155,7 @@ RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
     log.line(fmt::format("{}: finished already, nothing to do", options.folder.string()));
     return RunStatus::finished;
   }
+  if (uses_engine(input)) log.line(engine_note(input.engine));
   Case at_pressure = input;
   at_pressure.packing.pressure = test.pressure;
   const auto material = make_material(at_pressure, static_cast<std::size_t>(mesh.n_points()),

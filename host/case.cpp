@@ -39,6 +39,9 @@ void read_grain_tables(const io::Table& root, Case& input) {
   input.packing = read_packing(root.table("packing"));
   input.engine = read_engine(root.table("engine"));
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
+  if (input.kind != CaseKind::probe && input.packing.file.extension() == ".h5") {
+    throw root.table("packing").error("file", "is a stored state, which only kind = \"probe\" starts from: all others need isotropic pressure");
+  }
   if (input.kind == CaseKind::biaxial) {
     input.biaxial = read_biaxial(root.table("biaxial"));
     input.output.microstructure = read_microstructure(root.table("output"));
@@ -69,15 +72,20 @@ void read_ground_tables(const io::Table& root, Case& input) {
   }
 }
 
-/// The bytes of a packing of another code: its files may change under their names.
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The bytes of a packing from outside: its files may change under their names.
 std::string packing_content(const std::filesystem::path& file) {
+  if (file.extension() == ".h5") return bytes_of(file);
   std::string name = file.filename().string();
   const std::size_t at = std::min(name.rfind("_particles.csv"), name.rfind("_meta.json"));
   name = at == std::string::npos ? name : name.substr(0, at);
   std::string content;
   for (const char* end : {"_particles.csv", "_meta.json"}) {
-    std::ifstream in(file.parent_path() / (name + end), std::ios::binary);
-    content.append(std::istreambuf_iterator<char>(in), {});
+    content += bytes_of(file.parent_path() / (name + end));
   }
   return content;
 }
@@ -102,7 +110,8 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();
   input.resolved = text.resolved();
-  const std::array<std::string, 3> without{"title", "output", "packing.folder"};  // none of them changes a number
+  // None of them changes a number; a preset does so through the values it gives.
+  const std::array<std::string, 4> without{"title", "output", "packing.folder", "engine.preset"};
   input.fingerprint = text.fingerprint(without);
   if (!input.packing.file.empty()) input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
   return input;

@@ -2,6 +2,7 @@
 /// A case: everything a run is told, typed, validated and in SI. The case file (io/case_file.hpp) knows text, keys and
 /// units; this header knows what they mean. Every member's default is the default of its key.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -59,15 +60,17 @@ struct PackingCase {
   double pressure = 1.0e3;              ///< isotropic pressure of the finished packing [Pa]
 };
 
-/// [engine] Speed and accuracy of the grain engine (method.md, section 6).
+/// [engine] Speed and accuracy of the grain engine: a preset (engine_presets.hpp), whose values single keys override. What each
+/// key costs and buys is measured in docs/trade.md. The defaults are the preset `standard`.
 struct EngineCase {
+  std::string preset = "standard";  ///< fast, standard or reference; counts for the fingerprint through its values only
   Precision precision = Precision::single_precision;  ///< value type of the pair loop
-  double inertial_number = 1.0e-4;  ///< target inertial number of an increment [-]
-  double hold_tolerance = 1.0e-3;   ///< unbalanced force ratio that ends the hold [-]
+  double inertial_number = 3.0e-4;  ///< target inertial number of an increment [-]
+  double hold_tolerance = 3.0e-4;   ///< unbalanced force ratio that ends the hold [-]
   int hold_cap = 1000;              ///< most steps of a hold
   double skin = 0.1;                ///< neighbour skin over the mean grain diameter [-]
-  int minimum_steps = 100;          ///< fewest strain steps of an increment
-  int maximum_steps = 20000;        ///< most strain steps of an increment
+  int minimum_steps = 50;           ///< fewest strain steps of an increment
+  int maximum_steps = 2000;         ///< most strain steps of an increment
 };
 
 /// [ground] The half domain: symmetry axis at x = 0, base at y = 0 (method.md, section 4).
@@ -130,10 +133,20 @@ struct ElasticCase {
   double poisson = 0.3;     ///< Poisson's ratio [-]
 };
 
-/// [probe] Displacement gradients put on the packing, one after another, each from the packing's own state.
+/// [[probe.path]] Increments put on the packing before it is probed, as the mesh would put them.
+struct PathSegment {
+  std::array<double, 4> gradient{};  ///< displacement gradient of each increment, xx xy yx yy [-]
+  int increments = 1;
+  bool constant_xx = false;          ///< sigma_xx is held at its value: the gradient's xx is found, not given
+};
+
+/// [probe] Displacement gradients put on the packing at the path's end, each from the same state.
 struct ProbeCase {
-  double pressure = 1.0e5;      ///< isotropic pressure of the probed packing [Pa]
+  double pressure = 1.0e5;      ///< isotropic pressure of the packing [Pa]
   double strain = 1.0e-4;       ///< size of each probe [-]
+  int replicas = 1;             ///< copies of path and probes whose gradients differ by 1e-6 of their size: what chaos makes of them
+  TangentChoice tangent = TangentChoice::contact;  ///< that is reported; kernels/README.md, "Static tangent"
+  std::vector<PathSegment> path;
 };
 
 /// [biaxial] Drained biaxial tests: y is compressed at a constant rate, sigma_xx is held.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "host/case_tables.hpp"
+#include "host/engine_presets.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::host {
@@ -111,9 +112,10 @@ PackingCase read_packing(const io::Table& table) {
 }
 
 EngineCase read_engine(const io::Table& table) {
-  EngineCase engine;
-  engine.precision = table.choice("precision", {"float", "double"}, "float") == "float" ? Precision::single_precision
-                                                                                        : Precision::double_precision;
+  EngineCase engine = engine_preset(table.choice("preset", engine_preset_names(), EngineCase{}.preset));
+  const char* width = engine.precision == Precision::single_precision ? "float" : "double";
+  engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? Precision::single_precision
+                                                                                      : Precision::double_precision;
   read_quantity(table, "inertial_number", Dimension::none, engine.inertial_number,
                 {.at_least = "1e-6", .at_most = "1e-2"});
   read_quantity(table, "hold_tolerance", Dimension::none, engine.hold_tolerance,
@@ -146,10 +148,32 @@ BiaxialCase read_biaxial(const io::Table& table) {
   return test;
 }
 
+namespace {
+
+std::vector<PathSegment> read_path(const io::Table& table) {
+  std::vector<PathSegment> path;
+  for (const io::Table& entry : table.tables("path")) {
+    PathSegment segment;
+    const auto gradient = entry.quantities("gradient", Dimension::none, {.at_least = "-0.5", .at_most = "0.5"});
+    if (gradient.size() != 4) throw entry.error("gradient", "must have the four entries xx, xy, yx, yy");
+    std::copy(gradient.begin(), gradient.end(), segment.gradient.begin());
+    read_integer(entry, "increments", segment.increments, {.at_least = 1, .at_most = 1'000'000});
+    segment.constant_xx = entry.boolean("constant_xx", false);
+    if (segment.constant_xx && segment.gradient[0] != 0) throw entry.error("gradient", "must have no xx where constant_xx finds it");
+    path.push_back(segment);
+  }
+  return path;
+}
+
+}  // namespace
+
 ProbeCase read_probe(const io::Table& table) {
   ProbeCase probe;
   read_quantity(table, "pressure", Dimension::pressure, probe.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
   read_quantity(table, "strain", Dimension::none, probe.strain, {.at_least = "1e-7", .at_most = "0.1"});
+  read_integer(table, "replicas", probe.replicas, {.at_least = 1, .at_most = 10'000});
+  probe.tangent = read_tangent(table);
+  probe.path = read_path(table);
   return probe;
 }
 

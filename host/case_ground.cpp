@@ -82,6 +82,12 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
   return test;
 }
 
+TangentChoice read_tangent(const io::Table& table) {
+  const std::string tangent = table.choice("tangent", {"contact", "elastic", "static"}, "contact");
+  if (tangent == "contact") return TangentChoice::contact;
+  return tangent == "elastic" ? TangentChoice::elastic : TangentChoice::static_;
+}
+
 NewtonCase read_newton(const io::Table& table) {
   NewtonCase newton;
   read_quantity(table, "tolerance", Dimension::none, newton.tolerance, {.at_most = "0.1", .positive = true});
@@ -89,10 +95,7 @@ NewtonCase read_newton(const io::Table& table) {
                 {.at_most = "1", .positive = true});
   read_integer(table, "maximum_iterations", newton.maximum_iterations, {.at_least = 1, .at_most = 10000});
   read_integer(table, "anderson_depth", newton.anderson_depth, {.at_least = 0, .at_most = 50});
-  const std::string tangent = table.choice("tangent", {"contact", "elastic", "static"}, "contact");
-  newton.tangent = tangent == "contact"   ? TangentChoice::contact
-                   : tangent == "elastic" ? TangentChoice::elastic
-                                          : TangentChoice::static_;
+  newton.tangent = read_tangent(table);
   read_quantity(table, "initial_tangent_fraction", Dimension::none, newton.initial_tangent_fraction,
                 {.at_least = "0", .at_most = "10"});
   read_quantity(table, "smallest_cut", Dimension::none, newton.smallest_cut, {.at_most = "1", .positive = true});

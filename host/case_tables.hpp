@@ -22,6 +22,9 @@ namespace voussoir::host {
 /// The key `microstructure` of [output], the only one there of a case without a mesh.
 [[nodiscard]] kernels::MicrostructureRequest read_microstructure(const io::Table& table);
 
+/// The key `tangent`.
+[[nodiscard]] TangentChoice read_tangent(const io::Table& table);
+
 /// Reads a key into `member`, whose value before is the key's default. Throws io::InputError.
 void read_quantity(const io::Table& table, const char* key, io::Dimension dimension, double& member,
                    io::QuantityRule rule = {});

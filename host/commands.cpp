@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "host/case_size.hpp"
+#include "host/engine_presets.hpp"
 #include "host/exit_code.hpp"
 #include "host/interrupt.hpp"
 #include "host/ranks.hpp"
@@ -48,6 +49,7 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
 int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
   const Case input = load_case(case_file, overrides);
   std::printf("%s\n", input.resolved.c_str());
+  if (uses_engine(input)) std::printf("# %s\n", engine_note(input.engine).c_str());
   const CaseSize size = case_size(input);
   if (size.points == 0) return exit_ok;
   std::printf("# %zu Gauss points, %zu in the column, %zu increments planned\n", size.points, size.column_points,

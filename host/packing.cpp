@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "host/stored_packing.hpp"
 #include "io/hash.hpp"
 #include "io/packing_file.hpp"
 
@@ -23,65 +22,6 @@ constexpr double oedometric_end = 700.0e3;       ///< [Pa], the deepest ground o
 constexpr double oedometric_increment = 1.0e-3;  ///< axial strain [-]
 constexpr int most_increments = 200;
 constexpr double bias_floor = 20.0e3;            ///< below it tau_xy is what consolidation left [Pa]
-
-io::Packing to_file(const PackedRve& rve, const std::string& recipe, const std::string& fingerprint) {
-  io::Packing file;
-  file.radius = rve.packing.radii;
-  for (std::size_t i = 0; i < rve.packing.radii.size(); ++i) {
-    file.x.push_back(rve.position[2 * i]);
-    file.y.push_back(rve.position[2 * i + 1]);
-  }
-  file.rotation = rve.rotation;
-  file.cell = {rve.cell.xx, rve.cell.xy, rve.cell.yx, rve.cell.yy};
-  file.thickness = rve.packing.thickness;
-  for (const std::uint32_t key : rve.contact_key) {
-    file.contact_i.push_back(kernels::first_of(key));
-    file.contact_j.push_back(kernels::second_of(key));
-  }
-  file.history_names = {"tangential_force", "rolling_moment"};
-  file.history = rve.contact_history;
-  file.numbers = {{"void_ratio", rve.void_ratio},     {"pressure", rve.pressure}, {"coordination", rve.coordination},
-                  {"unbalanced_ratio", rve.unbalanced}, {"consolidation_friction", rve.consolidation_friction}, {"bias", rve.bias},         {"seed", static_cast<double>(rve.seed)}};
-  file.labels = {{"recipe", recipe}, {"recipe_fingerprint", fingerprint}};
-  return file;
-}
-
-/// The cached packing, or nothing where the file is not one of this recipe: a damaged cache is made anew.
-std::optional<PackedRve> from_file(const io::Packing& file, const Case& input) {
-  const std::vector<std::string> histories{"tangential_force", "rolling_moment"};
-  const auto number = [&](const char* name) {
-    const auto found = file.numbers.find(name);
-    return found == file.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
-  };
-  PackedRve rve;
-  rve.packing = packing_of(input.soil, file.radius, file.thickness);
-  for (std::size_t i = 0; i < file.grains(); ++i) {
-    rve.position.push_back(file.x[i]);
-    rve.position.push_back(file.y[i]);
-  }
-  rve.rotation = file.rotation;
-  rve.cell = {file.cell[0], file.cell[1], file.cell[2], file.cell[3]};
-  rve.contact_history = file.history;
-  for (std::size_t c = 0; c < file.contacts(); ++c) {
-    if (file.contact_i[c] >= file.contact_j[c]) return {};
-    rve.contact_key.push_back(kernels::pair_key(static_cast<int>(file.contact_i[c]), static_cast<int>(file.contact_j[c])));
-  }
-  const bool ascending = std::adjacent_find(rve.contact_key.begin(), rve.contact_key.end(), std::greater_equal<>()) == rve.contact_key.end();
-  const bool finite = std::all_of(file.history.begin(), file.history.end(), [](double h) { return std::isfinite(h); });
-  rve.void_ratio = number("void_ratio");
-  rve.pressure = number("pressure");
-  rve.coordination = number("coordination");
-  rve.unbalanced = number("unbalanced_ratio");
-  rve.bias = number("bias");
-  rve.consolidation_friction = number("consolidation_friction");
-  const double seed = number("seed");
-  if (!ascending || !finite || file.history_names != histories || static_cast<int>(file.grains()) != input.packing.grains ||
-      !(rve.cell.det() > 0) || !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {
-    return {};
-  }
-  rve.seed = static_cast<std::int64_t>(seed);
-  return rve;
-}
 
 /// Largest |tau_xy|/sigma_yy of a curve above the floor.
 double bias_of(const std::vector<OedometricPoint>& curve) {
@@ -138,12 +78,13 @@ void keep(const Case& input, const PackedRve& rve) {
   const std::string recipe = recipe_text(input.soil, input.packing, rve.seed);
   const std::string fingerprint = io::fingerprint_of(recipe);
   std::filesystem::create_directories(input.packing.folder);
-  io::save_packing(io::packing_path(input.packing.folder, fingerprint), to_file(rve, recipe, fingerprint));
+  io::save_packing(io::packing_path(input.packing.folder, fingerprint), stored_packing(rve, recipe, fingerprint));
 }
 
 std::optional<PackedRve> find(const Case& input, std::int64_t seed) {
   const auto file = io::find_packing(input.packing.folder, io::fingerprint_of(recipe_text(input.soil, input.packing, seed)));
-  return file ? from_file(*file, input) : std::nullopt;
+  auto rve = file ? restored_packing(*file, input.soil) : std::nullopt;
+  return rve && rve->packing.size() == input.packing.grains ? rve : std::nullopt;
 }
 
 /// Bias of the packings that have none yet; kept with them.
@@ -165,6 +106,12 @@ void measure_bias(const Case& input, std::vector<PackedRve>& rves) {
 }  // namespace
 
 std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note) {
+  if (input.packing.file.extension() == ".h5") {
+    auto rve = restored_packing(io::load_packing(input.packing.file), input.soil);
+    if (!rve) throw std::runtime_error(input.packing.file.string() + " is no packing of this program's grains");
+    if (note) note("packing read:  " + table_line(*rve));
+    return {std::move(*rve)};
+  }
   if (!input.packing.file.empty()) {
     PackedRve rve = settle_foreign_packing(input.soil, input.packing);
     if (rve.status != kernels::RveStatus::converged) {

@@ -39,8 +39,4 @@ struct OedometricPoint {
 /// `kind = "pack"`: makes the packings and prints their table. Returns an exit code.
 [[nodiscard]] int run_pack(const Case& input, const RunOptions& options);
 
-/// `kind = "probe"`: small displacement gradients on the packing, each from its own state; stress changes and tangents to
-/// standard output and to probe.csv in the run's folder. Returns an exit code.
-[[nodiscard]] int run_probe(const Case& input, const RunOptions& options);
-
 }  // namespace voussoir::host

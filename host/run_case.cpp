@@ -9,8 +9,10 @@
 #include "host/biaxial.hpp"
 #include "host/biaxial_bvp.hpp"
 #include "host/case_size.hpp"
+#include "host/engine_presets.hpp"
 #include "host/exit_code.hpp"
 #include "host/packing.hpp"
+#include "host/probe.hpp"
 #include "host/tunnel.hpp"
 #include "io/case_file.hpp"
 
@@ -20,6 +22,7 @@ namespace {
 RunStatus run_column_case(const Case& input, const RunOptions& options) {
   std::filesystem::create_directories(options.folder);
   RunLog log(options.folder / "run.log", options.resume);
+  if (uses_engine(input)) log.line(engine_note(input.engine));
   const ColumnResult column = run_column(input, options, log);
   for (const std::string& line : totals_table(column.totals)) log.line(line);
   return column.status;

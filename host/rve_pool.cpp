@@ -118,9 +118,7 @@ std::vector<fem::PointField> RvePool::fields() const {
   };
   const auto& reports = committed_reports_;
   const kernels::RveStates& s = batch_.committed;
-  add("void_ratio", "-", [&](std::size_t k) {
-    return void_ratio(s.cell(k, 0) * s.cell(k, 3) - s.cell(k, 1) * s.cell(k, 2), batch_.packing(k).solid_area());
-  });
+  add("void_ratio", "-", [&](std::size_t k) { return void_ratio_of(k); });
   add("grain_rotation", "rad", [&](std::size_t k) {
     double sum = 0;
     for (int i = 0; i < batch_.packing(k).size(); ++i) sum += s.rotation(k, static_cast<std::size_t>(i));
@@ -140,11 +138,26 @@ std::vector<fem::PointField> RvePool::fields() const {
   return out;
 }
 
+double RvePool::void_ratio_of(std::size_t rve) const {
+  const kernels::RveStates& s = batch_.committed;
+  return void_ratio(s.cell(rve, 0) * s.cell(rve, 3) - s.cell(rve, 1) * s.cell(rve, 2), batch_.packing(rve).solid_area());
+}
+
+PackedRve RvePool::packed(std::size_t rve) const {
+  const kernels::RveReport& report = committed_reports_[rve];
+  PackedRve out;
+  out.packing = batch_.packing(rve);
+  load_rve(batch_.committed, rve, out);
+  out.void_ratio = void_ratio_of(rve);
+  out.pressure = report.pressure();
+  out.coordination = 2.0 * report.contacts / out.packing.size();
+  out.unbalanced = report.unbalanced;
+  return out;
+}
+
 io::RveSnapshot RvePool::snapshot(std::size_t rve) const {
   const kernels::Packing& packing = batch_.packing(rve);
-  PackedRve grains;
-  grains.packing = packing;
-  load_rve(batch_.committed, rve, grains);
+  const PackedRve grains = packed(rve);
   io::RveSnapshot out;
   out.name = point_name(rve);
   out.cell = {grains.cell.xx, grains.cell.xy, grains.cell.yx, grains.cell.yy};

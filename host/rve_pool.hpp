@@ -39,6 +39,9 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   void set_state(std::span<const std::byte> bytes) override;
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
+  [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
+  [[nodiscard]] PackedRve packed(std::size_t rve) const;      ///< the same, for another pool to start from
+
   /// For a pool that is one rank's part of a larger one: the engine's own reports, and states one by one.
   /// `advance` is `evaluate`; what the RVEs answered is in trial_reports().
   kernels::Work advance(std::span<const fem::Gradient> gradients);

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "host/engine_presets.hpp"
 #include "host/material_factory.hpp"
 
 namespace voussoir::host {
@@ -61,6 +62,7 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   }
   log.line(fmt::format("{}: {} elements, {} points of {}", input.name, mesh.n_elements(), mesh.n_points(),
                        to_string(input.material)));
+  if (uses_engine(input)) log.line(engine_note(input.engine));
 
   std::vector<StageTotals> totals;
   const RunStatus status = run_stages(input, options, mesh, recorder, totals);

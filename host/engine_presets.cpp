@@ -1,0 +1,73 @@
+#include "host/engine_presets.hpp"
+
+#include <array>
+#include <stdexcept>
+
+namespace voussoir::host {
+
+namespace {
+
+struct Preset {
+  EngineCase values;
+  const char* error;  ///< as measured, see docs/trade.md
+};
+
+const std::array<Preset, 3>& presets() {
+  static const std::array<Preset, 3> all{{
+      {{.preset = "fast", .inertial_number = 1e-3, .hold_tolerance = 1e-3, .hold_cap = 200, .minimum_steps = 30, .maximum_steps = 1000},
+       "TODO"},
+      {{.preset = "standard"}, "TODO"},
+      {{.preset = "reference", .precision = Precision::double_precision, .inertial_number = 3e-5, .hold_tolerance = 1e-4, .hold_cap = 10000,
+        .minimum_steps = 300, .maximum_steps = 200000},
+       "TODO"},
+  }};
+  return all;
+}
+
+const Preset& find(const std::string& name) {
+  for (const Preset& preset : presets()) {
+    if (preset.values.preset == name) return preset;
+  }
+  throw std::logic_error("no preset is called " + name);
+}
+
+/// Keys of `engine` that are not their preset's.
+std::string overridden(const EngineCase& engine, const EngineCase& preset) {
+  std::string names;
+  const auto compare = [&](const char* name, const auto& a, const auto& b) {
+    if (a != b) names += names.empty() ? name : std::string(", ") + name;
+  };
+  compare("precision", engine.precision, preset.precision);
+  compare("inertial_number", engine.inertial_number, preset.inertial_number);
+  compare("hold_tolerance", engine.hold_tolerance, preset.hold_tolerance);
+  compare("hold_cap", engine.hold_cap, preset.hold_cap);
+  compare("skin", engine.skin, preset.skin);
+  compare("minimum_steps", engine.minimum_steps, preset.minimum_steps);
+  compare("maximum_steps", engine.maximum_steps, preset.maximum_steps);
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> engine_preset_names() {
+  std::vector<std::string> names;
+  for (const Preset& preset : presets()) names.push_back(preset.values.preset);
+  return names;
+}
+
+EngineCase engine_preset(const std::string& name) { return find(name).values; }
+
+std::string engine_note(const EngineCase& engine) {
+  const Preset& preset = find(engine.preset);
+  const std::string others = overridden(engine, preset.values);
+  const std::string what = "engine preset " + engine.preset;
+  if (!others.empty()) return what + ", but " + others + " overridden: its measured error need not hold (docs/trade.md)";
+  return what + ": " + preset.error;
+}
+
+bool uses_engine(const Case& input) {
+  if (input.kind == CaseKind::probe) return true;
+  return runs_on_a_mesh(input.kind) && input.material == MaterialKind::grains;
+}
+
+}  // namespace voussoir::host

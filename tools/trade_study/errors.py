@@ -1,0 +1,138 @@
+"""From the tables of the runs to errors in percent of the pressure.
+
+Of an evaluation (one increment from a given state): e = |sigma - sigma_ref| / (sqrt(2) P), with |.| the tensor's norm and P the larger
+pressure of before and after, so that an isotropic error of P is 100 %. sigma_ref is the mean of the reference solution's
+replicas, the same seed, state and direction. Of a path: e = q/p - (q/p)_ref at the same axial strain, as the mean of replicas.
+"""
+
+import csv
+
+import numpy as np
+
+DIRECTIONS = ("xx", "yy", "xy", "-xx", "-yy")
+NORM = np.sqrt(np.array([1.0, 1.0, 2.0]) / 2)   # (xx, yy, xy): |.| / sqrt(2)
+STRAINS = 0.005 * np.arange(1, 6)               # axial; all increment sizes of the plan meet there
+
+
+def read(file):
+    """Columns of a table; a missing one (a run that failed) is empty."""
+    if not file.exists():
+        return {}
+    with open(file, newline="") as opened:
+        rows = list(csv.DictReader(opened))
+    columns = {}
+    for name in rows[0] if rows else ():
+        values = [row[name] for row in rows]
+        try:
+            columns[name] = np.array([float(v) for v in values])
+        except ValueError:
+            columns[name] = np.array(values)
+    return columns
+
+
+def rms(values):
+    return float(np.sqrt(np.mean(np.square(values)))) if np.size(values) else np.nan
+
+
+def stresses(table):
+    return np.stack([table["stress_xx_Pa"], table["stress_yy_Pa"], table["stress_xy_Pa"]], axis=-1)
+
+
+def probes(folders):
+    """{(seed, direction): (stress (replica, 3), change (replica, 3), steps, unbalanced, inertial number)} of runs."""
+    found = {}
+    for folder in folders:
+        table = read(folder / "probe.csv")
+        if not table:
+            continue
+        stress = stresses(table)
+        change = np.stack([table["change_xx_Pa"], table["change_yy_Pa"], table["change_xy_Pa"]], axis=-1)
+        for seed in np.unique(table["seed"]):
+            for direction in DIRECTIONS:
+                rows = (table["seed"] == seed) & (table["probe"] == direction)
+                found[int(seed), direction] = (stress[rows], change[rows], table["steps"][rows], table["unbalanced_ratio"][rows],
+                                               table["inertial_number"][rows])
+    return found
+
+
+def pressure(stress):
+    return -0.5 * (stress[..., 0] + stress[..., 1])
+
+
+def evaluation_error(ours, reference):
+    """Errors over all seeds and directions, in percent of P."""
+    total, bias, along, scatter, noise, steps, reach = [], [], [], [], [], [], []
+    for key, (stress, change, count, unbalanced, inertia) in ours.items():
+        if key not in reference:
+            continue
+        theirs, their_change = reference[key][:2]
+        mean = theirs.mean(axis=0)
+        p = max(pressure(mean), pressure(mean - their_change.mean(axis=0)))
+        off = (stress - mean) * NORM / p
+        total.append(rms(np.linalg.norm(off, axis=1)))
+        bias.append(np.linalg.norm(off.mean(axis=0)))
+        step = their_change.mean(axis=0) * NORM / p
+        along.append(off.mean(axis=0) @ step / max(np.linalg.norm(step), 1e-12))
+        scatter.append(rms(np.linalg.norm((theirs - mean) * NORM / p, axis=1)))
+        noise.append(rms(unbalanced * np.maximum(pressure(stress), 100.0) / p))
+        steps.append(count.mean())
+        reach.append(inertia.max())
+    along = np.array(along)
+    return {"error": 100 * rms(total), "bias": 100 * rms(bias), "along": 100 * along.mean() if along.size else np.nan,
+            "along_error": 100 * along.std() / max(1, along.size - 1) ** 0.5 if along.size else np.nan,
+            "scatter": 100 * rms(scatter), "unbalanced": 100 * rms(noise), "steps": float(np.mean(steps)) if steps else np.nan,
+            "worst": 100 * max(total) if total else np.nan, "inertial_number": max(reach) if reach else np.nan,
+            "samples": len(total)}
+
+
+def path(folders):
+    """{seed: q/p and volumetric strain (replica, strain), steps and evaluations, share of increments at the step limit}"""
+    found = {}
+    for folder in folders:
+        table = read(folder / "path.csv")
+        for seed in np.unique(table["seed"]) if table else ():
+            found[int(seed)] = path_of(table, seed)
+    return found
+
+
+def path_of(table, seed):
+    stress = stresses(table)
+    ratio = np.hypot(0.5 * (stress[:, 1] - stress[:, 0]), stress[:, 2]) / pressure(stress)
+    volume = -(table["strain_xx"] + table["strain_yy"])   # compression positive
+    curves, volumes, steps = [], [], []
+    for replica in np.unique(table["replica"]):
+        rows = (table["seed"] == seed) & (table["replica"] == replica)
+        axial = -table["strain_yy"][rows]
+        curves.append(np.interp(STRAINS, axial, ratio[rows], right=np.nan))
+        volumes.append(np.interp(STRAINS, axial, volume[rows], right=np.nan))
+        steps.append(np.sum((table["steps"] * table["evaluations"])[rows]))
+    rows = (table["seed"] == seed) & (table["increment"] > 0)
+    return {"ratio": np.array(curves), "volume": np.array(volumes), "steps": float(np.mean(steps)),
+            "evaluations": float(table["evaluations"][rows].mean()), "capped": float(np.mean(table["status"][rows] == "step_limit"))}
+
+
+def path_error(ours, reference):
+    """Errors over seeds and the path's strains: q/p in percent of p, volumetric strain in percent of strain."""
+    seeds = sorted(set(ours) & set(reference))
+    if not seeds:
+        return {}
+    off = np.array([ours[s]["ratio"].mean(axis=0) - reference[s]["ratio"].mean(axis=0) for s in seeds])
+    each = np.array([rms(ours[s]["ratio"] - reference[s]["ratio"].mean(axis=0)) for s in seeds])
+    volume = np.array([ours[s]["volume"].mean(axis=0) - reference[s]["volume"].mean(axis=0) for s in seeds])
+    systematic = off.mean(axis=1)
+    return {"error": 100 * rms(each), "bias": 100 * systematic.mean(),
+            "bias_error": 100 * systematic.std(ddof=1) / np.sqrt(len(seeds)) if len(seeds) > 1 else np.nan,
+            "volume": 100 * volume[:, -1].mean(), "volume_rms": 100 * rms(volume[:, -1]),
+            "steps": float(np.mean([ours[s]["steps"] for s in seeds])),
+            "evaluations": float(np.mean([ours[s]["evaluations"] for s in seeds])),
+            "capped": float(np.mean([ours[s]["capped"] for s in seeds])), "samples": len(seeds)}
+
+
+def path_scatter(curves):
+    """Of one setting: chaos (replicas of a seed) and packings (seeds), percent of p; means over seeds at the path's end."""
+    chaos = rms([rms(c["ratio"] - c["ratio"].mean(axis=0)) for c in curves.values()])
+    means = np.array([c["ratio"].mean(axis=0) for c in curves.values()])
+    volumes = np.array([c["volume"].mean(axis=0)[-1] for c in curves.values()])
+    return {"chaos": 100 * chaos, "packings": 100 * rms(means.std(axis=0, ddof=1)) if len(means) > 1 else np.nan,
+            "ratio": float(means.mean(axis=0)[-1]), "cov": float(np.nanmean(means.std(axis=0, ddof=1) / means.mean(axis=0))) if len(means) > 1 else np.nan,
+            "volume": 100 * float(volumes.mean()), "steps": float(np.mean([c["steps"] for c in curves.values()]))}

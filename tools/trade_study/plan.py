@@ -1,0 +1,139 @@
+"""What is run: one knob at a time around the preset `standard`, beside a reference solution, as cases of kind `probe`."""
+
+import json
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+
+REPLICAS = {True: 8, False: 2}   # of a path, which may be chaotic, and of an evaluation, which is hardly
+PRESSURES = {1: "1 kPa", 100: "100 kPa", 800: "800 kPa"}
+PROBE_STRAIN = {1: 1e-4, 100: 1e-3, 800: 1e-3}
+PATH_STRAIN = 0.025   # axial, at constant lateral stress: a shear strain of 4 to 6 %
+INCREMENTS = 25
+# Far beyond the preset of that name, which is one of the settings measured.
+REFERENCE = {"precision": "double", "inertial_number": 1e-5, "hold_tolerance": 1e-4, "hold_cap": 20000,
+             "minimum_steps": 500, "maximum_steps": 1000000}
+REFERENCE_AT = {1: {"inertial_number": 3e-5}}   # a path at 1 kPa needs ten times the steps
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One column of the study."""
+    knob: str
+    label: str
+    keys: dict = field(default_factory=dict, hash=False, compare=False)   # of [engine]; "table.key" for others
+    increments: int = INCREMENTS
+
+    @property
+    def name(self):
+        return f"{self.knob}_{self.label}".replace(" ", "_")
+
+    @property
+    def is_of_the_engine(self):
+        """Whether single evaluations depend on it, and the packings do not."""
+        return self.knob not in ("increments", "modulus", "grains")
+
+
+def settings():
+    """The presets, and around `standard` each knob by itself. A bound on steps shows where it binds: the least number in small
+    increments, the largest in big ones."""
+    every = [Setting("preset", name, {"preset": name}) for name in ("fast", "standard", "reference")]
+    knobs = {"inertial_number": (3e-3, 1e-3, 3e-4, 1e-4, 3e-5), "hold_tolerance": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4),
+             "precision": ("float", "double"), "hold_cap": (0, 100, 1000), "skin": (0.05, 0.1, 0.2)}
+    every += [Setting(knob, f"{value:g}" if not isinstance(value, str) else value, {"preset": "standard", knob: value})
+              for knob, values in knobs.items() for value in values]
+    every += [Setting("minimum_steps", str(n), {"preset": "standard", "minimum_steps": n}, 100) for n in (10, 20, 50, 100, 200)]
+    every += [Setting("maximum_steps", str(n), {"preset": "standard", "maximum_steps": n}, 5) for n in (500, 1000, 2000, 10000)]
+    every += [Setting("increments", str(n), {"preset": "standard"}, n) for n in (5, 10, 25, 100)]
+    every += [Setting("modulus", text, {"preset": "standard", "soil.modulus": text}) for text in ("0.3 GPa", "3 GPa", "30 GPa")]
+    every += [Setting("grains", str(n), {"preset": "standard", "packing.grains": n}) for n in (100, 200, 300, 400, 700)]
+    return every
+
+
+def toml(value):
+    return json.dumps(value)
+
+
+def case_text(setting, kpa, seed, packings, *, path, file=None):
+    tables = {"packing": {"grains": 300, "folder": str(packings)}, "engine": {}, "soil": {},
+              "probe": {"pressure": PRESSURES[kpa], "strain": PROBE_STRAIN[kpa], "replicas": REPLICAS[path]}}
+    tables["packing"].update({"file": str(file)} if file else {"seeds": [seed]})
+    for key, value in setting.keys.items():
+        table, _, name = key.rpartition(".")
+        tables[table or "engine"][name] = value
+    text = 'kind = "probe"\n'
+    for name, keys in tables.items():
+        text += f"\n[{name}]\n" + "".join(f"{key} = {toml(value)}\n" for key, value in keys.items())
+    if path:
+        text += (f"\n[[probe.path]]\ngradient = [0, 0, 0, {-PATH_STRAIN / setting.increments:.9g}]\n"
+                 f"increments = {setting.increments}\nconstant_xx = true\n")
+    return text
+
+
+class Study:
+    """Runs cases below one folder, several at a time; what is there of the same case text is not run again."""
+
+    def __init__(self, program, folder, seeds, pressures, processes):
+        self.program, self.folder = Path(program), Path(folder)
+        self.seeds, self.pressures, self.processes = seeds, pressures, processes
+
+    def reference(self, kpa):
+        return Setting("reference", "solution", {**REFERENCE, **REFERENCE_AT.get(kpa, {})})
+
+    def path_folders(self, setting, kpa):
+        return {seed: self.folder / f"path_{kpa}" / f"{setting.name}_{seed}" for seed in self.seeds}
+
+    def probe_folders(self, setting, kpa, state):
+        return {seed: self.folder / f"{state}_{kpa}" / f"{setting.name}_{seed}" for seed in self.seeds}
+
+    def run(self, jobs):
+        with ThreadPoolExecutor(self.processes) as pool:
+            for line in pool.map(lambda job: self.run_one(*job), jobs):
+                if line:
+                    print(line, flush=True)
+
+    def run_one(self, folder, text):
+        case = folder.parent / (folder.name + ".toml")
+        if case.exists() and case.read_text() == text and (folder / "probe.csv").exists():
+            return ""
+        shutil.rmtree(folder, ignore_errors=True)
+        case.parent.mkdir(parents=True, exist_ok=True)
+        case.write_text(text)
+        done = subprocess.run([self.program, "run", case, "-o", folder, "--threads", "1"], capture_output=True, text=True)
+        if done.returncode not in (0, 3):
+            sys.exit(f"{case}: exit {done.returncode}\n{done.stderr}")
+        return f"{folder.relative_to(self.folder)}" + (f" ({done.stderr.strip()})" if done.returncode else "")
+
+    def packing_jobs(self, chosen):
+        """Each packing once, before processes that would both make it."""
+        jobs = {}
+        for kpa in self.pressures:
+            for setting in (self.reference(kpa), *chosen):
+                keys = {k: v for k, v in setting.keys.items() if "." in k}
+                plain = Setting("packing", "_".join(str(v) for v in keys.values()) or "standard", {"preset": "fast", **keys})
+                for seed in self.seeds:
+                    jobs[self.folder / f"packing_{kpa}" / f"{plain.name}_{seed}"] = self.text(plain, kpa, seed, path=False)
+        return jobs.items()
+
+    def path_jobs(self, chosen):
+        for setting, kpa in self.with_reference(chosen):
+            for seed, folder in self.path_folders(setting, kpa).items():
+                yield folder, self.text(setting, kpa, seed, path=True)
+
+    def probe_jobs(self, chosen):
+        """From the isotropic packing, and from the end of the reference solution's path."""
+        for setting, kpa in self.with_reference(chosen):
+            ends = self.path_folders(self.reference(kpa), kpa)
+            for seed, folder in self.probe_folders(setting, kpa, "isotropic").items():
+                yield folder, self.text(setting, kpa, seed, path=False)
+            for seed, folder in self.probe_folders(setting, kpa, "sheared").items():
+                yield folder, self.text(setting, kpa, seed, path=False, file=(ends[seed] / f"end_{seed}.h5").resolve())
+
+    def with_reference(self, chosen):
+        return [(setting, kpa) for kpa in self.pressures for setting in (self.reference(kpa), *chosen)]
+
+    def text(self, setting, kpa, seed, **what):
+        return case_text(setting, kpa, seed, (self.folder / "packings").resolve(), **what)

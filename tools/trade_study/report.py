@@ -1,0 +1,194 @@
+"""Tables (Markdown) and curves of the study."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+from voussoir_plots.style import save, use_style
+
+from .errors import evaluation_error, path, path_error, path_scatter, probes, STRAINS
+from .plan import PRESSURES, Setting, settings
+
+STATES = ("isotropic", "sheared")
+LINES = {"inertial_number": ("C0", "o"), "hold_tolerance": ("C1", "s"), "minimum_steps": ("C2", "v"), "maximum_steps": ("C4", "^")}
+PRESETS = {"fast": ("C3", "X"), "standard": ("black", "P"), "reference": ("C5", "D")}
+
+
+class Findings:
+    """All errors, read once: evaluation[kpa, state][setting name] and path[kpa][setting name]."""
+
+    def __init__(self, study):
+        self.study = study
+        self.chosen = settings()
+        self.evaluation, self.paths, self.scatter, self.curves = {}, {}, {}, {}
+        for kpa in study.pressures:
+            reference = study.reference(kpa)
+            for state in STATES:
+                theirs = probes(study.probe_folders(reference, kpa, state).values())
+                self.evaluation[kpa, state] = self._each(lambda s: evaluation_error(probes(
+                    study.probe_folders(s, kpa, state).values()), theirs), reference)
+            theirs = path(study.path_folders(reference, kpa).values())
+            self.curves[kpa] = self._each(lambda s: path(study.path_folders(s, kpa).values()), reference)
+            self.paths[kpa] = {name: path_error(ours, theirs) for name, ours in self.curves[kpa].items() if ours}
+            self.scatter[kpa] = {name: path_scatter(ours) for name, ours in self.curves[kpa].items() if ours}
+
+    def _each(self, measure, reference):
+        return {s.name: measure(s) for s in (reference, *self.chosen)}
+
+
+def figure_of(value, digits=2):
+    if value is None or not np.isfinite(value):
+        return "–"
+    return f"{value:.{digits}g}" if abs(value) < 100 else f"{value:.0f}"
+
+
+def row(cells):
+    return "| " + " | ".join(cells) + " |\n"
+
+
+def head(cells):
+    return row(cells) + row(["---"] * len(cells))
+
+
+def per_evaluation(found):
+    """Steps of one evaluation of a path."""
+    return found["steps"] / found["evaluations"] / found["increments"] if found else np.nan
+
+
+def table_of_presets(findings):
+    text = head(["preset", "p", "an evaluation, isotropic", "sheared", "worst", "steps", "a path: q/p", "of it systematic",
+                 "volumetric strain", "steps an increment"])
+    for name in PRESETS:
+        setting = f"preset_{name}"
+        for kpa in findings.study.pressures:
+            isotropic, sheared = (findings.evaluation[kpa, state].get(setting, {}) for state in STATES)
+            way = findings.paths[kpa].get(setting, {})
+            cell = lambda found, key: figure_of(found.get(key, np.nan))  # noqa: E731
+            text += row([name, PRESSURES[kpa], cell(isotropic, "error"), cell(sheared, "error"),
+                         figure_of(max(isotropic.get("worst", np.nan), sheared.get("worst", np.nan))), cell(sheared, "steps"),
+                         cell(way, "error"), f"{cell(way, 'bias')} ± {cell(way, 'bias_error')}", cell(way, "volume_rms"),
+                         figure_of(way.get("steps", np.nan) / 25)])
+    return text
+
+
+def table_of_scatter(findings):
+    text = head(["p", "evaluation: replicas", "path: replicas of the reference solution", "path: replicas of `standard`",
+                 "path: packings", "q/p at the end", "volumetric strain at the end"])
+    for kpa in findings.study.pressures:
+        reference, standard = findings.scatter[kpa].get("reference_solution", {}), findings.scatter[kpa].get("preset_standard", {})
+        cell = lambda found, key, digits=2: figure_of(found.get(key, np.nan), digits)  # noqa: E731
+        text += row([PRESSURES[kpa], cell(findings.evaluation[kpa, "sheared"].get("reference_solution", {}), "scatter"),
+                     cell(reference, "chaos"), cell(standard, "chaos"), cell(reference, "packings"), cell(reference, "ratio", 3),
+                     cell(reference, "volume", 3)])
+    return text
+
+
+def table_of_knob(findings, knob):
+    chosen = [s for s in findings.chosen if s.knob == knob]
+    text = head([f"`{knob}`", *(f"{PRESSURES[kpa]}: {what}" for kpa in findings.study.pressures for what in ("evaluation", "path", "steps"))])
+    for setting in chosen:
+        cells = [setting.label]
+        for kpa in findings.study.pressures:
+            way = findings.paths[kpa].get(setting.name, {})
+            cells += [figure_of(findings.evaluation[kpa, "sheared"].get(setting.name, {}).get("error", np.nan)),
+                      figure_of(way.get("error", np.nan)), figure_of(way.get("steps", np.nan) / setting.increments)]
+        text += row(cells)
+    return text
+
+
+def table_of_matter(findings, knob):
+    """Knobs that change the material itself: not an error, but another answer."""
+    text = head([f"`{knob}`", *(f"{PRESSURES[kpa]}: {what}" for kpa in findings.study.pressures
+                               for what in ("q/p", "scatter of packings, %", "volumetric strain, %", "steps"))])
+    for setting in (s for s in findings.chosen if s.knob == knob):
+        cells = [setting.label]
+        for kpa in findings.study.pressures:
+            found = findings.scatter[kpa].get(setting.name, {})
+            cells += [figure_of(found.get("ratio", np.nan), 3), figure_of(100 * found.get("cov", np.nan)),
+                      figure_of(found.get("volume", np.nan), 3), figure_of(found.get("steps", np.nan) / setting.increments)]
+        text += row(cells)
+    return text
+
+
+def tables(findings):
+    parts = [("Presets", table_of_presets(findings)), ("Scatter", table_of_scatter(findings))]
+    parts += [(knob, table_of_knob(findings, knob)) for knob in ("inertial_number", "hold_tolerance", "hold_cap", "minimum_steps",
+                                                                "maximum_steps", "skin", "precision", "increments")]
+    parts += [(knob, table_of_matter(findings, knob)) for knob in ("modulus", "grains")]
+    return "".join(f"## {title}\n\n{text}\n" for title, text in parts)
+
+
+def points(findings, knob, measure):
+    """Steps and errors along one knob."""
+    found = [measure(s) for s in findings.chosen if s.knob == knob]
+    found = sorted((steps, error) for steps, error in found if np.isfinite(steps * error) and error > 0)
+    return np.array(found).reshape(-1, 2)
+
+
+def draw_errors(findings, file):
+    pressures = findings.study.pressures
+    figure, axes = plt.subplots(2, len(pressures), figsize=(4.1 * len(pressures), 7.4), sharex="col", squeeze=False)
+    for column, kpa in enumerate(pressures):
+        measures = ({"of": lambda s, k=kpa: _evaluation(findings, s, k)}, {"of": lambda s, k=kpa: _path(findings, s, k)})
+        for line, measure in enumerate(measures):
+            axis = axes[line][column]
+            for knob, (color, marker) in LINES.items():
+                if line == 0 and knob in ("minimum_steps", "maximum_steps"):
+                    continue
+                at = points(findings, knob, measure["of"])
+                axis.loglog(*at.T, marker=marker, color=color, markersize=5, label=knob.replace("_", " "))
+            for name, (color, marker) in PRESETS.items():
+                at = measure["of"](Setting("preset", name))
+                axis.loglog(*at, marker=marker, color=color, markersize=10, linestyle="", label=f"preset {name}", zorder=5)
+            axis.set_title(f"{PRESSURES[kpa]}, " + ("one evaluation, sheared state" if line == 0 else "path to 5 % shear"))
+        scatter = findings.scatter[kpa].get("reference_solution", {})
+        axes[1][column].axhline(scatter.get("packings", np.nan), color="0.5", linestyle=":", label="scatter of packings")
+        axes[1][column].axhline(scatter.get("chaos", np.nan), color="0.5", linestyle="--", label="scatter of replicas")
+        axes[1][column].set_xlabel("steps of an increment (all its evaluations)" if column == 0 else "steps of an increment")
+    axes[0][0].set_ylabel("error of stress, % of p")
+    axes[1][0].set_ylabel("error of q/p, % of p")
+    axes[0][0].legend(fontsize=8)
+    axes[1][-1].legend(fontsize=7.5)
+    figure.tight_layout()
+    save(figure, file)
+
+
+def _evaluation(findings, setting, kpa):
+    found = findings.evaluation[kpa, "sheared"].get(setting.name, {})
+    return found.get("steps", np.nan), found.get("error", np.nan)
+
+
+def _path(findings, setting, kpa):
+    found = findings.paths[kpa].get(setting.name, {})
+    return found.get("steps", np.nan) / setting.increments, found.get("error", np.nan)
+
+
+def draw_paths(findings, file):
+    """The first packing's path under each preset, and what all packings span under the reference solution."""
+    pressures = findings.study.pressures
+    figure, axes = plt.subplots(2, len(pressures), figsize=(4.1 * len(pressures), 6.2), sharex=True, squeeze=False)
+    for column, kpa in enumerate(pressures):
+        for line, (key, scale) in enumerate((("ratio", 1), ("volume", 100))):
+            axis = axes[line][column]
+            curves = findings.curves[kpa]
+            spread = np.array([c[key].mean(axis=0) for c in curves.get("reference_solution", {}).values()]) * scale
+            if spread.size:
+                axis.fill_between(100 * STRAINS, spread.min(axis=0), spread.max(axis=0), color="0.85", label="all packings")
+            for name, (color, marker) in PRESETS.items():
+                found = curves.get(f"preset_{name}", {})
+                if found:
+                    axis.plot(100 * STRAINS, scale * found[min(found)][key].mean(axis=0), color=color, marker=marker, markersize=6,
+                              label=f"preset {name}")
+        axes[0][column].set_title(PRESSURES[kpa])
+        axes[1][column].set_xlabel("axial strain, %")
+    axes[0][0].set_ylabel("q/p")
+    axes[1][0].set_ylabel("volumetric strain, %")
+    axes[1][0].legend(fontsize=8)
+    figure.tight_layout()
+    save(figure, file)
+
+
+def write(study, folder):
+    use_style()
+    findings = Findings(study)
+    (folder / "tables.md").write_text(tables(findings))
+    draw_errors(findings, folder / "trade_errors.png")
+    draw_paths(findings, folder / "trade_paths.png")
