@@ -4,7 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from voussoir_plots.style import save, use_style
 
-from .errors import evaluation_error, path, path_error, path_scatter, probes, STRAINS
+from .errors import evaluation_error, noise_share, path, path_error, path_scatter, probes, STRAINS
 from .plan import PRESSURES, Setting, settings
 
 STATES = ("isotropic", "sheared")
@@ -46,11 +46,6 @@ def row(cells):
 
 def head(cells):
     return row(cells) + row(["---"] * len(cells))
-
-
-def per_evaluation(found):
-    """Steps of one evaluation of a path."""
-    return found["steps"] / found["evaluations"] / found["increments"] if found else np.nan
 
 
 def table_of_presets(findings):
@@ -108,11 +103,25 @@ def table_of_matter(findings, knob):
     return text
 
 
+def table_of_noise(findings):
+    study, every = findings.study, {s.name: s for s in findings.chosen}
+    text = head(["ended by", *(f"{PRESSURES[kpa]}, {state}" for kpa in study.pressures for state in STATES)])
+    for name in ("hold_cap_0", "hold_tolerance_0.01", "hold_tolerance_0.003", "hold_tolerance_0.001"):
+        cells = [name.replace("_0", " 0")]
+        for kpa in study.pressures:
+            for state in STATES:
+                ours, still = (probes(study.probe_folders(every[n], kpa, state).values()) for n in (name, "hold_tolerance_0.0001"))
+                cells.append(figure_of(noise_share(ours, still)))
+        text += row(cells)
+    return text
+
+
 def tables(findings):
     parts = [("Presets", table_of_presets(findings)), ("Scatter", table_of_scatter(findings))]
     parts += [(knob, table_of_knob(findings, knob)) for knob in ("inertial_number", "hold_tolerance", "hold_cap", "minimum_steps",
                                                                 "maximum_steps", "skin", "precision", "increments")]
     parts += [(knob, table_of_matter(findings, knob)) for knob in ("modulus", "grains")]
+    parts.append(("Noise share", table_of_noise(findings)))
     return "".join(f"## {title}\n\n{text}\n" for title, text in parts)
 
 
