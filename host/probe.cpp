@@ -122,7 +122,7 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
     tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed,
                                 k / all.size(), probe.name, after[k](0), after[k](1), after[k](2), change(0), change(1), change(2),
                                 d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2)) +
-                    end_of_row(pool.reports()[k]);
+                    end_of_row(pool.committed_reports()[k]);
   }
   if (show) print_tangent(tangent[0], name_of(input.probe.tangent));
   return report.usable ? "" : fmt::format("seed {}, {}", rve.seed, report.message);

@@ -107,7 +107,7 @@ void note_all(const Walk& walk, int increment, int evaluations, const std::funct
           .strain = kernels::log_of(walk.f[k]),
           .stress = walk.stress[k],
           .void_ratio = walk.pool.void_ratio_of(k),
-          .report = &walk.pool.reports()[k]});
+          .report = &walk.pool.committed_reports()[k]});
   }
 }
 

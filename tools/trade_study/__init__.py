@@ -1,0 +1,1 @@
+"""What each knob of the grain engine costs and buys."""
