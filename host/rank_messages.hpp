@@ -7,6 +7,7 @@
 #include "host/byte_stream.hpp"
 #include "host/packing.hpp"
 #include "host/rank_channel.hpp"
+#include "host/rve_pool.hpp"
 
 namespace voussoir::host {
 
@@ -62,6 +63,20 @@ inline PackedRve read_rve(ByteReader& read) {
   rve.contact_history = read.list<double>();
   rve.seed = read.value<std::int64_t>();
   return rve;
+}
+
+/// Both directions. The names are bound one by one so that a new option does not compile before it is sent; a preset has done its
+/// work where the case was read.
+template <class Transfer, class Options>
+void transfer_options(Transfer& transfer, Options& options) {
+  auto& [engine, tangent, microstructure] = options;
+  auto& [preset, precision, inertial_number, hold_tolerance, hold_cap, skin, minimum_steps, maximum_steps] = engine;
+  static_cast<void>(preset);
+  transfer(&precision, 1);
+  for (auto* number : {&inertial_number, &hold_tolerance, &skin}) transfer(number, 1);
+  for (auto* count : {&hold_cap, &minimum_steps, &maximum_steps}) transfer(count, 1);
+  transfer(&tangent, 1);
+  transfer(&microstructure, 1);
 }
 
 }  // namespace voussoir::host

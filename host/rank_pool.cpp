@@ -102,7 +102,7 @@ Message RankPool::make_message(std::size_t rank) const {
   Message message = message_of(Command::make);
   ByteWriter write(message);
   write_rve(write, rve_);
-  write.value(options_);
+  transfer_options(write, options_);
   write.value(static_cast<std::uint64_t>(points_[rank].size()));
   return message;
 }

@@ -61,7 +61,8 @@ class Service {
   void make(ByteReader& read, ByteWriter& reply) {
     pool_.reset();
     const PackedRve rve = read_rve(read);
-    const auto options = read.value<PoolOptions>();
+    PoolOptions options;
+    transfer_options(read, options);
     pool_.emplace(rve, options, read.value<std::uint64_t>());
     reply.list(pool().committed_reports());
   }

@@ -13,7 +13,7 @@ namespace voussoir::host {
 /// The case's value type as the engine names it.
 [[nodiscard]] kernels::Precision engine_precision(const EngineCase& engine);
 
-/// What a pool is told besides its packing and its size; plain values, so that other processes can be told.
+/// What a pool is told besides its packing and its size.
 struct PoolOptions {
   EngineCase engine;
   TangentChoice tangent = TangentChoice::contact;
