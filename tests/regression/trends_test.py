@@ -79,6 +79,7 @@ class Stresses(unittest.TestCase):
         self.assertEqual(trends.reaction(LOSS, recovers, "dense sand").verdict, trends.SEEN)
         self.assertIn("minimum 0.100 at V_l = 5 %", trends.reaction(LOSS, recovers, "dense sand").numbers)
         self.assertEqual(trends.reaction(LOSS, falls, "dense sand").verdict, trends.NOT_SEEN)
+        self.assertEqual(trends.reaction(LOSS[:40], falls[:40], "dense sand").verdict, trends.NOT_REACHED)
         self.assertEqual(trends.reaction(LOSS, falls, "medium dense sand").verdict, trends.SEEN)
         self.assertEqual(trends.reaction(LOSS, recovers, "medium dense sand").verdict, trends.NOT_SEEN)
 
@@ -121,6 +122,8 @@ class Paths(unittest.TestCase):
     def test_order(self):
         ordered = {"Aa": self.path(0.05, True), "Ab": self.path(0.1, True), "Ac": self.path(0.15, False)}
         self.assertEqual(trends.softening_order(LOSS, ordered).verdict, trends.SEEN)
+        early = {name: ratio[:30] for name, ratio in ordered.items()}
+        self.assertEqual(trends.softening_order(LOSS[:30], early).verdict, trends.NOT_REACHED)
         mixed = {**ordered, "Aa": self.path(0.12, True)}
         self.assertEqual(trends.softening_order(LOSS, mixed).verdict, trends.NOT_SEEN)
         self.assertEqual(trends.softening_order(LOSS, mixed).where(False, "elsewhere").verdict, trends.NOT_APPLICABLE)

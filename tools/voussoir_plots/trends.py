@@ -105,6 +105,8 @@ def gauss_fits(misfits, at_bounds):
 
 def troughs_narrow(loss, inflection):
     """inflection: {z/C: i [m] over the losses}."""
+    if loss[-1] < 0.0299:
+        return not_reached("Troughs narrow with V_l", 0.03, loss[-1])
     first = int(np.argmin(np.abs(loss - 0.01)))
     text = "; ".join(f"z/C = {z:g}: {i[first]:.2f} to {i[-1]:.2f} m" for z, i in inflection.items())
     return Trend("Troughs narrow with V_l", verdict(all(i[-1] < 0.95 * i[first] for i in inflection.values())),
@@ -112,8 +114,11 @@ def troughs_narrow(loss, inflection):
 
 
 def surface_width_in_range(loss, width, low, high):
+    statement = f"K_s lies mostly in Mair and Taylor's range ({low:g} to {high:g})"
+    if loss[-1] < 0.0499:
+        return not_reached(statement, 0.05, loss[-1])
     inside = (width >= low) & (width <= high)
-    return Trend(f"K_s lies mostly in Mair and Taylor's range ({low:g} to {high:g})", verdict(inside.mean() > 0.5),
+    return Trend(statement, verdict(inside.mean() > 0.5),
                  f"in it at {percent(inside.mean())} of the increments; K_s = {at(loss, width, loss[0]):.2f} at V_l = {percent(loss[0])}, "
                  f"{at(loss, width, 0.05):.2f} at 5 %, {width[-1]:.2f} at {percent(loss[-1])}")
 
@@ -146,11 +151,17 @@ def reaction(loss, ratio, soil):
     if soil == "medium dense sand":
         return Trend("The ground reaction curve falls monotonically to its end value (medium dense sand)",
                      verdict(recovery < 0.02), text)
-    return Trend("The ground reaction curve drops to a minimum, then recovers (dense soils)", verdict(recovery >= 0.02), text)
+    statement = "The ground reaction curve drops to a minimum, then recovers (dense soils)"
+    if recovery < 0.02 and loss[-1] < 0.199:
+        return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; {text}")
+    return Trend(statement, verdict(recovery >= 0.02), text)
 
 
 def falls_linearly(loss, ratios, until=0.02):
     """ratios: {point: q/p}; a straight line from V_l = 0 on, until 2 %, explains 95 % and descends."""
+    statement = "q/p falls linearly for V_l < 2 % (unloading)"
+    if loss[-1] < until - 1e-9:
+        return not_reached(statement, until, loss[-1])
     inside = loss <= until + 1e-9
     found = {}
     for name, ratio in ratios.items():
@@ -161,7 +172,7 @@ def falls_linearly(loss, ratios, until=0.02):
                        loss[np.argmin(ratio)], ratio.min())
     text = "; ".join(f"{name}: slope {b:.1f}, R2 {r:.3f}, least {low:.2f} at {percent(v)}" for name, (r, b, v, low) in found.items())
     holds = all(b < 0 and r > 0.95 for r, b, _, _ in found.values())
-    return Trend("q/p falls linearly for V_l < 2 % (unloading)", verdict(holds), text)
+    return Trend(statement, verdict(holds), text)
 
 
 def peak_after_unloading(loss, ratio):
@@ -184,7 +195,7 @@ def softening_order(loss, ratios):
     order = [peaks[name][0] for name in ("Aa", "Ab", "Ac") if name in peaks]
     holds = all(a <= b for a, b in zip(order, order[1:])) and peaks["Aa"][2]
     statement, text = "Aa softens first, then Ab peaks, Ac last", f"peak of q/p after unloading: {text}"
-    if holds and loss[-1] < 0.199 and not all(fell for _, _, fell in peaks.values()):
+    if loss[-1] < 0.199 and not all(fell for _, _, fell in peaks.values()) and (holds or not peaks["Aa"][2]):
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
     return Trend(statement, verdict(holds), text)
 
