@@ -129,16 +129,16 @@ def stresses_above(loss, horizontal, vertical, until=0.05):
     last = min(until, loss[-1])
     holds = at(loss, horizontal, last) > 1.05 and at(loss, vertical, last) < 0.95
     text = "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
-    return Trend("Above the crown sigma_xx rises and sigma_yy falls", verdict(holds),
+    return Trend(f"Above the crown sigma_xx rises and sigma_yy falls (at V_l = {percent(last)})", verdict(holds),
                  f"mean over the first D above the crown, over its value at V_l = 0, xx and yy at {text}")
 
 
-def stresses_beside(loss, horizontal, vertical, until=0.05):
+def stresses_beside(loss, horizontal, vertical, until=0.02):
     wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if v <= loss[-1] + 1e-9]
     last = min(until, loss[-1])
-    holds = at(loss, horizontal, last) < 0.95 and at(loss, vertical, last) > 1.05
+    holds = at(loss, horizontal, last) < 0.98 and at(loss, vertical, last) > 1.02
     text = "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
-    return Trend("At the sides the opposite: sigma_xx falls and sigma_yy rises", verdict(holds),
+    return Trend(f"At the sides the opposite: sigma_xx falls and sigma_yy rises (at V_l = {percent(last)})", verdict(holds),
                  f"mean from the opening to D beside it, over its value at V_l = 0, xx and yy at {text}")
 
 
