@@ -106,6 +106,13 @@ Strength strength_of(const BiaxialCurve& curve, double window) {
   return out;
 }
 
+double mean_stress_at(double pressure, double angle) { return pressure / (1.0 - std::sin(angle)); }
+
+bool held(const BiaxialCurve& curve, const Strength& strength) {
+  constexpr double most_scatter = 0.1;  // beyond it a test is not the one that was asked for
+  return curve.status == kernels::RveStatus::converged && strength.lateral_scatter <= most_scatter;
+}
+
 double common_angle(std::span<const double> angles, std::span<const double> p) {
   double pq = 0, pp = 0;
   for (std::size_t k = 0; k < angles.size(); ++k) {

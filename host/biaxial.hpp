@@ -63,6 +63,12 @@ struct Strength {
 /// q/p and the slope of eps_v against eps_q are taken over a moving window of axial strain (mean and least-squares line).
 [[nodiscard]] Strength strength_of(const BiaxialCurve& curve, double window);
 
+/// p [Pa] where a test under `pressure` [Pa] on x mobilises `angle` [rad].
+[[nodiscard]] double mean_stress_at(double pressure, double angle);
+
+/// The test ended as it should and sigma_xx was held, its scatter below a tenth.
+[[nodiscard]] bool held(const BiaxialCurve& curve, const Strength& strength);
+
 /// Friction angle of several tests: sin phi is the slope of q against p through the origin, from the angle of each test and
 /// its p there.
 [[nodiscard]] double common_angle(std::span<const double> angles, std::span<const double> p);

@@ -63,16 +63,9 @@ std::vector<PackedRve> packings_of(const Case& input, const PackingNote& note) {
   for (const double pressure : input.biaxial.pressures) {
     Case at_pressure = input;
     at_pressure.packing.pressure = pressure;
-    for (PackedRve& rve : obtain_packings(at_pressure, seeds_of(input.packing), note)) all.push_back(std::move(rve));
+    for (PackedRve& rve : obtain_packings(at_pressure, seeds_of(input.packing), note, Bias::left)) all.push_back(std::move(rve));
   }
   return all;
-}
-
-/// Scatter of sigma_xx beyond which a test was not the one that was asked for.
-constexpr double most_scatter = 0.1;
-
-bool held(const BiaxialCurve& curve, const Strength& s) {
-  return curve.status == kernels::RveStatus::converged && s.lateral_scatter <= most_scatter;
 }
 
 const char* outcome(const BiaxialCurve& curve, const Strength& s) {
@@ -92,15 +85,13 @@ struct Summary {
   std::vector<double> lateral, scatter, inertial, valid;
 
   void add(const BiaxialCurve& curve, const Strength& s, bool is_valid) {
-    // sigma_xx is held, so p = sigma_xx / (1 - q/p) at any q/p.
-    const auto p_at = [&](double angle) { return curve.pressure / (1.0 - std::sin(angle)); };
     seed.push_back(static_cast<double>(curve.seed));
     pressure.push_back(curve.pressure);
     peak.push_back(s.peak_angle);
-    peak_p.push_back(p_at(s.peak_angle));
+    peak_p.push_back(mean_stress_at(curve.pressure, s.peak_angle));
     peak_strain.push_back(s.peak_strain);
     critical.push_back(s.critical_angle);
-    critical_p.push_back(p_at(s.critical_angle));
+    critical_p.push_back(mean_stress_at(curve.pressure, s.critical_angle));
     dilatancy.push_back(s.dilatancy);
     contraction.push_back(s.contraction);
     lateral.push_back(s.lateral_error);

@@ -16,8 +16,9 @@
 namespace voussoir::host {
 namespace {
 
-constexpr std::array<std::pair<CaseKind, const char*>, 6> kind_names{{{CaseKind::pack, "pack"},
+constexpr std::array<std::pair<CaseKind, const char*>, 7> kind_names{{{CaseKind::pack, "pack"},
                                                                       {CaseKind::biaxial, "biaxial"},
+                                                                      {CaseKind::calibrate, "calibrate"},
                                                                       {CaseKind::probe, "probe"},
                                                                       {CaseKind::biaxial_bvp, "biaxial_bvp"},
                                                                       {CaseKind::column, "column"},
@@ -42,10 +43,11 @@ void read_grain_tables(const io::Table& root, Case& input) {
   if (input.kind != CaseKind::probe && input.packing.file.extension() == ".h5") {
     throw root.table("packing").error("file", "is a stored state, which only kind = \"probe\" starts from: all others need isotropic pressure");
   }
-  if (input.kind == CaseKind::biaxial) {
+  if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) {
     input.biaxial = read_biaxial(root.table("biaxial"));
-    input.output.microstructure = read_microstructure(root.table("output"));
   }
+  if (input.kind == CaseKind::biaxial) input.output.microstructure = read_microstructure(root.table("output"));
+  if (input.kind == CaseKind::calibrate) input.calibrate = read_calibrate(root.table("calibrate"), input.soil);
 }
 
 /// Tables of every kind with a mesh.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@
 
 namespace voussoir::host {
 
-enum class CaseKind { pack, probe, biaxial, biaxial_bvp, column, tunnel };
+enum class CaseKind { pack, probe, biaxial, biaxial_bvp, calibrate, column, tunnel };
 enum class MaterialKind { grains, linear_elastic };
 enum class Precision { single_precision, double_precision };
 enum class TangentChoice { contact, elastic, static_ };
@@ -171,6 +172,30 @@ struct BiaxialBvpCase {
   [[nodiscard]] int increments() const { return static_cast<int>(strain / strain_step + 0.5); }
 };
 
+/// A target of a calibration: its value and the difference from it that counts as one [rad, or -].
+struct CalibrationTarget {
+  double value = 0, tolerance = 0;
+};
+
+/// [calibrate] Search of the grains' open parameters (method.md §3) for the strength of [biaxial]'s tests. A list of one value, or
+/// none, leaves that parameter as [soil] has it. Classes of grains keep their ratios to [soil].
+struct CalibrateCase {
+  static constexpr double degree = std::numbers::pi / 180.0;  ///< [rad]
+  std::vector<double> rolling_stiffness;  ///< beta: values of the first grid, ascending [-]
+  std::vector<double> rolling_limit;      ///< eta [-]
+  std::vector<double> thickness;          ///< t [m]
+  int rounds = 2;                         ///< refinements after the grid, each around the optimum of all tests so far
+  CalibrationTarget peak{39.1 * degree, 1.0 * degree};       ///< phi_p [rad]
+  CalibrationTarget critical{33.0 * degree, 1.0 * degree};   ///< phi_cs [rad]
+  CalibrationTarget dilatancy{14.0 * degree, 2.0 * degree};  ///< psi_max [rad]
+  double peak_strain_minimum = 0.02;      ///< axial strain at the peak, mean of the pressures: within these limits [-]
+  double peak_strain_maximum = 0.05;
+  double peak_strain_tolerance = 0.01;    ///< [-]
+  int confirm_grains = 700;               ///< the tests of the optimum and of [soil] as it stands
+  std::vector<std::int64_t> confirm_seeds = {1, 2, 3};
+  double confirm_inertial_number = 1.0e-4;  ///< [-]
+};
+
 struct Case {
   CaseKind kind = CaseKind::tunnel;
   MaterialKind material = MaterialKind::grains;
@@ -187,6 +212,7 @@ struct Case {
   ProbeCase probe;
   BiaxialCase biaxial;
   BiaxialBvpCase biaxial_bvp;
+  CalibrateCase calibrate;
 
   std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
   std::string resolved;     ///< TOML of every value after defaults and overrides

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "host/calibration.hpp"
+#include "host/packing.hpp"
 #include "host/stages.hpp"
 #include "host/tunnel.hpp"
 
@@ -23,13 +26,17 @@ constexpr double hold_steps = 30;
 constexpr double specimen_evaluations = 6.0;
 constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the top's, without change of volume
 
-/// Steps of one evaluation of one RVE, from the inertial number I = strain / steps * sqrt(m / (p t)) with the scaled mass
-/// m of kernels/README.md (one stable step for all sizes), six neighbours.
-double steps_per_evaluation(const Case& input, double strain, double pressure) {
-  const SoilCase& soil = input.soil;
+/// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)) with the scaled mass m of
+/// kernels/README.md (one stable step for all sizes), six neighbours.
+double inertial_steps(const SoilCase& soil, double strain, double pressure, double inertial_number) {
   const double k_n = soil.modulus * 0.25 * (soil.size_minimum + soil.size_maximum);
   const double mass = (6.0 + 12.0 * soil.stiffness_ratio) * k_n / (4.0 * 0.9 * 0.9);
-  const double steps = strain / input.engine.inertial_number * std::sqrt(mass / (pressure * soil.thickness));
+  return strain / inertial_number * std::sqrt(mass / (pressure * soil.thickness));
+}
+
+/// Steps of one evaluation of one RVE.
+double steps_per_evaluation(const Case& input, double strain, double pressure) {
+  const double steps = inertial_steps(input.soil, strain, pressure, input.engine.inertial_number);
   return std::clamp(steps, static_cast<double>(input.engine.minimum_steps),
                     static_cast<double>(input.engine.maximum_steps)) +
          std::min(hold_steps, static_cast<double>(input.engine.hold_cap));
@@ -47,11 +54,34 @@ CaseSize specimen_size(const Case& input) {
   return size;
 }
 
+/// Grid, refinements and confirmation of a search.
+CaseSize search_size(const Case& input) {
+  const CalibrateCase& search = input.calibrate;
+  const SearchBox box(search, input.soil);
+  const std::vector<ParameterSet> grid = box.grid();
+  const std::size_t stars = static_cast<std::size_t>(search.rounds) * (2 * box.dimensions() + 1);
+  const std::size_t seeds = seeds_of(input.packing).size();
+  CaseSize size;
+  size.tests = ((grid.size() + stars) * seeds + 2 * search.confirm_seeds.size()) * input.biaxial.pressures.size();
+  const double thickness_of_grid =
+      std::accumulate(grid.begin(), grid.end(), 0.0, [](double sum, const ParameterSet& set) { return sum + set[Parameter::thickness]; }) /
+      static_cast<double>(grid.size());
+  SoilCase soil = input.soil;
+  soil.thickness = thickness_of_grid;
+  for (const double pressure : input.biaxial.pressures) {
+    const double steps = inertial_steps(soil, input.biaxial.strain, pressure, 1.0);
+    size.particle_steps += steps / input.biaxial.inertial_number * input.packing.grains * static_cast<double>((grid.size() + stars) * seeds);
+    size.particle_steps += steps / search.confirm_inertial_number * search.confirm_grains * 2.0 * static_cast<double>(search.confirm_seeds.size());
+  }
+  return size;
+}
+
 }  // namespace
 
 CaseSize case_size(const Case& input) {
   CaseSize size;
   if (input.kind == CaseKind::biaxial_bvp) return specimen_size(input);
+  if (input.kind == CaseKind::calibrate) return search_size(input);
   if (input.kind != CaseKind::column && input.kind != CaseKind::tunnel) return size;
   const bool with_tunnel = input.kind == CaseKind::tunnel;
   const std::size_t gravity = gravity_targets(input).size();

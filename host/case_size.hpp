@@ -11,6 +11,7 @@ struct CaseSize {
   std::size_t points = 0;         ///< Gauss points of the largest mesh
   std::size_t column_points = 0;  ///< of the column
   std::size_t increments = 0;     ///< planned, all stages
+  std::size_t tests = 0;          ///< of a calibration
   double grains = 0;              ///< of all RVEs of the largest mesh; 0 without grains
   double particle_steps = 0;      ///< estimate of the whole run [grains x steps], packings apart; 0 without grains
 };

@@ -11,6 +11,7 @@ namespace voussoir::host {
 [[nodiscard]] EngineCase read_engine(const io::Table& table);
 [[nodiscard]] ProbeCase read_probe(const io::Table& table);
 [[nodiscard]] BiaxialCase read_biaxial(const io::Table& table);
+[[nodiscard]] CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil);
 [[nodiscard]] ElasticCase read_elastic(const io::Table& table);
 [[nodiscard]] BiaxialBvpCase read_biaxial_bvp(const io::Table& table);
 [[nodiscard]] GroundCase read_ground(const io::Table& table, bool with_tunnel);

@@ -105,7 +105,7 @@ void measure_bias(const Case& input, std::vector<PackedRve>& rves) {
 
 }  // namespace
 
-std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note) {
+std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note, Bias bias) {
   if (input.packing.file.extension() == ".h5") {
     auto rve = restored_packing(io::load_packing(input.packing.file), input.soil);
     if (!rve) throw std::runtime_error(input.packing.file.string() + " is no packing of this program's grains");
@@ -136,7 +136,7 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
     if (auto rve = find(input, seed)) out.push_back(std::move(*rve));
   }
   if (out.empty()) throw std::runtime_error("no packing of this recipe comes to rest");
-  if (out.size() > 1) measure_bias(input, out);
+  if (bias == Bias::measured && out.size() > 1) measure_bias(input, out);
   for (const PackedRve& rve : out) {
     const bool made = std::find(missing.begin(), missing.end(), rve.seed) != missing.end();
     if (note) note((made ? "packing made:  " : "packing found: ") + table_line(rve));

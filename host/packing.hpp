@@ -13,12 +13,15 @@ namespace voussoir::host {
 /// A line for the log while packings are made or found; may be empty.
 using PackingNote = std::function<void(const std::string&)>;
 
+/// Whether a packing's bias is wanted: it costs as much as a biaxial test.
+enum class Bias { measured, left };
+
 /// The packings of these seeds, in their order: from the case's folder, or made side by side and stored there. A seed that does
-/// not come to rest is noted and left out. Of several packings the bias is measured: the largest |tau_xy|/sigma_yy above 20 kPa
-/// in oedometric compression to 700 kPa. A case that names a file has that one packing. Throws std::runtime_error when no packing
-/// is left.
+/// not come to rest is noted and left out. Of several packings the bias is measured, if wanted: the largest |tau_xy|/sigma_yy above
+/// 20 kPa in oedometric compression to 700 kPa. A case that names a file has that one packing. Throws std::runtime_error when no
+/// packing is left.
 [[nodiscard]] std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds,
-                                                     const PackingNote& note = {});
+                                                     const PackingNote& note = {}, Bias bias = Bias::measured);
 
 /// The seeds that a case names: `seeds`, or `candidates` seeds from `seed` on.
 [[nodiscard]] std::vector<std::int64_t> seeds_of(const PackingCase& packing);

@@ -8,6 +8,7 @@
 
 #include "host/biaxial.hpp"
 #include "host/biaxial_bvp.hpp"
+#include "host/calibrate_tests.hpp"
 #include "host/case_size.hpp"
 #include "host/engine_presets.hpp"
 #include "host/exit_code.hpp"
@@ -62,6 +63,7 @@ int run_case(const Case& input, const RunOptions& options) {
     case CaseKind::pack: return run_pack(input, options);
     case CaseKind::probe: return run_probe(input, options);
     case CaseKind::biaxial: return run_biaxial(input, options);
+    case CaseKind::calibrate: return run_calibrate(input, options);
   }
   return exit_machine;
 }
