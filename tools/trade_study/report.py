@@ -190,7 +190,7 @@ def draw_paths(findings, file):
         axes[1][column].set_xlabel("axial strain, %")
     axes[0][0].set_ylabel("q/p")
     axes[1][0].set_ylabel("volumetric strain, %")
-    axes[1][0].legend(fontsize=8)
+    axes[1][-1].legend(fontsize=8)
     figure.tight_layout()
     save(figure, file)
 
