@@ -32,7 +32,7 @@ RUNS = {
 RUNS |= {f"calibrate_{soil}": (["packing.grains=150", "packing.seeds=[1]", "packing.folder=packings", "biaxial.strain=6 %",
                                 'biaxial.pressures=["200 kPa"]', "calibrate.rolling_stiffness=[0.06, 0.24]", "calibrate.thickness=[]",
                                 "calibrate.rounds=0", "calibrate.confirm_grains=150", "calibrate.confirm_seeds=[1, 2]",
-                                "calibrate.confirm_inertial_number=3e-4"], None, []) for soil in ("cps_d",)}
+                                "calibrate.confirm_inertial_number=3e-4"], None, []) for soil in ("cps_d", "cps_md")}
 # The study's tunnels: few grains and elements and a first step of the volume loss, those of other depths in elastic ground;
 # their meshes are counted in full size.
 STUDY = [*ONE_PACKING, "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=17 m", "ground.width=8 m", "column.elements=5",
