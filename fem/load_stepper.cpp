@@ -50,9 +50,17 @@ std::string describe(const NewtonReport& newton, double from, double to) {
   text.precision(10);
   text << to_string(newton.status) << " in the increment from " << from << " to " << to << " (residual "
        << newton.residual << " N/m, allowed " << newton.residual_bound << " N/m, " << newton.iterations
-       << " iterations)";
+       << " iterations";
+  if (newton.relaxations > 0) text << ", " << newton.relaxations << " of them substeps of a relaxation that did not calm";
+  text << ")";
   if (!newton.material.message.empty()) text << ": " << newton.material.message;
   return text.str();
+}
+
+/// An attempt that has an iterate to go on from.
+bool can_be_relaxed(const NewtonReport& attempt, double far_residual) {
+  const bool usable = attempt.material.usable && attempt.residual <= far_residual * attempt.reference();
+  return usable && (attempt.status == NewtonStatus::max_iterations || attempt.status == NewtonStatus::near);
 }
 
 /// Walks to one target; `nominal` is the distance from the target before it. True: reached, go on.
@@ -61,9 +69,17 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
   while (state.parameter < target) {
     const double from = state.parameter;
     const double to = attempt_end(state, target);
-    const IncrementLoad load = load_between(path, state, to, options.use_predictor);
+    IncrementLoad load = load_between(path, state, to, options.use_predictor);
+    const bool may_relax = options.relaxation.max_substeps > 0 && to - from <= options.relax_below * nominal * (1 + 1e-9);
+    if (may_relax) {
+      load.leave_best = true;
+      load.max_iterations = options.relaxation.max_attempts;
+      load.near_residual = options.relaxation.near_residual;
+    }
     Increment increment;
     report.last = solver.solve_increment(state, load, increment);
+    const bool relaxed = may_relax && can_be_relaxed(report.last, options.relaxation.far_residual);
+    if (relaxed) report.last = relax(solver, state, path, to, report.last, increment, options.relaxation);
     report.work += report.last.work;
     if (report.last.status != NewtonStatus::converged) {
       ++report.cuts;
@@ -76,7 +92,8 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
       state.step_limit = (to - from) * options.cut;
       continue;
     }
-    solver.commit(state, increment);
+    if (relaxed) ++report.relaxed;
+    if (!relaxed) solver.commit(state, increment);  // a relaxed one is
     ++report.increments;
     state.parameter = to;
     state.last_step = to - from;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fem/newton.hpp"
+#include "fem/relaxation.hpp"
 
 namespace voussoir::fem {
 
@@ -20,6 +21,8 @@ struct StepOptions {
   double cut = 0.5;            ///< a failed step is tried again with this share
   double growth = 1.5;         ///< after a cut, each converged step lets the next one grow by this
   double smallest = 1.0 / 64;  ///< of the nominal step; below it the stepper gives up
+  double relax_below = 0;      ///< of the nominal step: a step up to this that did not converge is relaxed, not cut
+  RelaxationOptions relaxation = {};
   bool use_predictor = true;   ///< start from the last converged increment, scaled by the steps' ratio
 };
 
@@ -50,6 +53,7 @@ struct StepReport {
   StepStatus status = StepStatus::finished;
   int increments = 0;    ///< converged
   int cuts = 0;          ///< attempts that did not converge
+  int relaxed = 0;       ///< increments that came to equilibrium by relaxation
   std::size_t work = 0;  ///< of all attempts
   NewtonReport last;     ///< of the last attempt
   std::string message;   ///< why it gave up: status, parameter and step; empty otherwise

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -45,10 +46,17 @@ struct NewtonSolver::Workspace {
   NewtonReport report;
   std::vector<char> constrained;
   std::vector<Gradient> displacement_gradient;
-  Eigen::VectorXd residual;  ///< zero at constrained dofs
   Eigen::VectorXd noise_sample;
   AndersonHistory history;
   Eigen::VectorXd step;
+  double best_residual = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd best;  ///< displacement of the iterate with the smallest residual
+
+  struct Trial {
+    Increment increment;
+    NewtonReport report;
+  };
+  void restore(Trial&& trial);
 
   Failure prepare();
   Failure predict();
@@ -59,6 +67,8 @@ struct NewtonSolver::Workspace {
   Failure evaluate();
   void form_residual();
   [[nodiscard]] bool converged() const;
+  [[nodiscard]] bool near() const;
+  void return_to_best();
   NewtonReport stop(NewtonStatus status);
 };
 
@@ -75,7 +85,9 @@ NewtonReport NewtonSolver::solve_increment(const MeshState& state, const Increme
     if (const Failure failure = work.find_step()) return work.stop(*failure);   // solve, accelerate
     if (on_iterate) on_iterate({iteration, work.report.residual, work.report.residual_bound, work.report.material});
     if (work.converged()) return work.stop(NewtonStatus::converged);
-    if (iteration == options_.max_iterations) return work.stop(NewtonStatus::max_iterations);
+    if (work.near()) return work.stop(NewtonStatus::near);
+    if (iteration == (load.max_iterations > 0 ? load.max_iterations : options_.max_iterations))
+      return work.stop(NewtonStatus::max_iterations);
   }
 }
 
@@ -103,6 +115,11 @@ Failure NewtonSolver::Workspace::prepare() {
 /// takes the boundary's motion alone.
 Failure NewtonSolver::Workspace::predict() {
   const Mesh& mesh = solver.mesh_;
+  if (load.first_step.size() > 0) {
+    step = load.first_step;
+    for (const auto& [dof, value] : load.prescribed) step[dof] = value;
+    return step.allFinite() ? Failure{} : Failure{NewtonStatus::not_finite};
+  }
   solver.material_.committed(increment.stress, increment.tangent);
   if (const Failure failure = refactor()) return failure;
   const Eigen::VectorXd guess = load.predictor_ratio * state.last_increment;
@@ -125,29 +142,45 @@ Failure NewtonSolver::Workspace::predict() {
 }
 
 /// Moves by `step` and evaluates there. A step that fails or makes the residual grow strongly is halved: what grew is
-/// still a valid iterate and is kept if no shorter step is better, what failed is not.
+/// still a valid iterate, and the best of them is kept if no shorter step stays below the limit; what failed is not.
 Failure NewtonSolver::Workspace::take_step() {
   const Eigen::VectorXd base = increment.displacement;
   const bool first = report.iterations == 1;  // its base lacks the prescribed values: no shorter step is meaningful
   const double before = report.residual;
   Failure failure;
+  std::optional<Trial> kept;  // the best of those that grew
   for (int halving = 0; halving <= (first ? 0 : solver.options_.max_halvings); ++halving) {
     if (halving > 0) history.restart();
     increment.displacement = base + std::ldexp(1.0, -halving) * step;
     failure = evaluate();
+    if (!failure) form_residual();
+    if (!failure && !std::isfinite(report.residual)) failure = NewtonStatus::not_finite;
     if (failure) continue;
-    form_residual();
-    if (!std::isfinite(report.residual)) {
-      failure = NewtonStatus::not_finite;
-      continue;
-    }
     const double limit = std::max(solver.options_.growth_limit * before, report.residual_bound);
-    if (first || report.residual <= limit) break;
+    if (first || report.residual <= limit) {
+      kept.reset();
+      break;
+    }
+    if (!kept || report.residual < kept->report.residual) kept = Trial{increment, report};
   }
-  if (failure) return failure;
+  if (kept) restore(std::move(*kept));
+  if (failure && !kept) return failure;
   report.residual_history.push_back(report.residual);
-  history.add(increment.displacement, residual);
+  if (report.residual < best_residual) {
+    best_residual = report.residual;
+    best = increment.displacement;
+  }
+  history.add(increment.displacement, increment.residual);
   return {};
+}
+
+/// Back to a trial step, all but what it cost since.
+void NewtonSolver::Workspace::restore(Trial&& trial) {
+  increment = std::move(trial.increment);
+  trial.report.evaluations = report.evaluations;
+  trial.report.work = report.work;
+  trial.report.times = report.times;
+  report = std::move(trial.report);
 }
 
 /// Displacement -> F_rel - I -> stress and tangent.
@@ -177,6 +210,7 @@ void NewtonSolver::Workspace::form_residual() {
   const Mesh& mesh = solver.mesh_;
   const NewtonOptions& options = solver.options_;
   const InternalForce internal = internal_force(mesh, increment.points, increment.stress);
+  Eigen::VectorXd& residual = increment.residual;
   residual = load.external_force - internal.force;
   increment.reactions = Eigen::VectorXd::Zero(mesh.n_dofs());
   for (const auto& [dof, value] : load.prescribed) {
@@ -186,8 +220,8 @@ void NewtonSolver::Workspace::form_residual() {
   report.residual = residual.norm();
   report.external_norm = load.external_force.norm();
   report.reaction_norm = increment.reactions.norm();
-  const double allowed =
-      options.tolerance * std::max({report.external_norm, report.reaction_norm, load.reference_force});
+  report.reference_force = load.reference_force;
+  const double allowed = options.tolerance * report.reference();
   const double noise =
       options.noise_factor * noise_force(mesh, increment.points, constrained, report.material.stress_noise);
   report.noise_floor = std::min(noise, options.noise_limit * allowed);
@@ -232,7 +266,7 @@ Failure NewtonSolver::Workspace::find_step() {
   const AndersonHistory::Step next = history.step(solver.solver_);
   if (!next.accelerated.allFinite()) return NewtonStatus::not_finite;
   report.correction_history.push_back(next.newton.norm());
-  report.increment_norm = increment.displacement.norm();
+  report.increment_norm = increment.displacement.norm() + load.moved;
   report.correction_bound = options.displacement_tolerance * report.increment_norm;
   if (const double noise = options.noise_factor * report.material.stress_noise; noise > 0)
     report.correction_bound += noise * solver.solver_.solve(noise_sample).norm();
@@ -246,7 +280,19 @@ bool NewtonSolver::Workspace::converged() const {
          (correction <= report.correction_bound || correction <= solver.options_.length_tolerance);
 }
 
+bool NewtonSolver::Workspace::near() const {
+  return report.residual <= load.near_residual * report.reference();
+}
+
+/// Where it did not converge: back to the best iterate, so that the material's last evaluation is the one there.
+void NewtonSolver::Workspace::return_to_best() {
+  if (best.size() == 0 || increment.displacement == best) return;
+  increment.displacement = best;
+  if (!evaluate()) form_residual();
+}
+
 NewtonReport NewtonSolver::Workspace::stop(NewtonStatus status) {
+  if (status != NewtonStatus::converged && load.leave_best) return_to_best();
   report.status = status;
   return std::move(report);
 }
@@ -265,7 +311,8 @@ NewtonSolver::NewtonSolver(const Mesh& mesh, MaterialBatch& material, Kinematics
                                 std::to_string(mesh.n_points()));
 }
 
-void NewtonSolver::commit(MeshState& state, const Increment& increment) {
+void NewtonSolver::commit(MeshState& state, Increment& increment) {
+  increment.last_part = increment.displacement;
   material_.commit();
   state.displacement += increment.displacement;
   state.last_increment = increment.displacement;
@@ -282,6 +329,8 @@ const char* to_string(NewtonStatus status) {
       return "converged";
     case NewtonStatus::max_iterations:
       return "max_iterations";
+    case NewtonStatus::near:
+      return "near";
     case NewtonStatus::material_failed:
       return "material_failed";
     case NewtonStatus::not_positive_definite:

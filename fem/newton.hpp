@@ -7,6 +7,7 @@
 /// with R = f_ext - f_int, 2-norms, du = K^-1 R the correction that would follow (it is not applied), Du the increment.
 /// The floors are noise_factor times what independent stress errors of BatchReport::stress_noise do to R and to K^-1 R.
 
+#include <algorithm>
 #include <functional>
 #include <string>
 
@@ -36,6 +37,7 @@ struct NewtonOptions {
 enum class NewtonStatus {
   converged,
   max_iterations,
+  near,                   ///< not converged, but within IncrementLoad::near_residual: to be relaxed from there
   material_failed,        ///< BatchReport::usable was false at every trial step
   not_positive_definite,  ///< even with a hundred times the initial tangent's share
   inverted_element,       ///< det J or det F_rel not positive at every trial step
@@ -56,11 +58,17 @@ struct NewtonReport {
   double correction_bound = 0;             ///< what the last correction is compared with [m], its noise floor included
   double external_norm = 0;                ///< |f_ext| [N/m]
   double reaction_norm = 0;                ///< |reactions| [N/m]
+  double reference_force = 0;              ///< of the load [N/m]
   double increment_norm = 0;               ///< |Du| [m]
   double largest_nodal_ratio = 0;          ///< max over nodes of |R_i| / (sum of |element forces| + |f_ext|) there [-]
+  int relaxations = 0;                     ///< substeps of relaxation.hpp; 0: the increment needed none
+  double viscous_work = 0;                 ///< dissipated by them [J/m]
   std::size_t work = 0;                    ///< sum of BatchReport::work
   PartTimes times;                         ///< where the wall time went
   BatchReport material;                    ///< of the last evaluation
+
+  /// What the tolerance is relative to [N/m].
+  [[nodiscard]] double reference() const { return std::max({external_norm, reaction_norm, reference_force}); }
 };
 
 /// What an increment is asked for.
@@ -69,9 +77,14 @@ struct IncrementLoad {
   Constraints prescribed;          ///< displacement increments [m]
   double predictor_ratio = 0;      ///< first iterate: ratio * last increment; 0: elastic from the committed state
   double reference_force = 0;      ///< see the convergence definition, e.g. the norm of a stage's final load [N/m]
+  Eigen::VectorXd first_step = {}; ///< the first iterate, n_dofs [m]; empty: as predictor_ratio says
+  double moved = 0;                ///< norm of a displacement that Du is a further part of (relaxation.hpp) [m]
+  int max_iterations = 0;          ///< 0: NewtonOptions::max_iterations
+  double near_residual = 0;        ///< over the reference of the tolerance: ends the iterates as `near` [-]; 0: never
+  bool leave_best = false;         ///< not converged: the material is evaluated once more at the best iterate
 };
 
-/// The last iterate. All of it is valid only if the report says converged.
+/// The last iterate, or with IncrementLoad::leave_best the best one.
 struct Increment {
   Eigen::VectorXd displacement;     ///< Du, n_dofs [m]
   std::vector<Gradient> gradients;  ///< F_rel - I, n_points [-]
@@ -79,7 +92,9 @@ struct Increment {
   std::vector<Tangent> tangent;     ///< n_points [Pa]
   Eigen::VectorXd external_force;   ///< n_dofs [N/m]
   Eigen::VectorXd reactions;  ///< f_int - f_ext at constrained dofs, zero elsewhere; of the support on the soil [N/m]
+  Eigen::VectorXd residual;   ///< f_ext - f_int at free dofs, zero elsewhere, n_dofs [N/m]
   GaussPoints points;         ///< the geometry of the integration
+  Eigen::VectorXd last_part;  ///< displacement since that geometry: Du, or the last substep's where it was relaxed [m]
 };
 
 /// An iterate as it happens, for progress; `bound` as NewtonReport::residual_bound.
@@ -100,12 +115,13 @@ class NewtonSolver {
   [[nodiscard]] NewtonReport solve_increment(const MeshState& state, const IncrementLoad& load, Increment& increment);
 
   /// Takes the increment over into the state and commits the material. Only after a converged `solve_increment`.
-  void commit(MeshState& state, const Increment& increment);
+  void commit(MeshState& state, Increment& increment);
 
   std::function<void(const Iterate&)> on_iterate;  ///< may be empty
 
   [[nodiscard]] const Mesh& mesh() const { return mesh_; }
   [[nodiscard]] MaterialBatch& material() { return material_; }
+  [[nodiscard]] SparseSolver& linear_solver() { return solver_; }  ///< with the matrix of the last iterate
 
  private:
   struct Workspace;

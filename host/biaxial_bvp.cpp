@@ -124,7 +124,7 @@ SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increm
   SpecimenState specimen;
   const std::vector<int>& top = mesh.node_set("top");
   for (const int node : top) specimen.axial_force -= increment.reactions[2 * node + 1];
-  const auto x_before = [&](int node) { return state.coordinates(0, node) - increment.displacement[2 * node]; };
+  const auto x_before = [&](int node) { return state.coordinates(0, node) - increment.last_part[2 * node]; };
   specimen.axial_stress = specimen.axial_force / std::abs(x_before(top.front()) - x_before(top.back()));
   const double base = mesh.coordinates(1, mesh.node_set("base").front());
   specimen.axial_strain =

@@ -98,6 +98,10 @@ NewtonCase read_newton(const io::Table& table) {
   newton.tangent = read_tangent(table);
   read_quantity(table, "initial_tangent_fraction", Dimension::none, newton.initial_tangent_fraction,
                 {.at_least = "0", .at_most = "10"});
+  read_quantity(table, "relax_below", Dimension::none, newton.relax_below, {.at_least = "0", .at_most = "1"});
+  read_integer(table, "relax_attempts", newton.relax_attempts, {.at_least = 1, .at_most = 10000});
+  read_quantity(table, "relax_near", Dimension::none, newton.relax_near, {.at_least = "0", .at_most = "0.5"});
+  read_integer(table, "relax_substeps", newton.relax_substeps, {.at_least = 0, .at_most = 10000});
   read_quantity(table, "smallest_cut", Dimension::none, newton.smallest_cut, {.at_most = "1", .positive = true});
   return newton;
 }

@@ -77,6 +77,7 @@ void RunRecorder::report(const io::IncrementInfo& info) {
                   stage_planned_, info.load_parameter, info.iterations, info.residual, info.wall_s);
   if (info.cuts > 0) text += fmt::format(", cut {} times", info.cuts);
   const auto column = [&](const char* name) { return info.extra.contains(name) ? info.extra.at(name).value : 0.0; };
+  if (column("relaxations") > 0) text += fmt::format(", relaxed in {} substeps", column("relaxations"));
   if (column("open_points") > 0) text += fmt::format(", {} points open", column("open_points"));
   if (column("step_limit_points") > 0) text += fmt::format(", {} points at the step limit", column("step_limit_points"));
   if (column("slowest_steps") > 0) {

@@ -70,6 +70,11 @@ class StageRun {
     ++recorder_.stage_totals().cuts;
     recorder_.log().line(fmt::format("{}: step {:.6g} to {:.6g} cut: {} {}", stage_.name, step.from, step.to,
                                      fem::to_string(step.report.status), step.report.material.message));
+    std::string residuals;
+    for (const double r : step.report.residual_history) {
+      residuals += fmt::format(" {:.1e}", relative(r, step.report, ground_.input.newton.tolerance));
+    }
+    recorder_.log().detail("its residuals:" + residuals);
   }
 
  private:
@@ -77,6 +82,8 @@ class StageRun {
     info_.iterations += report.iterations;
     info_.evaluations += report.evaluations;
     info_.particle_steps += static_cast<double>(report.work);
+    relaxations_ += report.relaxations;
+    if (report.status == fem::NewtonStatus::converged) viscous_work_ += report.viscous_work;
     times_ += report.times;
     recorder_.stage_totals().particle_steps += static_cast<double>(report.work);
     recorder_.stage_totals().parts += report.times;
@@ -116,6 +123,10 @@ class StageRun {
       info_.residual_history.push_back(relative(r, step.report, tolerance));
     }
     add_report_columns(ground_, step.report, info_);
+    info_.extra["relaxations"] = {static_cast<double>(relaxations_), "-"};
+    info_.extra["viscous_work"] = {viscous_work_, "J/m"};
+    relaxations_ = 0;
+    viscous_work_ = 0;
     if (stage_.on_record) stage_.on_record(info_);
     count_increment();
     const bool last_target = done_ == static_cast<int>(stage_.targets.size());
@@ -141,6 +152,8 @@ class StageRun {
   fem::PartTimes times_;  ///< of the present increment
   double output_ = 0;     ///< of the last increment [s]
   Clock::time_point since_;
+  int relaxations_ = 0;
+  double viscous_work_ = 0;
   int done_ = 0;
 };
 
@@ -176,6 +189,10 @@ RunStatus advance_stage(Ground& ground, const Stage& stage, RunRecorder& recorde
 
   fem::StepOptions options;
   options.smallest = ground.input.newton.smallest_cut;
+  options.relax_below = ground.input.newton.relax_below;
+  options.relaxation.max_substeps = ground.input.newton.relax_substeps;
+  options.relaxation.max_attempts = ground.input.newton.relax_attempts;
+  options.relaxation.near_residual = ground.input.newton.relax_near;
   const fem::StepReport report =
       fem::advance_load(solver, ground.state, stage.path, stage.targets, options,
                         {.on_converged = [&](const fem::ConvergedStep& step) { return run.converged(step); },

@@ -213,6 +213,48 @@ class RoughMaterial final : public MaterialBatch {
   double noise_;
 };
 
+/// Stresses times the next factor of a list at each evaluation, the last one from then on.
+class ScriptedMaterial final : public MaterialBatch {
+ public:
+  ScriptedMaterial(std::size_t n, std::vector<double> factors) : smooth_(n, {}), factors_(std::move(factors)) {}
+  [[nodiscard]] std::size_t size() const override { return smooth_.size(); }
+  void begin_increment() override {}
+  BatchReport evaluate(std::span<const Gradient> gradients, std::span<Stress> stress,
+                       std::span<Tangent> tangent) override {
+    const BatchReport report = smooth_.evaluate(gradients, stress, tangent);
+    const double factor = factors_[std::min(next_++, factors_.size() - 1)];
+    for (Stress& s : stress) s *= factor;
+    return report;
+  }
+  void commit() override { smooth_.commit(); }
+  void committed(std::span<Stress> s, std::span<Tangent> t) const override { smooth_.committed(s, t); }
+  [[nodiscard]] std::vector<PointField> fields() const override { return {}; }
+  [[nodiscard]] std::vector<std::byte> state() const override { return smooth_.state(); }
+  void set_state(std::span<const std::byte> bytes) override { smooth_.set_state(bytes); }
+
+ private:
+  SofteningMaterial smooth_;
+  std::vector<double> factors_;
+  std::size_t next_ = 0;
+};
+
+TEST(Newton, OfHalvedStepsThatAllGrowTheBestIsKept) {
+  const auto second_iterate = [](int halvings, std::vector<double> factors) {
+    Block block;
+    ScriptedMaterial material(static_cast<std::size_t>(block.mesh.n_points()), std::move(factors));
+    NewtonSolver solver(block.mesh, material, Kinematics::fixed_mesh, {.max_iterations = 2, .max_halvings = halvings});
+    Increment increment;
+    const NewtonReport report = solver.solve_increment(block.state, block.load(0.003, 0.004), increment);
+    EXPECT_EQ(report.evaluations, halvings + 2);
+    EXPECT_EQ(report.residual, report.residual_history.back());
+    return std::pair(increment.displacement, report.residual);
+  };
+  const auto half = second_iterate(1, {1, 1e5, 1e3});  // what was tried last is the best
+  const auto kept = second_iterate(2, {1, 1e5, 1e3, 1e4});
+  EXPECT_EQ(kept.first, half.first);
+  EXPECT_EQ(kept.second, half.second);
+}
+
 TEST(Newton, NoiseIsNotChased) {
   for (const double noise : {1e2, 1e3, 5e3}) {  // against about 5e4 Pa of stress
     Block block;

@@ -1,0 +1,88 @@
+#include "fem/relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "fem/load_stepper.hpp"
+
+namespace voussoir::fem {
+
+namespace {
+
+/// Takes a further part of the increment over into the whole.
+void append(Increment& whole, Increment&& part) {
+  whole.displacement += part.displacement;
+  for (std::size_t i = 0; i < whole.gradients.size(); ++i)
+    whole.gradients[i] += part.gradients[i] + part.gradients[i] * whole.gradients[i];
+  whole.stress = std::move(part.stress);
+  whole.tangent = std::move(part.tangent);
+  whole.external_force = std::move(part.external_force);
+  whole.reactions = std::move(part.reactions);
+  whole.residual = std::move(part.residual);
+  whole.points = std::move(part.points);
+  whole.last_part = std::move(part.last_part);
+}
+
+/// The report of the whole increment after one more substep.
+void tally(NewtonReport& whole, NewtonReport&& part) {
+  part.iterations += whole.iterations;
+  part.evaluations += whole.evaluations;
+  part.factorisations += whole.factorisations;
+  part.work += whole.work;
+  part.times += whole.times;
+  part.relaxations = whole.relaxations + 1;
+  part.viscous_work += whole.viscous_work;
+  for (auto history : {&NewtonReport::residual_history, &NewtonReport::correction_history}) {
+    (whole.*history).insert((whole.*history).end(), (part.*history).begin(), (part.*history).end());
+    part.*history = std::move(whole.*history);
+  }
+  whole = std::move(part);
+}
+
+/// The factor with which a linear response would have left no work: `driving` and `left` are those of R along the last substep,
+/// at its start and at its end [J/m].
+double next_factor(double factor, double driving, double left, const RelaxationOptions& options) {
+  const double spent = driving > 0 ? 1 - left / driving : 0;
+  const double wanted = spent > 0 ? factor / spent : options.largest_factor;
+  return std::clamp(std::min(wanted, options.factor_growth * factor), options.least_factor, options.largest_factor);
+}
+
+}  // namespace
+
+NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path, double to, const NewtonReport& attempt,
+                   Increment& increment, const RelaxationOptions& options) {
+  const MeshState before = state;
+  const std::vector<std::byte> material_before = solver.material().state();
+  NewtonReport report = attempt;
+  double factor = 1;
+  solver.commit(state, increment);
+  for (int substep = 0; substep < options.max_substeps; ++substep) {
+    IncrementLoad load{path.external_force(to), path.prescribed_increment(to, to), 0, path.reference_force};
+    load.first_step = factor * solver.linear_solver().solve(increment.residual);
+    load.moved = increment.displacement.norm();
+    load.max_iterations = 1;
+    Increment part;
+    NewtonReport answer = solver.solve_increment(state, load, part);
+    const bool evaluated = answer.status == NewtonStatus::converged || answer.status == NewtonStatus::max_iterations;
+    if (evaluated) {
+      const double driving = increment.residual.dot(part.displacement);
+      const double left = part.residual.dot(part.displacement);
+      answer.viscous_work = 0.5 * (driving + left);
+      factor = next_factor(factor, driving, left, options);
+    }
+    const NewtonStatus status = answer.status;
+    tally(report, std::move(answer));
+    if (!evaluated) break;
+    solver.commit(state, part);
+    append(increment, std::move(part));
+    if (status != NewtonStatus::converged) continue;
+    state.last_increment = increment.displacement;
+    return report;
+  }
+  state = before;
+  solver.material().set_state(material_before);
+  return report;
+}
+
+}  // namespace voussoir::fem
