@@ -114,5 +114,28 @@ TEST_F(EngineExtremes, ACellTooNarrowForItsGrainsIsRefused) {
   EXPECT_EQ(run(batch, {still}, in_double()).front().status, RveStatus::neighbour_overflow);
 }
 
+TEST_F(EngineExtremes, OneOfFourThousandIsGivenNaNAndNoOtherBitChanges) {
+  constexpr std::size_t n = 4096, broken = 1234;
+  RveBatch healthy = clones(dense_, n), with_nan = clones(dense_, n);
+  std::vector<StrainRequest> requests(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double e = 1e-4 * std::cos(1.0 * static_cast<double>(k));
+    requests[k] = {.f_rel = {1 + e, 3 * e, -e, 1 - 2 * e}, .strain_steps = 20 + static_cast<int>(k % 7), .hold_cap = 16};
+  }
+  const auto expected = run(healthy, requests, EngineSettings{});
+  with_nan.committed.position(broken, 3, 0) = std::numeric_limits<double>::quiet_NaN();
+  const auto reports = run(with_nan, requests, EngineSettings{});
+  EXPECT_EQ(reports[broken].status, RveStatus::not_finite);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (k == broken) continue;
+    ASSERT_TRUE(std::equal(expected[k].stress, expected[k].stress + 4, reports[k].stress)) << k;
+    ASSERT_EQ(expected[k].steps, reports[k].steps) << k;
+    ASSERT_EQ(healthy.trial.position(k, 7, 1), with_nan.trial.position(k, 7, 1)) << k;
+  }
+  commit(with_nan);
+  const auto again = run(with_nan, requests, EngineSettings{});
+  EXPECT_EQ(again[broken].status, RveStatus::not_finite) << "it keeps the state it had";
+}
+
 }  // namespace
 }  // namespace voussoir::kernels

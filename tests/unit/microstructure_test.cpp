@@ -24,7 +24,9 @@ Microstructure describe(const std::vector<NetworkContact>& contacts, int grains,
   return out;
 }
 
-NetworkContact at_angle(double angle) { return {0, 1, std::cos(angle), std::sin(angle), 1.0}; }
+NetworkContact at_angle(double angle) {
+  return {0, 1, std::cos(angle), std::sin(angle), 1.0};
+}
 
 /// Angles whose density is E(theta) = (1 + a cos 2(theta - direction)) / 2 pi: equal shares of its integral.
 std::vector<NetworkContact> distributed(double a, double direction, int count) {
@@ -32,7 +34,8 @@ std::vector<NetworkContact> distributed(double a, double direction, int count) {
   for (int k = 0; k < count; ++k) {
     const double share = 2.0 * pi * (k + 0.5) / count;
     double angle = share;
-    for (int iteration = 0; iteration < 200; ++iteration) {  // angle + a/2 sin(2 angle) = share, measured from direction
+    for (int iteration = 0; iteration < 200;
+         ++iteration) {  // angle + a/2 sin(2 angle) = share, measured from direction
       angle -= (angle + 0.5 * a * std::sin(2.0 * angle) - share) / (1.0 + a);
     }
     contacts.push_back(at_angle(angle + direction));
@@ -74,7 +77,8 @@ TEST(Connectivity, ByHand) {
 
 TEST(Connectivity, OfStrongNetworksByHand) {
   // Forces 20 (chain 0-1-2-3), 10 (0-4, 4-3), then 18 of 1.
-  std::vector<NetworkContact> contacts{{0, 1, 1, 0, 20}, {1, 2, 1, 0, 20}, {2, 3, 1, 0, 20}, {0, 4, 1, 0, 10}, {3, 4, 1, 0, 10}};
+  std::vector<NetworkContact> contacts{
+      {0, 1, 1, 0, 20}, {1, 2, 1, 0, 20}, {2, 3, 1, 0, 20}, {0, 4, 1, 0, 10}, {3, 4, 1, 0, 10}};
   for (int k = 5; k < 23; ++k) contacts.push_back({k, k + 1, 1, 0, 1});
   const double mean = 98.0 / 23.0;
   ASSERT_TRUE(2.0 * mean < 10.0 && 10.0 < 2.5 * mean);
@@ -118,7 +122,8 @@ std::vector<Microstructure> of_committed(const RveBatch& batch) {
 }
 
 TEST(Microstructure, OfAHexagonalLattice) {
-  const Microstructure m = of_committed(settled(reference::hexagonal_packing(8, 8, 1e-3, 1e-6, reference::Material{}), 1))[0];
+  const Microstructure m =
+      of_committed(settled(reference::hexagonal_packing(8, 8, 1e-3, 1e-6, reference::Material{}), 1))[0];
   EXPECT_NEAR(m.fabric_anisotropy, 0.0, 1e-10);
   EXPECT_DOUBLE_EQ(m.coordination, 6.0);
   EXPECT_DOUBLE_EQ(m.mechanical_coordination, 6.0);

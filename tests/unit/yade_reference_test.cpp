@@ -1,5 +1,5 @@
 // One packing as Yade computed it, 700 grains at 100 kPa (tests/data/yade): the oracle rebuilds its contacts, stiffnesses,
-// stress and tangent grain by grain.
+// stress and tangent grain by grain, and so does the engine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "tests/reference/reference_rve.hpp"
+#include "kernels/committed_contacts.hpp"
+#include "tests/engine_support.hpp"
 
 namespace voussoir::reference {
 namespace {
@@ -165,6 +166,40 @@ TEST_F(YadeReference, Tangent)
       EXPECT_NEAR(d[p][q], d[q][p], 1e-12 * d6.at(0));
     }
   }
+}
+
+TEST_F(YadeReference, EngineRebuildsStressAndTangent)
+{
+  kernels::RveBatch batch = kernels::clones(rve_, 1);
+  std::vector<kernels::CommittedContact> rebuilt;
+  kernels::committed_contacts(batch, 0, rebuilt);
+  ASSERT_EQ(rebuilt.size(), records_.size());
+  Mat2 with_its_forces, from_positions;
+  const double volume = det(rve_.cell) * rve_.material.thickness;
+  for (kernels::CommittedContact& c : rebuilt) {
+    const auto add = [&](Mat2& sigma) {
+      sigma.xx += c.force_x() * c.branch_x / volume;
+      sigma.xy += c.force_x() * c.branch_y / volume;
+      sigma.yx += c.force_y() * c.branch_x / volume;
+      sigma.yy += c.force_y() * c.branch_y / volume;
+    };
+    add(from_positions);
+    const Record& yade = records_.at({c.i, c.j});
+    c.normal_force = yade.fn;
+    c.tangential_force = yade.ft;
+    add(with_its_forces);
+  }
+  const auto expected = read_meta("stress", 9);
+  const double p0 = read_meta("P0", 1).at(0);
+  for (const auto& [sigma, tolerance] : {std::pair{with_its_forces, 1e-6 * p0}, std::pair{from_positions, 2e-5 * p0}}) {
+    EXPECT_NEAR(sigma.xx, expected.at(0), tolerance);
+    EXPECT_NEAR(0.5 * (sigma.xy + sigma.yx), 0.5 * (expected.at(1) + expected.at(3)), tolerance);
+    EXPECT_NEAR(sigma.yy, expected.at(4), tolerance);
+  }
+  const kernels::RveReport report = run(batch, {kernels::StrainRequest{}}, kernels::in_double()).front();
+  const auto d6 = read_meta("tangent6x6", 36);
+  const std::size_t place[6] = {0, 1, 5, 7, 11, 35};  // xxxx, xxyy, xxxy, yyyy, yyxy, xyxy
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(report.tangent[k], d6.at(place[k]), 1e-6 * d6.at(0)) << k;
 }
 
 TEST_F(YadeReference, IsAtRestForTheOracle)
