@@ -78,13 +78,6 @@ Eigen::VectorXd traction_force(const Coordinates& coordinates, const std::vector
   });
 }
 
-FaceStress face_stress(const Stress& stress, const Point& normal) {
-  const double l = normal.x();
-  const double m = normal.y();
-  return {l * l * stress[0] + m * m * stress[1] + 2 * l * m * stress[2],
-          l * m * (stress[1] - stress[0]) + (l * l - m * m) * stress[2]};
-}
-
 Stress GeostaticStress::operator()(const Point& x) const {
   const double vertical = -(load_factor * unit_weight * (height - x.y()) + surcharge);
   return {k0(vertical) * vertical, vertical, 0};

@@ -34,13 +34,6 @@ using StressField = std::function<Stress(const Point&)>;  ///< Cauchy stress at 
 [[nodiscard]] Eigen::VectorXd traction_force(const Coordinates& coordinates, const std::vector<Edge>& edges,
                                              const StressField& field);
 
-/// Eqs. (15), (16): normal and shear stress (sigma_n along N, tau along (-m, l)) on a face with unit normal N = (l, m).
-struct FaceStress {
-  double normal;  ///< [Pa]
-  double shear;   ///< [Pa]
-};
-[[nodiscard]] FaceStress face_stress(const Stress& stress, const Point& normal);
-
 /// Ground at rest at load factor lambda: s_yy = -(lambda * unit_weight * (height - y) + surcharge), s_xx = K0(s_yy) s_yy,
 /// s_xy = 0. `k0` takes s_yy (negative) [Pa].
 struct GeostaticStress {

@@ -257,16 +257,6 @@ std::vector<Table> Table::tables(std::string_view key) const {
   return all;
 }
 
-std::vector<std::string> Table::keys() const {
-  std::vector<std::string> names;
-  for (const auto& child : node_->children) {
-    if (child->written) {
-      names.push_back(child->name);
-    }
-  }
-  return names;
-}
-
 InputError Table::error(std::string_view key, const std::string& sentence) const {
   const CaseNode* node = node_->find(key);
   return {node != nullptr ? node->place : node_->place, full_key(key), sentence};

@@ -76,8 +76,6 @@ class Table {
   [[nodiscard]] Table table(std::string_view key) const;
   /// [[key]] tables in the order of the file, empty when there is none.
   [[nodiscard]] std::vector<Table> tables(std::string_view key) const;
-  /// Names of the keys present, in the order of the file (for tables whose keys are names chosen by the user).
-  [[nodiscard]] std::vector<std::string> keys() const;
 
   /// An error at this key's place in the file, for checks that need more than one value.
   [[nodiscard]] InputError error(std::string_view key, const std::string& sentence) const;

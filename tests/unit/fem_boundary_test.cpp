@@ -11,17 +11,6 @@ Point resultant(const Eigen::VectorXd& f) {
   return f.reshaped(2, f.size() / 2).rowwise().sum();
 }
 
-TEST(Boundary, FaceStressIsTheTraction) {
-  const Stress stress(-3, -7, 2);
-  for (const double angle : {0.0, 0.4, 1.9, 4.0}) {
-    const Point n(std::cos(angle), std::sin(angle));
-    const FaceStress face = face_stress(stress, n);
-    const Point traction = face.normal * n + face.shear * Point(-n.y(), n.x());  // tau along (-m, l)
-    EXPECT_NEAR(traction.x(), stress[0] * n.x() + stress[2] * n.y(), 1e-14);
-    EXPECT_NEAR(traction.y(), stress[2] * n.x() + stress[1] * n.y(), 1e-14);
-  }
-}
-
 TEST(Boundary, PressureOnTheTopPushesDown) {
   const Mesh mesh = make_rectangle(4, 2, 3, 2);
   const Point f = resultant(pressure_force(mesh.coordinates, mesh.edge_set("top"), 1000));

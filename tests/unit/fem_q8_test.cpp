@@ -2,7 +2,7 @@
 
 #include "fem/gauss_points.hpp"
 #include "fem/q8.hpp"
-#include "fem/recovery.hpp"
+#include "fem/gauss_points.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {
@@ -61,25 +61,6 @@ TEST(GaussPoints, FoldedElementAndNotANumberAreSeen) {
   folded = mesh.coordinates;
   folded(0, 0) = std::nan("");
   EXPECT_FALSE(gauss_points(mesh, folded).smallest_jacobian > 0);
-}
-
-TEST(Recovery, LinearFieldComesBackAtNodesOfParallelograms) {
-  const Mesh mesh = fem_support::mapped(make_rectangle(2, 3, 3, 4),
-                                        [](const Point& x) { return Point(x.x() + 0.3 * x.y(), x.y() - 0.1 * x.x()); });
-  const GaussPoints points = gauss_points(mesh, mesh.coordinates);
-  const Eigen::RowVector2d slope(2, -5);
-  const Eigen::MatrixXd nodal = nodal_values(mesh, points, slope * points.positions);
-  EXPECT_LT((nodal - slope * mesh.coordinates).cwiseAbs().maxCoeff(), 1e-12);
-}
-
-TEST(Recovery, ElementMeanIsWeightedByVolume) {
-  const Mesh mesh = fem_support::distorted_rectangle(1, 1, 2, 2, 0.1);
-  const GaussPoints points = gauss_points(mesh, mesh.coordinates);
-  const Eigen::MatrixXd means = element_means(points, points.positions.row(1));
-  double first_moment = 0;
-  for (int e = 0; e < mesh.n_elements(); ++e)
-    for (int p = 0; p < 4; ++p) first_moment += points.volumes[4 * e + p] * means(0, e);
-  EXPECT_NEAR(first_moment, 0.5, 1e-3);  // of the unit square; 2x2 points do not integrate it exactly when curved
 }
 
 }  // namespace

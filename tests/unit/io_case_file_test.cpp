@@ -81,7 +81,6 @@ TEST(CaseFile, ValuesAreSi) {
   EXPECT_EQ(file.root().tables("stage").at(0).quantities("targets", Dimension::none), (std::vector<double>{0.05, 0.1}));
   EXPECT_EQ(file.root().tables("stage").at(1).integers("seeds"), (std::vector<std::int64_t>{1, 2}));
   EXPECT_FALSE(soil.has("thickness"));
-  EXPECT_EQ(soil.keys(), (std::vector<std::string>{"radius", "weight", "friction", "kept", "shape"}));
 }
 
 TEST(CaseFile, EachMistakeGivesOneLineWithItsPlace) {
