@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 
 #include "host/biaxial.hpp"
 #include "host/exit_code.hpp"
@@ -117,9 +118,34 @@ struct Summary {
   }
 };
 
+/// Tests that a case asks for; a packing that does not come to rest leaves some out. A file is one packing a pressure.
+std::size_t wanted_tests(const Case& input) {
+  return (input.packing.file.empty() ? seeds_of(input.packing).size() : 1) * input.biaxial.pressures.size();
+}
+
+/// Exit code of the tests that a finished run has left; nothing where there is none.
+std::optional<int> finished_before(const Case& input, const RunOptions& options) {
+  const std::filesystem::path file = options.folder / "run.h5";
+  if (!options.resume || !std::filesystem::exists(file)) return {};
+  const io::Tables tables = io::read_tables(file);
+  const auto strength = tables.find("strength");  // written last
+  if (strength == tables.end()) return {};
+  for (const io::TableColumn& column : strength->second) {
+    if (column.name != "valid") continue;
+    const auto held = static_cast<std::size_t>(std::count(column.values.begin(), column.values.end(), 1.0));
+    return held < wanted_tests(input) ? exit_numerical : exit_ok;
+  }
+  return {};
+}
+
 }  // namespace
 
 int run_biaxial(const Case& input, const RunOptions& options) {
+  if (const std::optional<int> before = finished_before(input, options)) {
+    std::printf("%s: finished already, nothing to do\n", options.folder.string().c_str());
+    return *before;
+  }
+  if (options.resume) std::printf("biaxial tests run all at once and have no checkpoint: they begin anew\n");
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const std::vector<PackedRve> rves = packings_of(input, note);
   const kernels::EngineSettings settings{.precision = engine_precision(input.engine), .skin = input.engine.skin};
@@ -144,7 +170,7 @@ int run_biaxial(const Case& input, const RunOptions& options) {
                 common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
                 *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
   }
-  const std::size_t wanted = input.packing.file.empty() ? seeds_of(input.packing).size() * test.pressures.size() : curves.size();
+  const std::size_t wanted = wanted_tests(input);
   if (curves.size() < wanted) {
     std::fprintf(stderr, "biaxial: %zu of %zu tests have no packing that comes to rest\n", wanted - curves.size(), wanted);
   }

@@ -107,6 +107,9 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   Case input;
   input.kind = read_kind(root);
   input.name = root.text("title", default_title(file));
+  if (input.name.empty() || input.name.front() == '.' || input.name.find('/') != std::string::npos) {
+    throw root.error("title", "names the folder of the results: no / in it and no dot before it");
+  }
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);

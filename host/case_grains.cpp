@@ -1,11 +1,13 @@
 // The tables of the grains: [soil], [packing], [engine], [probe], [biaxial].
 #include <algorithm>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "host/case_tables.hpp"
 #include "host/engine_presets.hpp"
+#include "io/packing_file.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::host {
@@ -107,7 +109,15 @@ PackingCase read_packing(const io::Table& table) {
   read_quantity(table, "pressure", Dimension::pressure, packing.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
   packing.mirrored = table.boolean("mirrored", packing.mirrored);
   packing.folder = table.text("folder", packing.folder.string());
-  if (table.has("file")) packing.file = table.path("file");
+  if (table.has("file")) {
+    packing.file = table.path("file");
+    try {
+      const bool ours = packing.file.extension() == ".h5";
+      packing.grains = static_cast<int>((ours ? io::load_packing(packing.file) : io::load_packing_csv(packing.file)).grains());
+    } catch (const std::runtime_error& error) {
+      throw table.error("file", error.what());
+    }
+  }
   return packing;
 }
 

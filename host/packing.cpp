@@ -117,7 +117,7 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
     if (rve.status != kernels::RveStatus::converged) {
       throw std::runtime_error(fmt::format("{} does not come to rest: {}", input.packing.file.string(), kernels::name_of(rve.status)));
     }
-    if (note) note("packing read:  " + table_line(rve));
+    if (note) note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe do not count)");
     return {rve};
   }
   std::vector<std::int64_t> missing;

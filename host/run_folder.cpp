@@ -23,6 +23,10 @@ bool is_left_by_a_start(const std::filesystem::directory_entry& entry) {
   return entry.path().extension() == ".tmp" || std::find(first_names.begin(), first_names.end(), name) != first_names.end();
 }
 
+bool is_left_by_a_probe(const std::filesystem::directory_entry& entry) {
+  return entry.path().filename() == "probe.csv" || is_left_by_a_start(entry);
+}
+
 /// Fingerprint of the case that made the results; throws io::InputError where run.h5 is no result of this program.
 std::string fingerprint_of_results(const RunOptions& options) {
   try {
@@ -39,7 +43,13 @@ void check_folder(const RunOptions& options, const Case& input) {
   const std::string folder = options.folder.string();
   if (!fs::exists(options.folder)) return;
   if (!fs::is_directory(options.folder)) throw io::InputError("--output", folder, "is not a folder");
+  const bool has_probe = fs::exists(options.folder / "probe.csv");
   if (!fs::exists(options.folder / "run.h5")) {
+    const bool ours = std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_probe);
+    if (has_probe && ours && options.replace) return;
+    if (has_probe && ours) {
+      throw io::InputError("--output", folder, "holds a probe, which has nothing to resume: add --replace to remove it");
+    }
     if (std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_start)) return;
     throw io::InputError("--output", folder, "holds files that are no results of this program; choose another folder");
   }
@@ -57,7 +67,7 @@ void check_folder(const RunOptions& options, const Case& input) {
 
 void remove_earlier_run(const RunOptions& options) {
   namespace fs = std::filesystem;
-  if (!fs::exists(options.folder / "run.h5")) return;  // what a start left is overwritten by the next one
+  if (!fs::exists(options.folder / "run.h5") && !fs::exists(options.folder / "probe.csv")) return;  // what a start left is overwritten by the next one
   for (const std::string_view name : first_names) fs::remove_all(options.folder / name);
   for (const std::string_view name : further_names) fs::remove(options.folder / name);
   io::remove_leftovers(options.folder);

@@ -1,17 +1,20 @@
 // The command `voussoir sweep`: one process a run, so that a run behaves as it does alone.
 #include <spdlog/fmt/fmt.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include "host/commands.hpp"
@@ -92,16 +95,24 @@ const char* status_name(int exit_code) {
   }
 }
 
-/// Waits until one of the processes has ended and notes its exit code.
-void wait_for_one(std::map<pid_t, SweepRun*>& running) {
+/// Waits until one of the processes has ended and notes its exit code. A request to stop is passed on, once: as SIGUSR1, since
+/// a run that a terminal's Ctrl-C has reached already takes a second SIGINT or SIGTERM for insistence.
+void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
   int status = 0;
-  const pid_t process = waitpid(-1, &status, 0);
-  if (process < 0 && errno == EINTR) return;  // the signal went to the runs as well; they end after their increment
+  pid_t process = 0;
+  while ((process = waitpid(-1, &status, WNOHANG)) == 0) {
+    if (interrupted() && !passed_on) {
+      for (const auto& [child, run] : running) kill(child, SIGUSR1);
+      passed_on = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   if (process < 0) throw std::system_error(errno, std::generic_category(), "waiting for a run");
   const auto found = running.find(process);
   if (found == running.end()) return;
   SweepRun& run = *found->second;
-  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : exit_machine;
+  // A kind that cannot end between increments is ended by the signal.
+  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : passed_on ? exit_interrupted : exit_machine;
   fmt::print("{}: {}\n", run.name, status_name(run.exit_code));
   std::fflush(stdout);
   running.erase(found);
@@ -109,12 +120,13 @@ void wait_for_one(std::map<pid_t, SweepRun*>& running) {
 
 void run_all(Sweep& sweep, const SweepOptions& options) {
   std::map<pid_t, SweepRun*> running;
+  bool passed_on = false;
   for (SweepRun& run : sweep.runs) {
-    while (static_cast<int>(running.size()) >= options.processes) wait_for_one(running);
+    while (static_cast<int>(running.size()) >= options.processes) wait_for_one(running, passed_on);
     if (interrupted()) break;
     running.emplace(start(run, sweep.base, options), &run);
   }
-  while (!running.empty()) wait_for_one(running);
+  while (!running.empty()) wait_for_one(running, passed_on);
 }
 
 /// One row a run: its end, and the further columns of its last increment.
