@@ -54,7 +54,8 @@ struct PackingCase {
   std::vector<std::int64_t> seeds;      ///< the seeds to make (kind = pack); empty: those of seed and candidates
   int candidates = 1;                   ///< seeds tried; the one with the least |tau_xy|/sigma_yy is taken
   bool mirrored = true;                 ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
-  std::filesystem::path file;           ///< NAME_particles.csv of another code's packing; empty: made from the recipe
+  std::filesystem::path file;           ///< NAME_particles.csv of another code's packing, or a packing_*.h5; empty: made from
+                                        ///< the recipe. It brings its own grains: `grains`, seeds and density do not count
   std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
   double consolidation_friction = 0.0;  ///< friction coefficient mu_t during consolidation [-]
   double void_ratio = 0.0;              ///< wanted at `pressure` [-]: mu_t is found for it; 0: consolidation_friction holds
@@ -128,6 +129,8 @@ struct NewtonCase {
 /// [output]
 struct OutputCase {
   int every = 1;          ///< increments of a stage between two result files; a stage's last is always written
+  int checkpoint_every = 1;  ///< increments of a stage between two checkpoints; a stage's last, and where a run stops, has one
+  std::vector<std::string> fields;  ///< names of the fields written (io/FORMAT.md); empty: all
   std::vector<std::int64_t> rves;  ///< Gauss points whose whole RVE is written with each increment
   kernels::MicrostructureRequest microstructure;  ///< fields of the contact network; nothing unless asked for
 };

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "host/case_tables.hpp"
+#include "host/case_size.hpp"
 #include "host/microstructure_fields.hpp"
 #include "io/units.hpp"
 
@@ -109,10 +110,15 @@ NewtonCase read_newton(const io::Table& table) {
 OutputCase read_output(const io::Table& table) {
   OutputCase output;
   read_integer(table, "every", output.every, {.at_least = 1, .at_most = 1'000'000});
+  read_integer(table, "checkpoint_every", output.checkpoint_every, {.at_least = 1, .at_most = 1'000'000});
   output.rves = table.integers("rves", {.at_least = 0}, std::vector<std::int64_t>{});
   const std::set<std::int64_t> different(output.rves.begin(), output.rves.end());
   if (different.size() != output.rves.size()) throw table.error("rves", "names a point twice");
   output.microstructure = read_microstructure(table);
+  output.fields = table.texts("fields", std::vector<std::string>{});
+  for (const std::string& name : output.fields) {
+    if (components_of_field(name) == 0) throw table.error("fields", "\"" + name + "\" is no field, see io/FORMAT.md");
+  }
   return output;
 }
 

@@ -42,6 +42,36 @@ double steps_per_evaluation(const Case& input, double strain, double pressure) {
          std::min(hold_steps, static_cast<double>(input.engine.hold_cap));
 }
 
+/// Packings of one pressure.
+std::size_t packings(const Case& input) {
+  return input.packing.file.empty() ? seeds_of(input.packing).size() : std::size_t{1};
+}
+
+/// `biaxial` and `probe`: tests of packings, no mesh.
+CaseSize test_size(const Case& input) {
+  CaseSize size;
+  if (input.kind == CaseKind::probe) {
+    const ProbeCase& probe = input.probe;
+    double steps = 6.0 * steps_per_evaluation(input, probe.strain, probe.pressure);
+    for (const PathSegment& segment : probe.path) {
+      const auto& g = segment.gradient;
+      const double strain = std::sqrt(g[0] * g[0] + g[3] * g[3] + 0.5 * (g[1] + g[2]) * (g[1] + g[2]));
+      steps += segment.increments * steps_per_evaluation(input, strain, probe.pressure);
+    }
+    const std::size_t copies = packings(input) * static_cast<std::size_t>(probe.replicas);
+    size.tests = 6 * copies;
+    size.particle_steps = static_cast<double>(copies) * input.packing.grains * steps;
+    return size;
+  }
+  const BiaxialCase& test = input.biaxial;
+  for (const double pressure : test.pressures) {
+    const double steps = inertial_steps(input.soil, test.strain, pressure, test.inertial_number);
+    size.particle_steps += static_cast<double>(packings(input)) * input.packing.grains * steps;
+  }
+  size.tests = packings(input) * test.pressures.size();
+  return size;
+}
+
 CaseSize specimen_size(const Case& input) {
   const BiaxialBvpCase& test = input.biaxial_bvp;
   CaseSize size;
@@ -76,13 +106,8 @@ CaseSize search_size(const Case& input) {
   return size;
 }
 
-}  // namespace
-
-CaseSize case_size(const Case& input) {
+CaseSize ground_size(const Case& input) {
   CaseSize size;
-  if (input.kind == CaseKind::biaxial_bvp) return specimen_size(input);
-  if (input.kind == CaseKind::calibrate) return search_size(input);
-  if (input.kind != CaseKind::column && input.kind != CaseKind::tunnel) return size;
   const bool with_tunnel = input.kind == CaseKind::tunnel;
   const std::size_t gravity = gravity_targets(input).size();
   const auto loss = with_tunnel ? static_cast<std::size_t>(input.volume_loss.increments) : std::size_t{0};
@@ -103,6 +128,19 @@ CaseSize case_size(const Case& input) {
     size.particle_steps += size.grains * loss_evaluations * static_cast<double>(loss) *
                            steps_per_evaluation(input, loss_strain * step, pressure);
   }
+  return size;
+}
+
+}  // namespace
+
+CaseSize case_size(const Case& input) {
+  CaseSize size;
+  if (input.kind == CaseKind::biaxial || input.kind == CaseKind::probe) size = test_size(input);
+  if (input.kind == CaseKind::biaxial_bvp) size = specimen_size(input);
+  if (input.kind == CaseKind::calibrate) size = search_size(input);
+  if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) size = ground_size(input);
+  if (size.points > 0) add_storage(input, size);
+  size.packings = packings(input) * (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
   return size;
 }
 

@@ -51,17 +51,8 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
   std::printf("%s\n", input.resolved.c_str());
   if (uses_engine(input)) std::printf("# %s\n", engine_note(input.engine).c_str());
   const CaseSize size = case_size(input);
-  if (size.tests > 0) {
-    std::printf("# %zu biaxial tests, %.2g particle-steps by an estimate good to a factor of 2, packings apart\n", size.tests,
-                size.particle_steps);
-  }
-  if (size.points == 0) return exit_ok;
-  std::printf("# %zu Gauss points, %zu in the column, %zu increments planned\n", size.points, size.column_points,
-              size.increments);
-  if (size.grains > 0) {
-    std::printf("# %.3g grains in all, about %.2g particle-steps (an estimate, good to a factor of 2)\n", size.grains,
-                size.particle_steps);
-  }
+  check_snapshot_points(input, size);
+  for (const std::string& line : describe(input, size)) std::printf("# %s\n", line.c_str());
   return exit_ok;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "io/atomic_file.hpp"
 #include "io/case_file.hpp"
@@ -15,7 +16,7 @@ namespace {
 /// What a run leaves before it has a run.h5.
 constexpr std::array<std::string_view, 4> first_names{"run.log", "increments", "checkpoints", "column"};
 /// What it leaves besides. run.h5 is last: as long as it is there, the folder is known for one of results.
-constexpr std::array<std::string_view, 4> further_names{"result.xdmf", "k0.csv", "probe.csv", "run.h5"};
+constexpr std::array<std::string_view, 5> further_names{"result.xdmf", "k0.csv", "path.csv", "probe.csv", "run.h5"};
 
 /// A run killed in its first moment has left this.
 bool is_left_by_a_start(const std::filesystem::directory_entry& entry) {
@@ -24,7 +25,9 @@ bool is_left_by_a_start(const std::filesystem::directory_entry& entry) {
 }
 
 bool is_left_by_a_probe(const std::filesystem::directory_entry& entry) {
-  return entry.path().filename() == "probe.csv" || is_left_by_a_start(entry);
+  const std::string name = entry.path().filename().string();
+  const bool is_end = name.starts_with("end_") && entry.path().extension() == ".h5";
+  return name == "probe.csv" || name == "path.csv" || is_end || is_left_by_a_start(entry);
 }
 
 /// Fingerprint of the case that made the results; throws io::InputError where run.h5 is no result of this program.
@@ -69,6 +72,13 @@ void remove_earlier_run(const RunOptions& options) {
   namespace fs = std::filesystem;
   if (!fs::exists(options.folder / "run.h5") && !fs::exists(options.folder / "probe.csv")) return;  // what a start left is overwritten by the next one
   for (const std::string_view name : first_names) fs::remove_all(options.folder / name);
+  if (fs::exists(options.folder / "probe.csv")) {
+    std::vector<fs::path> ends;
+    for (const auto& entry : fs::directory_iterator(options.folder)) {
+      if (is_left_by_a_probe(entry) && entry.path().extension() == ".h5") ends.push_back(entry.path());
+    }
+    for (const fs::path& end : ends) fs::remove(end);
+  }
   for (const std::string_view name : further_names) fs::remove(options.folder / name);
   io::remove_leftovers(options.folder);
 }

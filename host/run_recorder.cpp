@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -91,6 +92,13 @@ void RunRecorder::write(io::IncrementInfo info, const std::vector<io::Field>& fi
                         const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates) {
   info.index = ++result_index_;
   writer_->write(info, fields, snapshots, coordinates);
+  ++files_;
+  file_bytes_ += static_cast<double>(std::filesystem::file_size(io::increment_path(folder_, info.index)));
+}
+
+std::string RunRecorder::disk_use() const {
+  return fmt::format("{} result files of {:.3g} MB, checkpoint of {:.3g} MB", files_, file_bytes_ / std::max(files_, 1) * 1e-6,
+                     checkpoint_bytes_ * 1e-6);
 }
 
 void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn> columns) {
@@ -106,6 +114,8 @@ void RunRecorder::save(io::Checkpoint checkpoint, const std::string& stage, int 
   host::save(totals_, checkpoint);
   const std::array<std::int64_t, 3> record{stage_index, result_index_, finished ? 1 : 0};
   checkpoint.put_integers("record", record);
+  checkpoint_bytes_ = 0;
+  for (const auto& [name, bytes] : checkpoint.blobs()) checkpoint_bytes_ += static_cast<double>(bytes.size());
   store_.save(++sequence_, checkpoint);
 }
 

@@ -41,6 +41,9 @@ class RunRecorder {
   /// One line about a finished increment, in the log and on the terminal.
   void report(const io::IncrementInfo& info);
 
+  /// "12 result files of 0.9 MB, checkpoint of 145 MB": written by this process.
+  [[nodiscard]] std::string disk_use() const;
+
   /// Writes a result file; `info.index` is set here.
   void write(io::IncrementInfo info, const std::vector<io::Field>& fields,
              const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates);
@@ -66,6 +69,9 @@ class RunRecorder {
   bool finished_ = false;
   int sequence_ = 0;      ///< checkpoints so far
   int result_index_ = 0;  ///< last result file
+  int files_ = 0;               ///< result files written by this process
+  double file_bytes_ = 0;       ///< of all of them
+  double checkpoint_bytes_ = 0; ///< of the last one
   std::vector<StageTotals> totals_;
   std::string stage_;
   int stage_done_ = 0;     ///< increments of the stage behind the start of this process

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "host/interrupt.hpp"
+#include "host/resources.hpp"
 #include "host/snapshot_source.hpp"
 
 namespace voussoir::host {
@@ -60,8 +61,9 @@ class StageRun {
     }
     if (stage_.on_step) stage_.on_step(step);
     if (!step.target) return true;
-    finish_increment(step);
-    return !interrupted();
+    const bool stop = interrupted();  // asked once: whoever stops here has a checkpoint
+    finish_increment(step, stop);
+    return !stop;
   }
 
   void failed(const fem::FailedStep& step) {
@@ -97,6 +99,7 @@ class StageRun {
     info_.extra["time_assembly"] = {times_.assembly, "s"};
     info_.extra["time_solve"] = {times_.solve, "s"};
     info_.extra["time_output"] = {output_, "s"};
+    info_.extra["peak_memory"] = {peak_memory(), "B"};
     recorder_.stage_totals().evaluations.push_back(info_.evaluations);
     recorder_.stage_totals().wall += info_.wall_s;
   }
@@ -112,7 +115,7 @@ class StageRun {
     since_ = Clock::now();
   }
 
-  void finish_increment(const fem::ConvergedStep& step) {
+  void finish_increment(const fem::ConvergedStep& step, bool stop) {
     const double tolerance = ground_.input.newton.tolerance;
     info_.stage_index = ++done_;
     info_.load_parameter = step.to;
@@ -133,7 +136,7 @@ class StageRun {
     if (last_target || done_ % ground_.input.output.every == 0) {
       record_ground(ground_, info_, step.increment.reactions, recorder_);
     }
-    checkpoint(stage_.last && last_target);
+    if (last_target || stop || done_ % ground_.input.output.checkpoint_every == 0) checkpoint(stage_.last && last_target);
     recorder_.report(info_);
     close_increment();
   }
@@ -175,7 +178,12 @@ void record_ground(const Ground& ground, const io::IncrementInfo& info, const Ei
   if (const auto* source = dynamic_cast<const SnapshotSource*>(&ground.material)) {
     if (!ground.input.output.rves.empty()) snapshots = source->snapshots(ground.input.output.rves);
   }
-  recorder.write(info, result_fields(ground, reactions), snapshots, moved_coordinates(ground));
+  std::vector<io::Field> fields = result_fields(ground, reactions);
+  const std::vector<std::string>& wanted = ground.input.output.fields;
+  std::erase_if(fields, [&](const io::Field& field) {
+    return !wanted.empty() && std::find(wanted.begin(), wanted.end(), field.name) == wanted.end();
+  });
+  recorder.write(info, fields, snapshots, moved_coordinates(ground));
 }
 
 RunStatus advance_stage(Ground& ground, const Stage& stage, RunRecorder& recorder) {
@@ -198,6 +206,7 @@ RunStatus advance_stage(Ground& ground, const Stage& stage, RunRecorder& recorde
                         {.on_converged = [&](const fem::ConvergedStep& step) { return run.converged(step); },
                          .on_failed = [&](const fem::FailedStep& step) { run.failed(step); }});
   run.end();
+  recorder.log().line(fmt::format("{}: {}, peak memory {:.0f} MB", stage.name, recorder.disk_use(), peak_memory() * 1e-6));
   if (report.status == fem::StepStatus::gave_up) {
     recorder.log().line(fmt::format("{} failed: {}", stage.name, report.message));
     return RunStatus::failed;

@@ -8,13 +8,13 @@
 #include <string_view>
 
 #include "io/atomic_file.hpp"
-#include "io/hash.hpp"
+#include "io/checksum.hpp"
 
 namespace voussoir::io {
 
 namespace {
 
-constexpr std::string_view magic = "voussoir checkpoint 1";
+constexpr std::string_view magic = "voussoir checkpoint 2";
 namespace fs = std::filesystem;
 
 template <class T>
@@ -36,13 +36,13 @@ std::vector<T> values_of(const std::string& name, const std::vector<std::byte>& 
   return values;
 }
 
-/// Writes pieces and keeps the hash of all of them.
+/// Writes pieces and keeps the checksum of all of them.
 class HashedWriter {
  public:
   explicit HashedWriter(const fs::path& path) : file_(path, std::ios::binary) {}
 
   void bytes(std::span<const std::byte> piece) {
-    hash_ = fnv1a(piece, hash_);
+    sum_.add(piece);
     file_.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
   }
   void integer(std::uint64_t value) { bytes(std::as_bytes(std::span(&value, 1))); }
@@ -50,19 +50,19 @@ class HashedWriter {
     integer(value.size());
     bytes(std::as_bytes(std::span(value.data(), value.size())));
   }
-  /// Ends the file with the hash; false when anything could not be written.
+  /// Ends the file with the checksum; false when anything could not be written.
   bool finish() {
-    integer(hash_);
+    integer(sum_.value());
     file_.close();
     return !file_.fail();
   }
 
  private:
   std::ofstream file_;
-  std::uint64_t hash_ = fnv_start;
+  Checksum sum_;
 };
 
-/// Takes pieces from bytes whose hash was checked; a length beyond the end still throws.
+/// Takes pieces from bytes whose checksum was right; a length beyond the end still throws.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -107,7 +107,9 @@ Content read(const fs::path& path) {
     throw std::runtime_error("cannot be read");
   }
   const auto body = std::span<const std::byte>(all).first(all.size() - sizeof(std::uint64_t));
-  if (Reader(std::span<const std::byte>(all).last(sizeof(std::uint64_t))).integer() != fnv1a(body)) {
+  Checksum sum;
+  sum.add(body);
+  if (Reader(std::span<const std::byte>(all).last(sizeof(std::uint64_t))).integer() != sum.value()) {
     throw std::runtime_error("is damaged (checksum)");
   }
   Reader reader(body);

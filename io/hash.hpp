@@ -1,5 +1,5 @@
 #pragma once
-/// FNV-1a, 64 bit (Fowler, Noll, Vo): fingerprints of cases and recipes, checksums of checkpoints. Not for security.
+/// FNV-1a, 64 bit (Fowler, Noll, Vo): fingerprints of cases and recipes. Not for security.
 
 #include <cstddef>
 #include <cstdint>

@@ -69,7 +69,7 @@ for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml"
     if figures:
         draw_and_read_back(results, figures)
     foretold = re.search(r"about (\S+) particle-steps", checked.stdout)
-    if foretold:
+    if foretold and particle_steps(results) > 0:  # tests without a mesh do not record their work
         ratio = float(foretold[1]) / particle_steps(results)
         check(1 / ESTIMATE < ratio < ESTIMATE, f"cases/{case}: `check` foretells {ratio:.2g} times the work done")
         print(f"cases/{case}: `check` foretells {ratio:.2g} times the work done")

@@ -17,7 +17,7 @@ import numpy as np
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 PROGRAM = os.environ["VOUSSOIR"]
 # All that two equal runs may differ in.
-NOT_COMPARED = {"wall_s", "time_grains", "time_assembly", "time_solve", "time_output"}
+NOT_COMPARED = {"wall_s", "peak_memory", "time_grains", "time_assembly", "time_solve", "time_output"}
 
 
 def command(case, folder, settings=(), *further):

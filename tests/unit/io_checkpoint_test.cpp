@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "io/checkpoint.hpp"
+#include "io/checksum.hpp"
 
 namespace voussoir::io {
 namespace {
@@ -112,6 +113,24 @@ TEST_F(CheckpointTest, AnotherCaseIsRefused) {
 TEST_F(CheckpointTest, UnwritableFolderIsAnError) {
   std::ofstream(folder_) << "a file where the folder should be";
   EXPECT_THROW(store_.save(1, example(1)), std::runtime_error);
+}
+
+TEST(ChecksumTest, IsOfTheSequenceNotOfItsPiecesAndSeesEveryBit) {
+  std::vector<std::byte> bytes(61);
+  for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<std::byte>(37 * k);
+  const auto sum_of = [](std::span<const std::byte> all, std::size_t piece) {
+    Checksum sum;
+    for (std::size_t at = 0; at < all.size(); at += piece) sum.add(all.subspan(at, std::min(piece, all.size() - at)));
+    return sum.value();
+  };
+  const std::uint64_t whole = sum_of(bytes, bytes.size());
+  for (const std::size_t piece : {1, 3, 8, 11, 40}) EXPECT_EQ(sum_of(bytes, piece), whole) << piece;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    auto damaged = bytes;
+    damaged[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+    EXPECT_NE(sum_of(damaged, 8), whole) << bit;
+  }
+  EXPECT_NE(sum_of(std::vector<std::byte>(8), 8), sum_of(std::vector<std::byte>(9), 8));
 }
 
 }  // namespace
