@@ -7,7 +7,8 @@ import time
 
 from program import check, check_same, command, fresh, run
 
-ELASTIC = ["volume_loss.increments=15", "volume_loss.total=2 %", "output.checkpoint_every=4"]
+ELASTIC = ["volume_loss.increments=15", "volume_loss.total=2 %", "ground.mesh_size_opening=2.5 m",
+           "ground.mesh_size_far=8 m", "output.checkpoint_every=4"]
 GRAINS = ["packing.grains=100", "packing.candidates=1", "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m",
           "column.elements=4", "gravity.ratio=2", "gravity.uniform_step=0.3", "volume_loss.total=0.5 %",
           "volume_loss.increments=2", "newton.tolerance=0.01", "output.rves=[3, 4]", "packing.folder=packings"]

@@ -58,13 +58,14 @@ check(written == ["displacement", "stress"], f"output.fields was not obeyed: {wr
 check("peak memory" in (some / "run.log").read_text(), "the log does not tell memory and disk")
 
 # A request to stop reaches the runs of a sweep, which end after their increment and are gone on from.
+SWEPT = ["volume_loss.increments=15", "volume_loss.total=2 %", "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m"]
 Path("sweep.toml").write_text(f"""base = '{ROOT / "cases/tunnel_elastic/case.toml"}'
 [[run]]
 name = "one"
-set = ["volume_loss.increments=40"]
+set = {SWEPT}
 [[run]]
 name = "two"
-set = ["volume_loss.increments=41"]
+set = {SWEPT[1:]}
 """)
 out = fresh("swept")
 words = [PROGRAM, "sweep", "sweep.toml", "-o", str(out), "--threads", "1"]
@@ -78,5 +79,5 @@ check(process.wait(timeout=120) == 130, f"a stopped sweep ended with {process.re
 rows = (out / "summary.csv").read_text().splitlines()
 check("one,interrupted,130" in rows[1] and "two,not run" in rows[2], f"summary of a stopped sweep: {rows}")
 run([*words, "--resume"])
-run(command("tunnel_elastic", fresh("alone"), ["volume_loss.increments=40"]))
+run(command("tunnel_elastic", fresh("alone"), SWEPT))
 check_same("alone", out / "one")
