@@ -28,6 +28,11 @@ def draw(result, path):
     top.set_ylabel("relative residual  [-]")
     middle.bar(index, column["evaluations"], width=0.85, color="0.75", label="evaluations, cut tries included")
     middle.bar(index, column["iterations"], width=0.5, color="C0", label="iterations")
+    relaxed = np.array([float(i.attributes.get("relaxations", 0)) for i in increments])
+    cuts = np.array([float(i["cuts"]) for i in increments])
+    for number, marker, label in ((relaxed, ".", "substeps of relaxation"), (cuts, "x", "cuts")):
+        if number.any():
+            middle.plot(index[number > 0], number[number > 0], marker, color="C3", markersize=5, label=f"{label}, {number.sum():.0f} in all")
     middle.set_ylabel("number  [-]")
     middle.legend()
     _draw_times(bottom, index, increments, column["wall_s"])

@@ -17,8 +17,19 @@ def write(result, path):
              f"{trends.percent(result.volume_loss[-1])} in {len(result.loss_increments) - 1} increments. The trends are those of the study "
              "(tools/voussoir_plots/README.md says how each is judged).", "", "| trend | verdict | numbers |", "|---|---|---|"]
     lines += [f"| {row.statement} | **{row.verdict}** | {row.numbers} |" for row in rows]
+    lines += ["", _solution(result)]
     lines += ["", "Points: " + "; ".join(describe(result, p) for p in points.all_points(result)) + "."]
     path.write_text("\n".join(lines) + "\n")
+
+
+def _solution(result):
+    """How the increments were found, in a sentence: a trend is worth no more than they are."""
+    found = result.increments
+    number = (lambda name: np.array([float(i.attributes.get(name, 0)) for i in found]))
+    relaxed, losing = number("relaxations") > 0, number("volume_loss") > 0
+    return (f"Of {len(found)} increments {number('converged').sum():.0f} converged, the largest residual {number('residual').max():.2g} of the "
+            f"reference; {number('cuts').sum():.0f} cuts, {relaxed.sum()} increments relaxed; {np.median(number('evaluations')[losing]):.3g} "
+            f"evaluations (median) and at most {number('evaluations')[losing].max():.0f} an increment of the volume loss.")
 
 
 def describe(result, point):

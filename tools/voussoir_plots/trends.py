@@ -211,7 +211,7 @@ def contracts_until(loss, volumetric, wanted=0.15):
     most = int(np.argmax(volumetric))
     text = (f"largest contraction {percent(volumetric[most])} at V_l = {percent(loss[most])}, {percent(volumetric[-1])} at the end "
             f"({percent(loss[-1])})")
-    if loss[-1] < wanted - 1e-9 and most == len(loss) - 1:
+    if loss[-1] < wanted - 1e-9 and volumetric[-1] > 0.5 * volumetric[most]:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; {text}")
     return Trend(statement, verdict(loss[most] >= wanted - 0.03), text)
 
