@@ -122,11 +122,11 @@ void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<
       const GrainLanes<V>& gj = group.grains[static_cast<std::size_t>(shape.other)];
       const auto at = geometry_of(pair, group.motion, gj.u_x - group.grains[i].u_x, gj.u_y - group.grains[i].u_y);
       if (!Kokkos::Experimental::any_of(at.gap < zero)) continue;
-      const PairDistance<V> distance = distance_of(overlap_measure(at, shape), V(shape.sum_radii));
-      const V to_unit = distance.inverse_ratio * V(shape.inverse_sum);
+      const PairDistance<V> distance = distance_of(at.gap, shape);
+      const V to_unit = distance.inverse_length;
       const ContactStiffness<V> k =
           law_of<Law, V>(shape).stiffness(distance.overlap, {pair.tangential, pair.moment}, share);
-      const V y = distance.inverse_ratio;
+      const V y = V(shape.sum_radii) * to_unit;
       system.springs.push_back(
           {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling});
       system.shapes.push_back({shape.other, shape.radius_other});

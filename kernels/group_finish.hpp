@@ -43,11 +43,11 @@ void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
   }
 }
 
-/// Contacts at the final positions with the history that is kept.
+/// Contacts at the final positions with the history that is kept, of the lanes that are `stored`.
 template <class Run>
-void store_contacts(const Run& run, std::size_t l, std::size_t rve) {
+void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) {
   RveStates& to = run.batch->trial;
-  int count = 0;
+  std::array<int, Run::width> count{};
   for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
     const auto& gi = run.group.grains[i];
     for (auto p = static_cast<std::size_t>(run.group.row[i]); p < static_cast<std::size_t>(run.group.row[i + 1]); ++p) {
@@ -55,17 +55,22 @@ void store_contacts(const Run& run, std::size_t l, std::size_t rve) {
       const auto& gj = run.group.grains[static_cast<std::size_t>(j)];
       const auto& pair = run.group.pairs[p];
       const auto at = geometry_of(pair, run.group.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
-      if (!(at.gap[l] < 0)) continue;
-      to.contact_key(rve, count) = pair_key(static_cast<int>(i), j);
-      to.contact_history(rve, count, 0) = static_cast<double>(pair.tangential[l]);
-      to.contact_history(rve, count, 1) = static_cast<double>(pair.moment[l]);
-      ++count;
+      for (std::size_t l = 0; l < Run::width; ++l) {
+        if (!stored[l] || !(at.gap[l] < 0)) continue;
+        const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
+        const int c = count[l]++;
+        to.contact_key(rve, c) = pair_key(static_cast<int>(i), j);
+        to.contact_history(rve, c, 0) = static_cast<double>(pair.tangential[l]);
+        to.contact_history(rve, c, 1) = static_cast<double>(pair.moment[l]);
+      }
     }
   }
-  to.contact_count(rve) = count;
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    if (stored[l]) to.contact_count(static_cast<std::size_t>(run.lanes[l].rve)) = count[l];
+  }
 }
 
-/// The lane's final configuration as the RVE's trial state. False where it cannot be stored.
+/// The lane's final configuration as the RVE's trial state, but for its contacts. False where it cannot be stored.
 template <class Run>
 [[nodiscard]] bool store(Run& run, std::size_t l, const RveReport& report) {
   const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
@@ -81,7 +86,6 @@ template <class Run>
     to.rotation(rve, i) = run.batch->committed.rotation(rve, i) + run.lanes[l].rotation +
                           static_cast<double>(run.group.grains[i].rotation[l]);
   }
-  store_contacts(run, l, rve);
   return true;
 }
 
@@ -100,14 +104,17 @@ void finish(Run& run, std::span<RveReport> reports) {
     }
   }
   if (run.settings.tangent != TangentKind::contact) replace_tangents<Law>(run, answers);
+  std::array<bool, Run::width> stored{};
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0) continue;
     RveReport& report = answers[l];
     if (!is_failure(report.status) && !store(run, l, report)) report.status = RveStatus::neighbour_overflow;
     const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
-    if (is_failure(report.status)) copy_state(run.batch->committed, run.batch->trial, rve, run.group.grains.size());
+    stored[l] = !is_failure(report.status);
+    if (!stored[l]) copy_state(run.batch->committed, run.batch->trial, rve, run.group.grains.size());
     reports[rve] = report;
   }
+  store_contacts(run, stored);
 }
 
 }  // namespace voussoir::kernels

@@ -23,10 +23,10 @@ template <class Law, class Run>
       const auto& pair = run.group.pairs[p];
       const auto at = geometry_of(pair, run.group.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
       if (!(at.gap[l] < 0)) continue;
-      const PairDistance<V> distance = distance_of(overlap_measure(at, shape), V(shape.sum_radii));
+      const PairDistance<V> distance = distance_of(at.gap, shape);
       typename Law::History history{pair.tangential, pair.moment};
       const auto force = law_of<Law, V>(shape)({distance.overlap, zero, zero}, history);
-      const V to_unit = distance.inverse_ratio * V(shape.inverse_sum);
+      const V to_unit = distance.inverse_length;
       out.push_back({static_cast<int>(i), shape.other, static_cast<double>((at.branch_x * to_unit)[l]),
                      static_cast<double>((at.branch_y * to_unit)[l]), static_cast<double>(force.normal[l])});
     }

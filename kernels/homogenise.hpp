@@ -58,7 +58,7 @@ KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<V>& pair, const PairSh
   out.action = act<Law>(pair, shape, at, still, zero, zero, zero, zero, radius_i);
   out.weight = Kokkos::Experimental::condition(at.gap < zero, one, zero);
   out.overlap = overlap_measure(at, shape);
-  const V to_unit = distance_of(out.overlap, V(shape.sum_radii)).inverse_ratio * V(shape.inverse_sum);
+  const V to_unit = distance_of(at.gap, shape).inverse_length;
   const V nx = at.branch_x * to_unit, ny = at.branch_y * to_unit;
   out.normal = spring_terms(out.weight * V(shape.normal_stiffness), nx, ny, at);
   out.tangential = spring_terms(out.weight * V(shape.tangential_stiffness), -ny, nx, at);

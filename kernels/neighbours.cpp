@@ -92,7 +92,8 @@ struct Level {
 std::vector<std::vector<int>> sort_by_size(std::span<const double> radii, double largest) {
   std::vector<std::vector<int>> levels;
   for (std::size_t i = 0; i < radii.size(); ++i) {
-    const auto level = static_cast<std::size_t>(std::max(0, std::ilogb(largest / radii[i])));
+    std::size_t level = 0;
+    for (double diameter = 2.0 * radii[i]; diameter <= largest; diameter *= 2.0) ++level;
     if (level >= levels.size()) levels.resize(level + 1);
     levels[level].push_back(static_cast<int>(i));
   }

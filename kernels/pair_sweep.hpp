@@ -16,34 +16,36 @@ enum class Sweep {
   measure,  ///< also sums stress and unbalanced force
 };
 
-/// Distances of a pair, from e = -g/R^2 (0 < e < 0.51 in contact, where overlaps reach 0.3; e = 0 without).
+/// Distances of a pair.
 template <class V>
 struct PairDistance {
-  V overlap;        ///< delta = R q, q = 1 - sqrt(1 - e) [m]
-  V inverse_ratio;  ///< y = R/|b| = (1 - e)^(-1/2)
+  V overlap;         ///< delta = R q, q = 1 - sqrt(1 - e) [m]; 0 in lanes that do not touch
+  V inverse_length;  ///< y/R = 1/|b|, y = R/|b| = (1 - e)^(-1/2) [1/m]
 };
 
-/// Polynomials in e, sharpened by one Newton step: of y on y^2 (1 - e) = 1, of q (in double) on q (2 - q) = e, whose slope is
-/// 2/y. Fitted to relative errors that grow with e, the leading terms of q being exact, over 0 .. 0.51. Relative errors of y and
-/// delta in float: 1e-9 and 1e-9 at 1 % overlap, 3e-7 and 8e-7 at 10 %, 4e-6 and 1.5e-5 at 30 %, where an RVE is given up; in double
-/// 3e-13 and rounding, 1e-8 and 5e-10, 8e-7 and 2e-7.
-template <class V>
-KOKKOS_FORCEINLINE_FUNCTION PairDistance<V> distance_of(const V& e, const V& sum_radii) {
-  using real = real_of<V>;
+/// Polynomials in e = -g/R^2, y sharpened by one Newton step on y^2 (1 - e) = 1. Fitted to relative errors that grow with e, the
+/// leading terms of q being exact, over 0 .. 0.51. Relative errors of 1/|b| and delta at 1, 10 and 30 % overlap, where an RVE is
+/// given up: in float 1e-9 and 1e-9, 3e-7 and 8e-7, 4e-6 and 1.5e-5; in double 3e-13 and 1e-12, 1e-8 and 5e-8, 8e-7 and 1e-6.
+/// Written for a short chain, since every contact waits for its own.
+template <class V, class real>
+KOKKOS_FORCEINLINE_FUNCTION PairDistance<V> distance_of(const V& gap, const PairShape<real>& shape) {
   const auto c = [](double x) { return V(static_cast<real>(x)); };
   const V half = c(0.5);
-  const auto sharpened = [&](const V& y) { return y * fused(-fused(e, -half, half), y * y, c(1.5)); };
+  const V e = gap * V(shape.minus_inverse_sum_squared);
+  const V e2 = e * e;
+  V y, p;
   if constexpr (sizeof(real) == sizeof(float)) {
-    const V y = fused(fused(fused(c(0.740802381), e, c(0.274579086)), e, c(0.503145986)), e, c(1));
-    V p = fused(fused(c(0.056653811), e, c(0.012835278)), e, c(0.040743878));
-    p = fused(fused(fused(p, e, c(0.062470505)), e, c(0.125)), e, half);
-    return {(sum_radii * e) * p, sharpened(y)};
+    y = fused(fused(c(0.740802381), e, c(0.274579086)), e2, fused(e, c(0.503145986), c(1)));
+    p = fused(fused(c(0.056653811), e, c(0.012835278)), e2, fused(c(0.040743878), e, c(0.062470505)));
+    p = fused(p, e2, fused(c(0.125), e, half));
   } else {
-    V y = fused(fused(fused(c(0.664884646), e, c(0.220350043)), e, c(0.377895157)), e, half);
-    y = sharpened(fused(y, e, c(1)));
-    const V q = e * fused(fused(fused(c(0.061459312), e, c(0.060793323)), e, c(0.125)), e, half);
-    return {sum_radii * fused(half * y, fused(q, q - c(2), e), q), y};
+    y = fused(fused(c(0.664884646), e2, fused(c(0.220350043), e, c(0.377895157))), e2, fused(e, half, c(1)));
+    const V high = fused(fused(c(0.050388237365318), e, c(-0.005667201708849)), e2, fused(c(0.025112181152024), e, c(0.027009218300492)));
+    p = fused(high, e2 * e2, fused(fused(c(0.039067561634641), e, c(0.0625)), e2, fused(c(0.125), e, half)));
   }
+  const V overlap = V(shape.sum_radii) * e * p;
+  const V sharper = fused(-fused(e, -half, half), y * y, c(1.5));
+  return {Kokkos::Experimental::condition(gap < V(0), overlap, V(0)), y * V(shape.inverse_sum) * sharper};
 }
 
 /// Force on i, and torques on both, of one pair.
@@ -86,14 +88,12 @@ template <class Law, class V, class real>
 KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShape<real>& shape, const PairGeometry<V>& at,
                                               const CellMotion<V>& cell, const V& dw_x, const V& dw_y, const V& spin_i,
                                               const V& spin_j, const V& radius_i) {
-  const PairDistance<V> distance = distance_of(overlap_measure(at, shape), V(shape.sum_radii));
-  const V inverse_length = distance.inverse_ratio * V(shape.inverse_sum);
-
+  const PairDistance<V> distance = distance_of(at.gap, shape);
   const V vx = fused(cell.d_xy, at.branch_y, dw_x);
   const V vy = fused(cell.d_xy, at.branch_x, fused(cell.d_difference, at.branch_y, dw_y));
-  const V cross = fused(vy, at.branch_x, -(vx * at.branch_y));
+  const V across = V(shape.sum_radii) * fused(vy, at.branch_x, -(vx * at.branch_y));
   const V radius_j = V(shape.radius_other);
-  const V sliding = fused(distance.inverse_ratio * inverse_length, cross, -fused(radius_j, spin_j, radius_i * spin_i));
+  const V sliding = fused(distance.inverse_length * distance.inverse_length, across, -fused(radius_j, spin_j, radius_i * spin_i));
 
   const Law law = law_of<Law, V>(shape);
   typename Law::History history{pair.tangential, pair.moment};
@@ -104,9 +104,9 @@ KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShap
   const V minus_half(real(-0.5));
   const V arm_i = fused(minus_half, distance.overlap, radius_i);
   const V arm_j = fused(minus_half, distance.overlap, radius_j);
-  const V n = f.normal * inverse_length;
-  const V t = f.tangential * inverse_length;
-  PairAction<V> action{-fused(n, at.branch_x, t * at.branch_y), fused(t, at.branch_x, -(n * at.branch_y)), V(0), V(0)};
+  const V nx = at.branch_x * distance.inverse_length;
+  const V ny = at.branch_y * distance.inverse_length;
+  PairAction<V> action{-fused(f.tangential, ny, f.normal * nx), fused(f.tangential, nx, -(f.normal * ny)), V(0), V(0)};
   if constexpr (Law::has_rolling) {
     action.torque_i = fused(arm_i, f.tangential, f.moment);
     action.torque_j = fused(arm_j, f.tangential, -f.moment);
