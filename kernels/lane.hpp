@@ -131,4 +131,3 @@ template <class Mask>
 }
 
 }  // namespace voussoir::kernels
-

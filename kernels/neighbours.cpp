@@ -27,16 +27,19 @@ struct Level {
   std::vector<int> member;           ///< grain, of an image too
   std::vector<double> x, y, radius;  ///< of the members
 
-  Level(std::span<const double> positions, std::span<const double> radii, const std::vector<int>& grains, const Cell& cell,
-        double largest, double skin) {
+  Level(std::span<const double> positions, std::span<const double> radii, const std::vector<int>& grains,
+        const Cell& cell, double largest, double skin) {
     const double width = 2.0 * largest + skin;
-    const double most = std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 2.0;  // more bins than grains find nothing
+    const double most =
+        std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 2.0;  // more bins than grains find nothing
     nx = static_cast<int>(std::clamp(cell.height(0) / width, 2.0, most));
     ny = static_cast<int>(std::clamp(cell.height(1) / width, 2.0, most));
     sort(images(positions, grains, cell), radii);
   }
 
-  [[nodiscard]] std::size_t bin(int column, int row) const { return static_cast<std::size_t>((nx + 2) * (row + 1) + column + 1); }
+  [[nodiscard]] std::size_t bin(int column, int row) const {
+    return static_cast<std::size_t>((nx + 2) * (row + 1) + column + 1);
+  }
 
   /// The bin of a point in the cell.
   [[nodiscard]] std::pair<int, int> slots(const Cell& cell, double px, double py) const {
@@ -52,7 +55,8 @@ struct Level {
 
   static int slot(double fraction, int n) { return std::clamp(static_cast<int>(fraction * n), 0, n - 1); }
 
-  [[nodiscard]] std::vector<Image> images(std::span<const double> positions, const std::vector<int>& grains, const Cell& cell) const {
+  [[nodiscard]] std::vector<Image> images(std::span<const double> positions, const std::vector<int>& grains,
+                                          const Cell& cell) const {
     std::vector<Image> all;
     all.reserve(2 * grains.size());
     for (const int i : grains) {
@@ -61,7 +65,8 @@ struct Level {
       const auto [a, b] = slots(cell, px, py);
       for (int v = b == ny - 1 ? -1 : 0; v <= (b == 0 ? 1 : 0); ++v) {
         for (int u = a == nx - 1 ? -1 : 0; u <= (a == 0 ? 1 : 0); ++u) {
-          all.push_back({i, bin(a + u * nx, b + v * ny), px + cell.h.xx * u + cell.h.xy * v, py + cell.h.yx * u + cell.h.yy * v});
+          all.push_back(
+              {i, bin(a + u * nx, b + v * ny), px + cell.h.xx * u + cell.h.xy * v, py + cell.h.yx * u + cell.h.yy * v});
         }
       }
     }
@@ -104,7 +109,8 @@ std::vector<std::vector<int>> sort_by_size(std::span<const double> radii, double
 std::size_t append_keys(unsigned near, int i, const int* members, std::uint32_t* to) {
 #if defined(VOUSSOIR_AVX512)  // without a branch, which would be mispredicted as often as not
   const __m256i own = _mm256_set1_epi32(i), other = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(members));
-  const __m256i key = _mm256_or_si256(_mm256_slli_epi32(_mm256_min_epi32(own, other), 16), _mm256_max_epi32(own, other));
+  const __m256i key =
+      _mm256_or_si256(_mm256_slli_epi32(_mm256_min_epi32(own, other), 16), _mm256_max_epi32(own, other));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_maskz_compress_epi32(static_cast<__mmask8>(near), key));
   return static_cast<std::size_t>(std::popcount(near));
 #else
@@ -124,7 +130,8 @@ struct Seeker {
 };
 
 /// Appends the keys of a grain with `level`'s members first .. last - 1 that are within reach.
-void append_near(const Seeker& one, const Level& level, int first, int last, std::vector<std::uint32_t>& keys, std::size_t& count) {
+void append_near(const Seeker& one, const Level& level, int first, int last, std::vector<std::uint32_t>& keys,
+                 std::size_t& count) {
   if (first >= last) return;
   const std::size_t most = count + static_cast<std::size_t>(last - first) + at_once;
   if (most > keys.size()) keys.resize(2 * most);
@@ -147,7 +154,8 @@ void append_within(const Level& level, double skin, std::vector<std::uint32_t>& 
   for (int row = 0; row < level.ny; ++row) {
     for (int column = 0; column < level.nx; ++column) {
       const int next = level.start[level.bin(column + 1, row) + 1];
-      const int above = level.start[level.bin(column - 1, row + 1)], above_end = level.start[level.bin(column + 1, row + 1) + 1];
+      const int above = level.start[level.bin(column - 1, row + 1)],
+                above_end = level.start[level.bin(column + 1, row + 1) + 1];
       for (int k = level.start[level.bin(column, row)]; k < level.start[level.bin(column, row) + 1]; ++k) {
         const auto at = static_cast<std::size_t>(k);
         const Seeker one{level.member[at], level.x[at], level.y[at], level.radius[at] + skin};
@@ -159,16 +167,16 @@ void append_within(const Level& level, double skin, std::vector<std::uint32_t>& 
 }
 
 /// Pairs of a level's members with a coarser level's.
-void append_between(const Level& level, const Level& coarser, const Cell& cell, double skin, std::vector<std::uint32_t>& keys,
-                    std::size_t& count) {
+void append_between(const Level& level, const Level& coarser, const Cell& cell, double skin,
+                    std::vector<std::uint32_t>& keys, std::size_t& count) {
   for (int r = 0; r < level.ny; ++r) {
     for (int k = level.start[level.bin(0, r)]; k < level.start[level.bin(level.nx - 1, r) + 1]; ++k) {
       const auto at = static_cast<std::size_t>(k);
       const Seeker one{level.member[at], level.x[at], level.y[at], level.radius[at] + skin};
       const auto [column, row] = coarser.slots(cell, one.x, one.y);
       for (int up = -1; up <= 1; ++up) {
-        append_near(one, coarser, coarser.start[coarser.bin(column - 1, row + up)], coarser.start[coarser.bin(column + 1, row + up) + 1],
-                    keys, count);
+        append_near(one, coarser, coarser.start[coarser.bin(column - 1, row + up)],
+                    coarser.start[coarser.bin(column + 1, row + up) + 1], keys, count);
       }
     }
   }

@@ -40,7 +40,8 @@ KOKKOS_FORCEINLINE_FUNCTION PairDistance<V> distance_of(const V& gap, const Pair
     p = fused(p, e2, fused(c(0.125), e, half));
   } else {
     y = fused(fused(c(0.664884646), e2, fused(c(0.220350043), e, c(0.377895157))), e2, fused(e, half, c(1)));
-    const V high = fused(fused(c(0.050388237365318), e, c(-0.005667201708849)), e2, fused(c(0.025112181152024), e, c(0.027009218300492)));
+    const V high = fused(fused(c(0.050388237365318), e, c(-0.005667201708849)), e2,
+                         fused(c(0.025112181152024), e, c(0.027009218300492)));
     p = fused(high, e2 * e2, fused(fused(c(0.039067561634641), e, c(0.0625)), e2, fused(c(0.125), e, half)));
   }
   const V overlap = V(shape.sum_radii) * e * p;
@@ -93,7 +94,8 @@ KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShap
   const V vy = fused(cell.d_xy, at.branch_x, fused(cell.d_difference, at.branch_y, dw_y));
   const V across = V(shape.sum_radii) * fused(vy, at.branch_x, -(vx * at.branch_y));
   const V radius_j = V(shape.radius_other);
-  const V sliding = fused(distance.inverse_length * distance.inverse_length, across, -fused(radius_j, spin_j, radius_i * spin_i));
+  const V sliding =
+      fused(distance.inverse_length * distance.inverse_length, across, -fused(radius_j, spin_j, radius_i * spin_i));
 
   const Law law = law_of<Law, V>(shape);
   typename Law::History history{pair.tangential, pair.moment};

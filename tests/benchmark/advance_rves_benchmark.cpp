@@ -1,5 +1,6 @@
-// Speed of the engine: executed steps x grains of live lanes over the wall time of `advance` (restore, lists, 400 steps, hold,
-// stress and eq. (4) included). 700 grains of dense coarse sand at 100 kPa; README.md says how to run and what it gave.
+// Speed of the engine: executed steps x grains of live lanes over the wall time of `advance` (restore, lists, 400
+// steps, hold, stress and eq. (4) included). Dense coarse sand and dense gravel at 100 kPa; README.md says how to run
+// and what it gave.
 
 #include "kernels/advance_rves.hpp"
 
@@ -32,14 +33,22 @@ struct Scene {
   EngineSettings settings;
 };
 
+host::PackedRve packed(host::Case input) {
+  input.packing.pressure = pressure;
+  input.packing.folder = "out/benchmark";  // where tools/bench_peers looks for it
+  const std::int64_t seed[] = {1};
+  return host::obtain_packings(input, seed).front();
+}
+
+/// CPS_D: 700 grains.
 const host::PackedRve& sand() {
-  static const host::PackedRve rve = [] {
-    host::Case input;
-    input.packing.pressure = pressure;
-    input.packing.folder = "out/benchmark";  // where tools/bench_peers looks for it
-    const std::int64_t seed[] = {1};
-    return host::obtain_packings(input, seed).front();
-  }();
+  static const host::PackedRve rve = packed({});
+  return rve;
+}
+
+/// CPG_D: 1500 grains of three classes, size ratio 20.
+const host::PackedRve& gravel() {
+  static const host::PackedRve rve = packed(host::load_case("cases/pack_gravel/case.toml"));
   return rve;
 }
 
@@ -53,18 +62,34 @@ Mat2 sheared(double angle, double shear, double dilation) {
   return identity2 + exp_minus_identity({dilation + c, s, s, dilation - c});
 }
 
-Scene clones(std::size_t n, Precision precision) {
-  Scene scene{.batch = make_batch({sand().packing}, std::vector<int>(n, 0)), .requests = {}, .settings = {.precision = precision}};
-  for (std::size_t k = 0; k < n; ++k) host::store_rve(sand(), scene.batch, k);
+Scene clones(const host::PackedRve& rve, std::size_t n, Precision precision) {
+  Scene scene{
+      .batch = make_batch({rve.packing}, std::vector<int>(n, 0)), .requests = {}, .settings = {.precision = precision}};
+  for (std::size_t k = 0; k < n; ++k) host::store_rve(rve, scene.batch, k);
   scene.requests.assign(n, {.f_rel = sheared(0.0, increment, 0.0), .strain_steps = strain_steps, .hold_cap = 1000});
   return scene;
 }
 
-Scene alike(Precision precision) { return clones(groups * lanes_of(precision), precision); }
+Scene alike(Precision precision) {
+  return clones(sand(), groups * lanes_of(precision), precision);
+}
+
+Scene grading(Precision precision) {
+  return clones(gravel(), groups * lanes_of(precision), precision);
+}
 
 Scene without_rolling(Precision precision) {
   Scene scene = alike(precision);
   for (GrainMaterial& material : scene.batch.packings[0].materials) material.rolling_stiffness = material.rolling_limit = 0.0;
+  return scene;
+}
+
+/// The same material three times: the same motion, with every pair's constants combined from its grains' classes.
+Scene three_classes(Precision precision) {
+  Scene scene = alike(precision);
+  Packing& packing = scene.batch.packings[0];
+  packing.materials.resize(3, packing.materials[0]);
+  for (int i = 0; i < packing.size(); ++i) packing.class_of.push_back(static_cast<std::uint8_t>(i % 3));
   return scene;
 }
 
@@ -98,7 +123,7 @@ Scene apart(Precision precision) {
 /// 512 RVEs of 100 to 1000 steps, in no order: what two threads make of it beside one is the schedule's.
 Scene unequal(Precision precision) {
   constexpr std::size_t n = 512, stride = 197;  // without a common divisor: all of 0 .. n - 1 come
-  Scene scene = clones(n, precision);
+  Scene scene = clones(sand(), n, precision);
   for (std::size_t k = 0; k < n; ++k) {
     const double share = static_cast<double>(k * stride % n) / static_cast<double>(n - 1);
     StrainRequest& request = scene.requests[k];
@@ -123,15 +148,26 @@ void measure(benchmark::State& state, Scene& scene) {
     forget_candidates(scene.batch);  // lists are part of what is timed
     particle_steps += advance(scene.batch, std::span<const StrainRequest>(scene.requests), scene.settings, reports).particle_steps;
   }
-  double contacts = 0, steps = 0;
-  for (const RveReport& report : reports) {
+  double contacts = 0, listed = 0, steps = 0, contact_steps = 0, listed_steps = 0;
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    const RveReport& report = reports[k];
     if (is_failure(report.status)) return state.SkipWithError(name_of(report.status));
+    const auto pairs = static_cast<double>(scene.batch.candidates.keys[k].size());
     contacts += report.contacts;
+    listed += pairs;
     steps += report.steps;
+    contact_steps += static_cast<double>(report.contacts) * report.steps;
+    listed_steps += pairs * report.steps;
   }
   const auto cells = static_cast<double>(scene.batch.size());
   const double grains = scene.batch.packings[0].size();
   state.counters["particle_steps/s"] = benchmark::Counter(static_cast<double>(particle_steps), benchmark::Counter::kIsRate);
+  const auto rate = [&](double each) {
+    return benchmark::Counter(each * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  };
+  state.counters["contact_steps/s"] = rate(contact_steps);
+  state.counters["pair_steps/s"] = rate(listed_steps);
+  state.counters["pairs"] = listed / (cells * grains);
   state.counters["cells"] = cells;
   state.counters["grains"] = grains;
   state.counters["steps"] = steps / cells;
@@ -152,6 +188,8 @@ void add(const std::string& name, int iterations, Scene (*make)(Precision)) {
   add("alike", 8, alike);
   add("apart", 8, apart);
   add("without_rolling", 8, without_rolling);
+  add("three_classes", 8, three_classes);
+  add("grading", 4, grading);
   add("unequal_steps", 1, unequal);
   return true;
 }();
