@@ -3,6 +3,8 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
+from . import points
+from .paths import COLOURS
 from .points import crown_element
 from .result import Missing
 from .style import percent, save
@@ -28,8 +30,12 @@ def draw(result, path):
     axis.plot(100 * loss, ratio, "o-", color="C0", markersize=3)
     axis.plot(100 * loss[least], ratio[least], "v", color="C3", markersize=8,
               label=f"minimum {ratio[least]:.3f} at $V_l$ = {percent(loss[least])}")
+    for point in points.above_crown(result):
+        vertical = -points.history(result, "gauss/stress", point)[:, 1]
+        axis.plot(100 * loss, vertical / vertical[0], "--", linewidth=0.9, color=COLOURS[point.name],
+                  label=f"at {points.describe(result, point)}")
     axis.plot([], [], " ", label=f"end {ratio[-1]:.3f} at $V_l$ = {percent(loss[-1])}")
-    axis.legend()
+    axis.legend(fontsize=8)
     axis.set_xlabel("volume loss  $V_l$  [%]")
     axis.set_ylabel(r"vertical stress above the crown  $\sigma_v / \sigma_{v,0}$  [-]")
     axis.set_xlim(left=0)
