@@ -118,6 +118,8 @@ class Paths(unittest.TestCase):
         self.assertAlmostEqual(value, 0.7)
         self.assertTrue(fell)
         self.assertFalse(trends.peak_after_unloading(LOSS, self.path(0.06, False))[2])
+        opened = np.where((LOSS > 0.1) & (LOSS < 0.12), np.nan, self.path(0.06, True))
+        self.assertAlmostEqual(trends.peak_after_unloading(LOSS, opened)[1], 0.7)
 
     def test_order(self):
         ordered = {"Aa": self.path(0.05, True), "Ab": self.path(0.1, True), "Ac": self.path(0.15, False)}

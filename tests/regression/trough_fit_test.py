@@ -33,6 +33,14 @@ class ModifiedGauss(unittest.TestCase):
             np.testing.assert_allclose((fit.largest, fit.inflection, fit.alpha), (largest, inflection, alpha), rtol=1e-3)
             self.assertLess(fit.misfit, 1e-5)
 
+    def test_a_plug_with_a_foot_is_told(self):
+        x = np.linspace(0, 35, 80)
+        gauss, plug = trough_fit.modified_gauss(x, 0.1, 6.0, 0.5), 0.5 * (x < 2.5) + 0.1 * np.exp(-x / 10)
+        self.assertTrue(trough_fit.fit(x, gauss).good)
+        self.assertFalse(trough_fit.fit(x, plug).good)
+        pointed = trough_fit.fit(x, np.exp(-np.sqrt(x)))
+        self.assertTrue(pointed.at_bound and not pointed.good)
+
     def test_a_flat_surface_is_no_error(self):
         fit = trough_fit.fit(np.linspace(0, 35, 20), np.zeros(20))
         self.assertEqual(fit.largest, 0)

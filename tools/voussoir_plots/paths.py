@@ -20,10 +20,13 @@ NETWORK = [
 ]
 
 
+LEAST_PRESSURE = 500.0  # below it [Pa] an RVE is about to open, and q/p is noise over noise
+
+
 def stress_ratio(result, point):
-    """q/p over the volume loss [-]; NaN where the point is not compressed."""
+    """q/p over the volume loss [-]; NaN where the point is hardly compressed."""
     p, q = (points.history(result, f"gauss/{name}_stress", point) for name in ("mean", "deviatoric"))
-    return np.divide(q, p, out=np.full_like(p, np.nan), where=p > 0)
+    return np.divide(q, p, out=np.full_like(p, np.nan), where=p > LEAST_PRESSURE)
 
 
 def draw(result, path):

@@ -42,10 +42,15 @@ def above_crown(result):
 
 
 def in_the_band(result):
-    """B: the point of the largest deviatoric strain at the end, away from the axis."""
+    """B: the point of the largest deviatoric strain at the end, away from the axis and above the crown.
+
+    The study's words do not exclude the opening's wall, where the strain is largest; but RVEs there come apart, and B is to be in the
+    shear band.
+    """
     (diameter,) = result.need("diameter")
     points = original_points(result)
-    strain = np.where(points[:, 0] > result.settings.aside * diameter,
+    height = (points[:, 1] - result.crown_height) / diameter
+    strain = np.where((points[:, 0] > result.settings.aside * diameter) & (height >= result.settings.aside_above),
                       result.loss_increments[-1].field("gauss/deviatoric_strain").ravel(), -np.inf)
     index = int(np.argmax(strain))
     if not np.isfinite(strain[index]):

@@ -10,6 +10,7 @@ class Settings:
     depths: tuple = (0.0, 0.25, 0.5, 0.75, 1.0)      # z/C of troughs and settlements
     above_crown: tuple = (0.25, 1.0, 2.0)  # heights of Aa, Ab, Ac above the crown, in D
     aside: float = 0.25                    # B is the most sheared point with x beyond this, in D
+    aside_above: float = 0.0  # and at least this height above the crown, in D: RVEs at the opening's wall come apart
     line: float = 0.5                      # height of the line of stress rotations above the crown, in D
     range_of_k: tuple = (0.25, 0.45)       # Mair and Taylor's range of K for cohesionless soils
 
@@ -21,7 +22,7 @@ def parse(arguments):
              "field_losses": arguments.field_loss and fraction(arguments.field_loss),
              "depths": arguments.depths and tuple(arguments.depths),
              "above_crown": arguments.above_crown and tuple(arguments.above_crown),
-             "aside": arguments.aside, "line": arguments.line}
+             "aside": arguments.aside, "aside_above": arguments.aside_above, "line": arguments.line}
     return Settings(**{name: value for name, value in given.items() if value is not None})
 
 
@@ -36,5 +37,7 @@ def add_options(parser):
                         help="heights of the points Aa, Ab, Ac above the crown over the diameter; default: 0.25 1 2")
     parser.add_argument("--aside", type=float, metavar="D",
                         help="least distance of the point B from the axis over the diameter; default: 0.25")
+    parser.add_argument("--aside-above", type=float, metavar="D",
+                        help="least height of the point B above the crown over the diameter; default: 0")
     parser.add_argument("--line", type=float, metavar="D",
                         help="height of the line of stress rotations above the crown over the diameter; default: 0.5")

@@ -165,11 +165,12 @@ def falls_linearly(loss, ratios, until=0.02):
     inside = loss <= until + 1e-9
     found = {}
     for name, ratio in ratios.items():
-        x, y = loss[inside], ratio[inside]
+        known = inside & np.isfinite(ratio)
+        x, y = loss[known], ratio[known]
         fit = np.polyval(np.polyfit(x, y, 1), x)
         spread = np.sum((y - y.mean())**2)
         found[name] = (1 - np.sum((y - fit)**2) / spread if spread > 0 else 0.0, np.polyfit(x, y, 1)[0],
-                       loss[np.argmin(ratio)], ratio.min())
+                       loss[np.nanargmin(ratio)], np.nanmin(ratio))
     text = "; ".join(f"{name}: slope {b:.1f}, R2 {r:.3f}, least {low:.2f} at {percent(v)}" for name, (r, b, v, low) in found.items())
     holds = all(b < 0 and r > 0.95 for r, b, _, _ in found.values())
     return Trend(statement, verdict(holds), text)
@@ -177,7 +178,8 @@ def falls_linearly(loss, ratios, until=0.02):
 
 def peak_after_unloading(loss, ratio):
     """V_l and value of the first peak of q/p after its minimum: the first maximum from which it falls by 5 % of itself; the largest
-    value where it never does. With it, whether it did."""
+    value where it never does. With it, whether it did. Where q/p is NaN (hardly compressed) it is passed over."""
+    loss, ratio = loss[np.isfinite(ratio)], ratio[np.isfinite(ratio)]
     start = int(np.argmin(ratio))
     best = start
     for k in range(start, len(ratio)):
@@ -202,7 +204,7 @@ def softening_order(loss, ratios):
 
 def no_softening(loss, ratios, soil):
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
-    text = "; ".join(f"{name}: end over peak {ratio[-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items())
+    text = "; ".join(f"{name}: end over peak {ratio[np.isfinite(ratio)][-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items())
     return Trend(f"No softening at Aa, Ab, Ac ({soil})", verdict(not any(fell for _, _, fell in peaks.values())), text)
 
 

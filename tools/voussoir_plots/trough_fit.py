@@ -30,6 +30,12 @@ class TroughFit:
     misfit: float       # rms of the residual relative to S_max [-]
 
     @property
+    def good(self):
+        """The trough has the family's shape: alpha within its range and a misfit below 3 % of S_max. A plug with a wide foot has
+        not: its fit follows the one or the other, and i jumps between them."""
+        return not self.at_bound and self.misfit < 0.03
+
+    @property
     def at_bound(self):
         """alpha lies at an end of its range: the trough is not of the family's shape."""
         return not 1.05 * ALPHA_RANGE[0] < self.alpha < 0.95 * ALPHA_RANGE[1]

@@ -8,10 +8,10 @@ from .style import colours, percent, save
 
 
 def surface_width(result):
-    """V_l, K_s and whether the curve is of the troughs' shape, over the volume loss."""
+    """V_l, K_s and whether the trough has the curve's shape, over the volume loss."""
     found = [t for (ratio, _), t in troughs.all_troughs(result).items() if ratio == 0]
     return (np.array([t.loss for t in found]), np.array([t.width for t in found]),
-            np.array([not t.fit.at_bound for t in found]))
+            np.array([t.fit.good for t in found]))
 
 
 def draw(result, path):
@@ -21,16 +21,18 @@ def draw(result, path):
     for ratio, colour in zip(depths, colours("cividis", len(depths))):
         along = [t for (z, _), t in found.items() if z == ratio]
         loss, width = np.array([100 * t.loss for t in along]), np.array([t.width for t in along])
-        good = np.array([not t.fit.at_bound for t in along])
+        good = np.array([t.fit.good for t in along])
         left.plot(loss, width, color=colour, linewidth=1.0, label=f"{ratio:g}" + ("  ($K_s$)" if ratio == 0 else ""))
         left.plot(loss[good], width[good], "o", color=colour, markersize=3.5)
     left.legend(title="$z/C$")
     left.set_xlim(left=0)
     left.set_xlabel("volume loss  $V_l$  [%]")
-    left.set_title(r"symbols: $\alpha$ within its bounds", fontsize=11)
+    left.set_title(r"symbols: $\alpha$ within its bounds, misfit below 3 %", fontsize=11)
     for increment, colour in zip(result.losses, colours("viridis", len(result.losses))):
-        width = [found[ratio, increment["volume_loss"]].width for ratio in depths]
-        right.plot(width, depths, "o-", color=colour, markersize=4, label=percent(increment["volume_loss"]))
+        at = [found[ratio, increment["volume_loss"]] for ratio in depths]
+        right.plot([t.width for t in at], depths, "-", color=colour, linewidth=1)
+        right.plot([t.width for t in at if t.fit.good], [t.ratio for t in at if t.fit.good], "o", color=colour, markersize=5,
+                   label=percent(increment["volume_loss"]))
     right.invert_yaxis()
     right.set_xlabel("width parameter  $K = i / (z_t - z)$  [-]")
     right.set_ylabel("depth over cover  $z/C$  [-]")
