@@ -25,6 +25,7 @@ struct MeshState {
   double start = 0;                      ///< load parameter when the stage began
   double parameter = 0;                  ///< load parameter reached
   double step_limit = 0;                 ///< largest step after cuts; 0: not limited
+  double relaxation_factor = 1;          ///< of the last relaxation's end: the next one begins with it (relaxation.hpp) [-]
 };
 
 /// A stage begins: displacement and deformation are zero, coordinates those of `coordinates` (usually mesh.coordinates),

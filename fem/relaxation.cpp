@@ -55,7 +55,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
   const MeshState before = state;
   const std::vector<std::byte> material_before = solver.material().state();
   NewtonReport report = attempt;
-  double factor = 1;
+  double factor = state.relaxation_factor;
   solver.commit(state, increment);
   for (int substep = 0; substep < options.max_substeps; ++substep) {
     IncrementLoad load{path.external_force(to), path.prescribed_increment(to, to), 0, path.reference_force};
@@ -78,6 +78,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
     append(increment, std::move(part));
     if (status != NewtonStatus::converged) continue;
     state.last_increment = increment.displacement;
+    state.relaxation_factor = factor;
     return report;
   }
   state = before;

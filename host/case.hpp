@@ -121,7 +121,7 @@ struct NewtonCase {
   double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
   double relax_below = 1.0;                ///< share of a planned step up to which a failed step is relaxed, not cut [-]
   int relax_attempts = 3;                  ///< iterates from the committed state before an increment is relaxed
-  double relax_near = 0.02;                ///< residual below which these end at once, relative as `tolerance` [-]
+  double relax_near = 0.05;                ///< residual below which these end at once, relative as `tolerance` [-]
   int relax_substeps = 100;                ///< most substeps of a relaxation; 0: none is relaxed
   double smallest_cut = 1.0 / 64.0;        ///< smallest share of a planned step that cutting tries [-]
 };

@@ -52,7 +52,8 @@ void save(const Ground& ground, io::Checkpoint& checkpoint) {
   put_list(checkpoint, "deformation", state.deformation);
   put_list(checkpoint, "initial_tangent", state.initial_tangent);
   checkpoint.put_doubles("last_increment", numbers(state.last_increment));
-  const std::array<double, 4> scalars{state.last_step, state.start, state.parameter, state.step_limit};
+  const std::array<double, 5> scalars{state.last_step, state.start, state.parameter, state.step_limit,
+                                      state.relaxation_factor};
   checkpoint.put_doubles("load", scalars);
   put_list(checkpoint, "strain", ground.strain);
   checkpoint.put("material", ground.material.state());
@@ -69,11 +70,12 @@ void restore(Ground& ground, const io::Checkpoint& checkpoint) {
   state.initial_tangent = get_list<fem::Tangent>(checkpoint, "initial_tangent", points);
   const bool moved = !checkpoint.get_doubles("last_increment").empty();
   state.last_increment = get_vector(checkpoint, "last_increment", moved ? dofs : 0);
-  const std::vector<double> scalars = get_sized(checkpoint, "load", 4);
+  const std::vector<double> scalars = get_sized(checkpoint, "load", 5);
   state.last_step = scalars[0];
   state.start = scalars[1];
   state.parameter = scalars[2];
   state.step_limit = scalars[3];
+  state.relaxation_factor = scalars[4];
   ground.state = std::move(state);
   ground.strain = get_list<PlaneTensor>(checkpoint, "strain", points);
   ground.material.set_state(checkpoint.get("material"));
