@@ -24,7 +24,7 @@ RUNS = {
     "biaxial": (["packing.grains=300", "packing.seeds=[1]", "packing.folder=packings", 'biaxial.pressures=["100 kPa"]',
                  "biaxial.strain=6 %"], ("peak_angle", "peak_strain", "contraction"), []),
     "biaxial_bvp": (["packing.grains=100", "packing.folder=packings", "biaxial_bvp.columns=1", "biaxial_bvp.rows=2",
-                     "biaxial_bvp.strain=1 %"], ("q_over_p", "volumetric_strain"), []),
+                     "biaxial_bvp.strain=4 %"], ("q_over_p", "volumetric_strain"), []),
     "pack_gravel": (["packing.grains=300", "packing.folder=packings"], None, []),
     "pack": (["packing.grains=100", "packing.seeds=[1]", "packing.folder=packings"], None, []),
 }
