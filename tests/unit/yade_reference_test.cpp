@@ -20,7 +20,7 @@
 namespace voussoir::reference {
 namespace {
 
-const std::filesystem::path data = std::filesystem::path(__FILE__).parent_path().parent_path() / "data" / "yade";
+const std::filesystem::path data = std::filesystem::path(VOUSSOIR_SOURCE_DIR) / "tests/data/yade";
 
 /// Rows of a CSV file of numbers, each by column name.
 std::vector<std::map<std::string, double>> read_table(const std::string& name)

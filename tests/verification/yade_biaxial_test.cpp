@@ -14,7 +14,7 @@
 namespace voussoir::host {
 namespace {
 
-const std::filesystem::path data = std::filesystem::path(__FILE__).parent_path().parent_path() / "data/yade";
+const std::filesystem::path data = std::filesystem::path(VOUSSOIR_SOURCE_DIR) / "tests/data/yade";
 
 struct Row {
   double strain, ratio, volume;
