@@ -71,7 +71,8 @@ for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml"
     foretold = re.search(r"about (\S+) particle-steps", checked.stdout)
     if foretold and particle_steps(results) > 0:  # tests without a mesh do not record their work
         ratio = float(foretold[1]) / particle_steps(results)
-        check(1 / ESTIMATE < ratio < ESTIMATE, f"cases/{case}: `check` foretells {ratio:.2g} times the work done")
+        allowed = ESTIMATE * (2 if case in STUDY_ELEMENTS else 1)  # a first increment of the loss says little of eighty
+        check(1 / allowed < ratio < allowed, f"cases/{case}: `check` foretells {ratio:.2g} times the work done")
         print(f"cases/{case}: `check` foretells {ratio:.2g} times the work done")
     print(f"cases/{case}: ran")
 
