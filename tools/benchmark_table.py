@@ -37,7 +37,10 @@ def main():
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     for path in sys.argv[1:]:
-        context, scenes = medians(path)
+        try:
+            context, scenes = medians(path)
+        except (OSError, ValueError, KeyError) as reason:
+            sys.exit(f"{path}: no readable report: {reason}")
         print(f"{context['device']}, {context['lanes']}, {context['concurrency']} thread(s), {context['date'][:10]}\n")
         print("| benchmark | contacts per grain | float | double | contact-steps, float | listed-pair-steps, float |")
         print("|---|---|---|---|---|---|")

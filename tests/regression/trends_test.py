@@ -10,6 +10,7 @@ sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
 import numpy as np  # noqa: E402
 from voussoir_plots import chains, points, q8, settlements, tensors, trends  # noqa: E402
+from voussoir_plots.result import Result  # noqa: E402
 
 LOSS = np.linspace(0, 0.2, 81)
 
@@ -82,6 +83,7 @@ class Stresses(unittest.TestCase):
         self.assertEqual(trends.reaction(LOSS[:40], falls[:40], "dense sand").verdict, trends.NOT_REACHED)
         self.assertEqual(trends.reaction(LOSS, falls, "medium dense sand").verdict, trends.SEEN)
         self.assertEqual(trends.reaction(LOSS, recovers, "medium dense sand").verdict, trends.NOT_SEEN)
+        self.assertEqual(trends.reaction(LOSS[:5], falls[:5], "medium dense sand").verdict, trends.NOT_REACHED)
 
     def test_principal_directions(self):
         vertical, horizontal, shear = np.array([[-1.0, -3, 0], [-3, -1, 0], [-2, -2, 1]])
@@ -131,6 +133,21 @@ class Paths(unittest.TestCase):
         self.assertEqual(trends.softening_order(LOSS, mixed).where(False, "elsewhere").verdict, trends.NOT_APPLICABLE)
         self.assertEqual(trends.no_softening(LOSS, ordered, "gravel").verdict, trends.NOT_SEEN)
         self.assertEqual(trends.no_softening(LOSS, {"Aa": self.path(0.05, False)}, "gravel").verdict, trends.SEEN)
+        self.assertEqual(trends.no_softening(LOSS[:9], {"Aa": self.path(0.05, False)[:9]}, "gravel").verdict, trends.NOT_REACHED)
+
+    def test_contraction_at_the_end(self):
+        contracts, dilates = {"Ab": LOSS, "Ac": 2 * LOSS}, {"Ab": LOSS, "Ac": 0.02 - LOSS}
+        self.assertEqual(trends.ends_contracted(LOSS, contracts).verdict, trends.SEEN)
+        self.assertEqual(trends.ends_contracted(LOSS, dilates).verdict, trends.NOT_SEEN)
+        self.assertEqual(trends.ends_contracted(LOSS[:9], {n: v[:9] for n, v in contracts.items()}).verdict, trends.NOT_REACHED)
+
+    def test_soil_as_the_case_tells(self):
+        soil_of = lambda **case: Result.soil.fget(SimpleNamespace(case=case))  # noqa: E731
+        self.assertEqual(soil_of(), "dense sand")
+        self.assertEqual(soil_of(soil={"sizes": ["4 mm", "20 mm"]}), "gravel")
+        self.assertEqual(soil_of(soil={"sizes": ["0.4 cm", "2 cm"]}), "gravel")
+        self.assertEqual(soil_of(packing={"consolidation_friction": 0.16}), "medium dense sand")
+        self.assertEqual(soil_of(material="linear_elastic"), "no grains")
 
     def test_contraction(self):
         until = lambda v: np.interp(LOSS, [0, v, 0.2], [0, 0.01, -0.01])  # noqa: E731

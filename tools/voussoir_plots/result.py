@@ -11,6 +11,9 @@ import numpy as np
 from .settings import Settings
 
 
+MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1e3, "km": 1e6}
+
+
 class Missing(Exception):
     """The result does not hold what a figure needs; the message says what."""
 
@@ -64,7 +67,8 @@ class Result:
             self.tables = {name: {column: values[()] for column, values in table.items()}
                            for name, table in file.get("tables", {}).items()}
         if not self.increments:
-            raise Missing("there are no increments yet")
+            raise Missing("there are no increments yet" if self.has_mesh else "the run has no mesh: figures are of columns, tunnels "
+                          "and biaxial_bvp")
         self._histories = {}
 
     def need(self, *names):
@@ -143,10 +147,13 @@ class Result:
 
     @property
     def soil(self):
-        """"gravel", "medium dense sand" or "dense sand", as the case describes it; the study's trends differ."""
+        """"gravel", "medium dense sand", "dense sand", or "no grains" (an elastic solid), as the case describes it; the study's trends
+        differ."""
+        if self.case.get("material", "grains") != "grains":
+            return "no grains"
         soil, packing = self.case.get("soil", {}), self.case.get("packing", {})
-        largest = [float(str(size).split()[0]) * (1e3 if str(size).endswith(" m") else 1) for size in soil.get("sizes", [])]
-        if largest and max(largest) > 10:
+        sizes = [re.fullmatch(r"\s*(\S+?)\s*(mm|cm|m|km)\s*", str(size)) for size in soil.get("sizes", [])]
+        if any(float(size[1]) * MILLIMETRES[size[2]] > 10 for size in sizes if size):
             return "gravel"
         loose = packing.get("void_ratio", 0) > 0.22 or packing.get("consolidation_friction", 0) > 0.1
         return "medium dense sand" if loose else "dense sand"

@@ -125,8 +125,8 @@ def _paths(result):
     if "Ac" in volumes:
         rows.append(trends.contracts_until(loss, volumes["Ac"]).where(dense_sand, "reported for dense sand"))
     if result.soil == "medium dense sand":
-        rows.append(trends.ends_contracted({name: v for name, v in volumes.items() if name != "Aa"}))
-    if not dense_sand:
+        rows.append(trends.ends_contracted(loss, {name: v for name, v in volumes.items() if name != "Aa"}))
+    if result.soil in ("gravel", "medium dense sand"):
         rows.append(trends.no_softening(loss, ratios, result.soil))
     return rows
 

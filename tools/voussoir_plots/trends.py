@@ -31,6 +31,13 @@ def not_reached(statement, wanted, last):
     return Trend(statement, NOT_REACHED, f"needs V_l = {percent(wanted)}, the run ends at {percent(last)}")
 
 
+def at_the_end(statement, holds, text, loss):
+    """A trend that what follows may still break: where it holds in a run that ends before 20 %, nothing is known."""
+    if holds and loss[-1] < 0.199:
+        return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
+    return Trend(statement, verdict(holds), text)
+
+
 def percent(fraction):
     return f"{100 * fraction:.3g} %"
 
@@ -149,8 +156,8 @@ def reaction(loss, ratio, soil):
     text = (f"minimum {ratio[least]:.3f} at V_l = {percent(loss[least])}, {ratio[-1]:.3f} at the end ({percent(loss[-1])}): "
             f"recovery {recovery:.3f} of the stress before the loss")
     if soil == "medium dense sand":
-        return Trend("The ground reaction curve falls monotonically to its end value (medium dense sand)",
-                     verdict(recovery < 0.02), text)
+        return at_the_end("The ground reaction curve falls monotonically to its end value (medium dense sand)",
+                          recovery < 0.02, text, loss)
     statement = "The ground reaction curve drops to a minimum, then recovers (dense soils)"
     if recovery < 0.02 and loss[-1] < 0.199:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; {text}")
@@ -205,7 +212,7 @@ def softening_order(loss, ratios):
 def no_softening(loss, ratios, soil):
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
     text = "; ".join(f"{name}: end over peak {ratio[np.isfinite(ratio)][-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items())
-    return Trend(f"No softening at Aa, Ab, Ac ({soil})", verdict(not any(fell for _, _, fell in peaks.values())), text)
+    return at_the_end(f"No softening at Aa, Ab, Ac ({soil})", not any(fell for _, _, fell in peaks.values()), text, loss)
 
 
 def contracts_until(loss, volumetric, wanted=0.15):
@@ -218,10 +225,10 @@ def contracts_until(loss, volumetric, wanted=0.15):
     return Trend(statement, verdict(loss[most] >= wanted - 0.03), text)
 
 
-def ends_contracted(volumetrics):
+def ends_contracted(loss, volumetrics):
     text = "; ".join(f"{name}: {percent(v[-1])}" for name, v in volumetrics.items())
-    return Trend("Ab and Ac contract (medium dense sand)", verdict(all(v[-1] > 0 for v in volumetrics.values())),
-                 f"volumetric strain at the end, contraction positive: {text}")
+    return at_the_end("Ab and Ac contract (medium dense sand)", all(v[-1] > 0 for v in volumetrics.values()),
+                      f"volumetric strain at the end, contraction positive: {text}", loss)
 
 
 def follows_fabric(stress, fabric):
