@@ -143,9 +143,9 @@ struct ElasticCase {
 
 /// [[probe.path]] Increments put on the packing before it is probed, as the mesh would put them.
 struct PathSegment {
-  std::array<double, 4> gradient{};  ///< displacement gradient of each increment, xx xy yx yy [-]
+  std::array<double, 4> gradient{};  ///< displacement gradient of each increment, xx xy yx yy [-]; det(1 + gradient) > 0
   int increments = 1;
-  bool constant_xx = false;          ///< sigma_xx is held at its value: the gradient's xx is found, not given
+  bool constant_xx = false;          ///< sigma_xx is held at its value: the gradient's xx is found, not given; gradient not 0
 };
 
 /// [probe] Displacement gradients put on the packing at the path's end, each from the same state.

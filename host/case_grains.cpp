@@ -169,7 +169,12 @@ std::vector<PathSegment> read_path(const io::Table& table) {
     std::copy(gradient.begin(), gradient.end(), segment.gradient.begin());
     read_integer(entry, "increments", segment.increments, {.at_least = 1, .at_most = 1'000'000});
     segment.constant_xx = entry.boolean("constant_xx", false);
-    if (segment.constant_xx && segment.gradient[0] != 0) throw entry.error("gradient", "must have no xx where constant_xx finds it");
+    const auto [xx, xy, yx, yy] = segment.gradient;
+    if (segment.constant_xx && xx != 0) throw entry.error("gradient", "must have no xx where constant_xx finds it");
+    if (segment.constant_xx && xy == 0 && yx == 0 && yy == 0) {
+      throw entry.error("gradient", "must not be 0 where constant_xx is to find its xx, which is sought within its size");
+    }
+    if (!((1 + xx) * (1 + yy) - xy * yx > 0)) throw entry.error("gradient", "leaves no area: det(1 + gradient) must be positive");
     path.push_back(segment);
   }
   return path;

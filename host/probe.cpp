@@ -90,6 +90,11 @@ std::string take_path(const Case& input, PackedRve& rve, Tables& tables) {
                                at.stress(1), at.stress(2), at.void_ratio) +
                    end_of_row(*at.report);
   });
+  if (end.missed > 0) {
+    const std::string said = fmt::format("seed {}: sigma_xx is missed by up to {:.2g} % after {} of the path's increments; take smaller ones",
+                                         rve.seed, end.largest_miss * 100, end.missed);
+    std::fprintf(stderr, "probe: %s\n", said.c_str());
+  }
   if (!end.usable) return fmt::format("seed {}, {}", rve.seed, end.message);
   PackedRve last = pool.packed(0);
   last.seed = rve.seed;

@@ -18,10 +18,12 @@ class LateralSearch {
 
   [[nodiscard]] double gradient() const { return x_; }
   [[nodiscard]] bool found() const { return found_; }
+  [[nodiscard]] double miss() const { return std::abs(miss_); }  ///< of the last evaluation, over the wanted stress [-]
 
   /// @param longest largest change of the gradient in one go [-]
   void see(double stress, double tangent, double longest) {
     const double error = stress - wanted_;
+    miss_ = error / wanted_;
     found_ = std::abs(error) <= lateral_tolerance * std::abs(wanted_);
     if (found_) return;
     double slope = seen_ && x_ != x_before_ ? (error - error_before_) / (x_ - x_before_) : 0.5 * tangent;
@@ -35,7 +37,7 @@ class LateralSearch {
  private:
   static constexpr double softest = 0.05;
   double x_, wanted_;
-  double x_before_ = 0, error_before_ = 0;
+  double x_before_ = 0, error_before_ = 0, miss_ = 0;
   bool seen_ = false, found_ = false;
 };
 
@@ -68,6 +70,7 @@ struct IncrementEnd {
   fem::BatchReport report;
   int evaluations = 0;
   double particle_steps = 0;
+  double miss = 0;  ///< largest, where sigma_xx was held [-]
 };
 
 IncrementEnd evaluate_given(Walk& walk) {
@@ -95,7 +98,10 @@ IncrementEnd evaluate_held(Walk& walk) {
     for (std::size_t k = 0; k < searches.size(); ++k) searches[k].see(walk.stress[k](0), walk.tangent[k](0, 0), size[k]);
     if (std::all_of(searches.begin(), searches.end(), [](const LateralSearch& s) { return s.found(); })) break;
   }
-  for (std::size_t k = 0; k < searches.size(); ++k) walk.lateral[k] = walk.gradients[k](0, 0) / size[k];
+  for (std::size_t k = 0; k < searches.size(); ++k) {
+    walk.lateral[k] = walk.gradients[k](0, 0) / size[k];
+    end.miss = std::max(end.miss, searches[k].miss());
+  }
   return end;
 }
 
@@ -133,6 +139,8 @@ PathEnd walk_path(RvePool& pool, std::span<const PathSegment> segments, std::spa
         end.message = fmt::format("increment {} of the path: {}", increment, done.report.message);
         return end;
       }
+      if (done.miss > lateral_tolerance) ++end.missed;
+      end.largest_miss = std::max(end.largest_miss, done.miss);
       pool.commit();
       for (std::size_t rve = 0; rve < pool.size(); ++rve) walk.f[rve] = map_of(walk.gradients[rve]) * walk.f[rve];
       note_all(walk, increment, done.evaluations, note);

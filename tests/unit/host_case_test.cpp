@@ -28,6 +28,14 @@ std::string complaint(const std::string& text, const std::vector<std::string>& o
   return "";
 }
 
+TEST(Case, GradientsOfAPathKeepTheAreaAndHaveASizeToSearchIn) {
+  const auto path = [](const std::string& keys) { return complaint("kind = 'probe'\n[[probe.path]]\n" + keys); };
+  EXPECT_EQ(path("gradient = [0, 0, 0, -1e-3]\nconstant_xx = true\n"), "");
+  EXPECT_EQ(path("gradient = [0, 0, 0, 0]\n"), "");
+  EXPECT_NE(path("gradient = [0, 0, 0, 0]\nconstant_xx = true\n").find("must not be 0"), std::string::npos);
+  EXPECT_NE(path("gradient = [-0.5, 0.5, 0.5, -0.5]\n").find("leaves no area"), std::string::npos);
+}
+
 TEST(Case, DefaultsAreThoseOfTheDeclarations) {
   const Case input = load_case(write("kind = 'tunnel'\n"));
   const Case declared;

@@ -70,6 +70,18 @@ TEST_F(StrainPath, LateralStressIsHeldWhereAsked) {
   EXPECT_EQ(points[points.size() - 1].stress, points[points.size() - 2].stress) << "two clones, one answer";
 }
 
+TEST_F(StrainPath, AStressThatIsMissedIsCounted) {
+  RvePool pool(rve_, EngineCase{}, 1), coarse(rve_, EngineCase{}, 1);
+  (void)walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 8, .constant_xx = true}}, {1.0});
+  EXPECT_EQ(end_.missed, 0);
+  EXPECT_LE(end_.largest_miss, lateral_tolerance);
+  const auto points = walk(coarse, {{.gradient = {0, 0, 0, 0.05}, .increments = 1, .constant_xx = true}}, {1.0});
+  ASSERT_TRUE(end_.usable);
+  EXPECT_EQ(points.back().evaluations, most_evaluations);
+  EXPECT_EQ(end_.missed, 1);
+  EXPECT_DOUBLE_EQ(end_.largest_miss, std::abs(points[1].stress(0) / points[0].stress(0) - 1));
+}
+
 TEST_F(StrainPath, SegmentsFollowOneAnother) {
   RvePool pool(rve_, EngineCase{}, 1);
   const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {0, 0, 0, 1e-3}, .increments = 1}}, {1.0});
