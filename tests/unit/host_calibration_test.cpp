@@ -75,6 +75,20 @@ TEST(Calibration, TheSurfaceFindsTheOptimumOfASmoothSoil) {
   EXPECT_EQ(best.per_doubling[Parameter::rolling_limit][Observable::peak_angle], 0.0);
 }
 
+TEST(Calibration, TheSurfaceIsThatOfItsNeighbourhood) {
+  CalibrateCase lists_of_one;
+  for (int k = 0; k <= 20; ++k) lists_of_one.thickness.push_back(0.05 * std::pow(4.0, k / 20.0));
+  const SearchBox box(lists_of_one, soil_of(1.0, 0.6, 0.1));
+  const auto steep = [](double x) { return std::pow(x, 6); };  // no quadratic
+  std::vector<Measured> points;
+  for (const ParameterSet& set : box.grid()) points.push_back({set, {steep(box.place_of(set)[0]), 0, 0, 0}});
+  const std::vector<double> center{0.3};
+  const auto miss = [&](double range) {
+    return std::abs(ResponseSurface(box, points, center, range).at(center)[Observable::peak_angle] - steep(center[0]));
+  };
+  EXPECT_LT(miss(0.2), 0.2 * miss(100.0));
+}
+
 TEST(Calibration, NoStepLeavesTheBox) {
   const SearchBox box(lists(), soil_of(1.0, 0.6, 0.1));
   for (const ParameterSet& set : around(box, {0.2, 0.6, 0.05}, 1)) {
