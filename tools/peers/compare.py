@@ -24,9 +24,14 @@ class Packing:
     height: float
 
 
-def read_packing(folder):
-    """The packing that the benchmark made last."""
-    path = max(Path(folder).glob("packing_*.h5"), key=lambda p: p.stat().st_mtime)
+def grain_count(path):
+    with h5py.File(path) as file:
+        return len(file["radius"])
+
+
+def read_packing(folder, grains):
+    """The packing of that many grains that the benchmark made last (wide gradings have one of their own)."""
+    path = max((p for p in Path(folder).glob("packing_*.h5") if grain_count(p) == grains), key=lambda p: p.stat().st_mtime)
     with h5py.File(path) as file:
         cell = file["cell"][()].ravel()
         if cell[1] != 0 or cell[2] != 0:
@@ -35,9 +40,9 @@ def read_packing(folder):
 
 
 def our_rates(path):
-    """{benchmark: (median particle-steps/s, contacts per grain)}."""
+    """{benchmark: (median particle-steps/s, contacts per grain, grains)}."""
     runs = json.loads(Path(path).read_text())["benchmarks"]
-    return {b["run_name"].split("/iterations")[0]: (b["particle_steps/s"], b["coordination"])
+    return {b["run_name"].split("/iterations")[0]: (b["particle_steps/s"], b["coordination"], int(b["grains"]))
             for b in runs if b.get("aggregate_name") == "median"}
 
 
@@ -59,9 +64,9 @@ def main():
     if os.getloadavg()[0] > 1.5:  # the benchmark before this is one of them
         print(f"the machine is not idle (load {os.getloadavg()[0]:.1f}): no rate below is to be trusted")
     ours = our_rates(sys.argv[1])
-    packing = read_packing(sys.argv[2])
+    packing = read_packing(sys.argv[2], ours["alike/float"][2])
     rates = {"float": ours["alike/float"], "double": ours["alike/double"]}
-    for name, (rate, contacts) in rates.items():
+    for name, (rate, contacts, _) in rates.items():
         print(f"Voussoir, {name:6}  {rate / 1e6:8.2f} million particle-steps/s, {contacts:.2f} contacts per grain")
     ratios = []
     peers = (("LAMMPS", lammps.installed(), lammps.best), ("Yade", shutil.which("yade") is not None, yade))
@@ -71,7 +76,7 @@ def main():
             continue
         rate, contacts, how = run(packing)
         print(f"{name:16}  {rate / 1e6:8.2f} million particle-steps/s, {contacts:.2f} contacts per grain ({how})")
-        ratios += [f"{ours_name}/{name} {value / rate:.0f}" for ours_name, (value, _) in rates.items()]
+        ratios += [f"{ours_name}/{name} {value / rate:.0f}" for ours_name, (value, *_) in rates.items()]
     if ratios:
         print("ratios: " + ", ".join(ratios))
 
