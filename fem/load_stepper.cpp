@@ -84,12 +84,13 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
     if (report.last.status != NewtonStatus::converged) {
       ++report.cuts;
       if (callbacks.on_failed) callbacks.on_failed({from, to, report.last});
-      if ((to - from) * options.cut < options.smallest * nominal) {
+      const double next = (to - from) * options.cut;
+      if (next < options.smallest * nominal || !(from + next > from)) {  // the latter would be no step at all
         report.status = StepStatus::gave_up;
         report.message = describe(report.last, from, to);
         return false;
       }
-      state.step_limit = (to - from) * options.cut;
+      state.step_limit = next;
       continue;
     }
     if (relaxed) ++report.relaxed;

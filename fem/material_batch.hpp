@@ -20,7 +20,8 @@ using Tangent = Eigen::Matrix3d;   ///< d stress / d strain [Pa], symmetric, con
 struct BatchReport {
   bool usable = true;       ///< false: at least one point failed, the increment must be cut
   std::string message;      ///< what failed and where, empty when usable
-  double stress_noise = 0;  ///< rms uncertainty of the returned stresses [Pa], from the points' own reports
+  double stress_noise = 0;  ///< rms uncertainty of the returned stresses [Pa], from the points' own reports; of points at
+                            ///< `step_limit`, which are not at rest, it says nothing
   std::size_t work = 0;     ///< particle-steps spent by this call (0 for a continuum law)
   std::size_t open = 0;     ///< points without any contact (stress 0)
   std::size_t step_limit = 0;  ///< points whose hold ended at its cap

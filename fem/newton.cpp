@@ -284,7 +284,7 @@ bool NewtonSolver::Workspace::near() const {
   return report.residual <= load.near_residual * report.reference();
 }
 
-/// Where it did not converge: back to the best iterate, so that the material's last evaluation is the one there.
+/// Where the iterates ended without converging: back to the best, so that the material's last evaluation is the one there.
 void NewtonSolver::Workspace::return_to_best() {
   if (best.size() == 0 || increment.displacement == best) return;
   increment.displacement = best;
@@ -292,7 +292,8 @@ void NewtonSolver::Workspace::return_to_best() {
 }
 
 NewtonReport NewtonSolver::Workspace::stop(NewtonStatus status) {
-  if (status != NewtonStatus::converged && load.leave_best) return_to_best();
+  const bool ended = status == NewtonStatus::max_iterations || status == NewtonStatus::near;
+  if (ended && load.leave_best) return_to_best();  // what failed keeps the report that says why
   report.status = status;
   return std::move(report);
 }

@@ -81,7 +81,7 @@ struct IncrementLoad {
   double moved = 0;                ///< norm of a displacement that Du is a further part of (relaxation.hpp) [m]
   int max_iterations = 0;          ///< 0: NewtonOptions::max_iterations
   double near_residual = 0;        ///< over the reference of the tolerance: ends the iterates as `near` [-]; 0: never
-  bool leave_best = false;         ///< not converged: the material is evaluated once more at the best iterate
+  bool leave_best = false;         ///< max_iterations, near: the material's last evaluation is at the best iterate
 };
 
 /// The last iterate, or with IncrementLoad::leave_best the best one.
@@ -114,7 +114,8 @@ class NewtonSolver {
   /// Finds the equilibrium; neither `state` nor the material's committed state changes.
   [[nodiscard]] NewtonReport solve_increment(const MeshState& state, const IncrementLoad& load, Increment& increment);
 
-  /// Takes the increment over into the state and commits the material. Only after a converged `solve_increment`.
+  /// Takes the increment over into the state and commits the material, whose last evaluation it must be: a converged one,
+  /// or a substep of relaxation.hpp.
   void commit(MeshState& state, Increment& increment);
 
   std::function<void(const Iterate&)> on_iterate;  ///< may be empty

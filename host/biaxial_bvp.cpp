@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "fem/boundary.hpp"
 #include "host/engine_presets.hpp"
@@ -36,7 +37,8 @@ void add_specimen_columns(const SpecimenState& specimen, io::IncrementInfo& info
   info.extra["q_over_p"] = {specimen.p != 0 ? specimen.q / specimen.p : 0.0, "-"};
 }
 
-/// Table `gauss_histories` of io/FORMAT.md, gathered from the increments' own files: a resumed run has them all.
+/// Table `gauss_histories` of io/FORMAT.md, gathered from the increments' own files: a resumed run has them all. A run may be
+/// resumed with other `output.fields`: what an increment's file lacks is not a number.
 std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder) {
   struct Source {
     const char* field;
@@ -49,6 +51,7 @@ std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder
                                                   {"volumetric_strain", {"volumetric_strain"}},
                                                   {"deviatoric_strain", {"deviatoric_strain"}},
                                                   {"void_ratio", {"void_ratio"}}}};
+  constexpr double missing = std::numeric_limits<double>::quiet_NaN();
   std::vector<io::TableColumn> table{{"load_parameter", "-", {}}, {"point", "-", {}}};
   std::map<std::string, std::size_t> column_of;
   for (const io::IncrementInfo& info : io::read_increments(folder / "run.h5")) {
@@ -61,7 +64,7 @@ std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder
         if (field.name != source.field) continue;
         for (std::size_t k = 0; k < components; ++k) {
           const auto [at, is_new] = column_of.try_emplace(source.columns[k], table.size());
-          if (is_new) table.push_back({source.columns[k], field.unit, {}});
+          if (is_new) table.push_back({source.columns[k], field.unit, std::vector<double>(table[0].values.size(), missing)});
           for (std::size_t p = 0; p < points; ++p) table[at->second].values.push_back(field.values[p * components + k]);
         }
       }
@@ -70,6 +73,7 @@ std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder
       table[0].values.push_back(info.load_parameter);
       table[1].values.push_back(static_cast<double>(p));
     }
+    for (io::TableColumn& column : table) column.values.resize(table[0].values.size(), missing);
   }
   return table;
 }

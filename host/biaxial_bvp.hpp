@@ -4,7 +4,8 @@
 ///
 /// Smooth platens: the base is held vertically with its left corner fixed, the top moves down by `strain_step` of the first
 /// height an increment and is free sideways. A constant pressure acts on both sides. Updated Lagrangian: the pressure follows
-/// the deformed sides, integrated on the coordinates at the start of each increment, the same on which the internal forces are.
+/// the deformed sides, integrated on the coordinates at the start of each increment (of each substep of a relaxed one), the same on which the
+/// internal forces are.
 /// No imperfection is put in; what breaks the symmetry is the mirror image at every second point (packing.mirrored) or, without
 /// it, rounding.
 

@@ -76,10 +76,10 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
   read_integer(table, "rows", test.rows, {.at_least = 1, .at_most = 1000});
   read_quantity(table, "strain", Dimension::none, test.strain, {.at_most = "0.5", .positive = true});
   read_quantity(table, "strain_step", Dimension::none, test.strain_step, {.at_most = "0.05", .positive = true});
+  if (test.strain > 100'000.5 * test.strain_step) throw table.error("strain_step", "makes more than 100000 increments");
   if (std::abs(test.increments() * test.strain_step - test.strain) > 1e-6 * test.strain) {
     throw table.error("strain_step", "does not divide the strain");
   }
-  if (test.increments() > 100'000) throw table.error("strain_step", "makes more than 100000 increments");
   return test;
 }
 
@@ -103,7 +103,7 @@ NewtonCase read_newton(const io::Table& table) {
   read_integer(table, "relax_attempts", newton.relax_attempts, {.at_least = 1, .at_most = 10000});
   read_quantity(table, "relax_near", Dimension::none, newton.relax_near, {.at_least = "0", .at_most = "0.5"});
   read_integer(table, "relax_substeps", newton.relax_substeps, {.at_least = 0, .at_most = 10000});
-  read_quantity(table, "smallest_cut", Dimension::none, newton.smallest_cut, {.at_most = "1", .positive = true});
+  read_quantity(table, "smallest_cut", Dimension::none, newton.smallest_cut, {.at_least = "1e-6", .at_most = "1"});
   return newton;
 }
 

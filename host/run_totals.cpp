@@ -49,6 +49,7 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
                                       t.parts.solve, t.output, t.wall};
     checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
+    checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.unsettled);
   }
   checkpoint.put_text("totals", names);
 }
@@ -62,6 +63,8 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
     StageTotals t;
     t.stage = names.substr(begin, end - begin);
     t.evaluations = checkpoint.get_doubles(fmt::format("totals_evaluations_{}", totals.size()));
+    const std::string unsettled = fmt::format("totals_unsettled_{}", totals.size());
+    if (checkpoint.has(unsettled)) t.unsettled = checkpoint.get_doubles(unsettled);  // older ones have none
     t.cuts = static_cast<int>(numbers.at(0));
     t.particle_steps = numbers.at(1);
     t.parts = {numbers.at(2), numbers.at(3), numbers.at(4)};
@@ -70,6 +73,15 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
     totals.push_back(t);
   }
   return totals;
+}
+
+std::string unsettled_line(const StageTotals& stage, std::size_t points) {
+  const auto increments = std::count_if(stage.unsettled.begin(), stage.unsettled.end(), [](double n) { return n > 0; });
+  if (increments == 0) return {};
+  return fmt::format("{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest, and "
+                     "neither residual nor noise says how far from it their stress is",
+                     stage.stage, increments, stage.unsettled.size(),
+                     *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points);
 }
 
 std::vector<std::string> totals_table(const std::vector<StageTotals>& totals) {

@@ -12,6 +12,7 @@ namespace voussoir::host {
 struct StageTotals {
   std::string stage;
   std::vector<double> evaluations;  ///< of each increment, cut tries included
+  std::vector<double> unsettled;    ///< of each increment, points that ended at the step limit: not at rest
   int cuts = 0;                     ///< tries that did not converge
   double particle_steps = 0;
   fem::PartTimes parts;
@@ -22,6 +23,10 @@ struct StageTotals {
 void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint);
 /// Empty where the checkpoint holds none.
 [[nodiscard]] std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint);
+
+/// Which of the stage's increments ended with points that are not at rest; empty: none.
+/// @param points of the mesh
+[[nodiscard]] std::string unsettled_line(const StageTotals& stage, std::size_t points);
 
 /// Lines of a table, one row a stage and a sum: increments, wall time by part [s], evaluations an increment (median and
 /// largest), cuts, particle-steps and their rate.

@@ -101,6 +101,7 @@ class StageRun {
     info_.extra["time_output"] = {output_, "s"};
     info_.extra["peak_memory"] = {peak_memory(), "B"};
     recorder_.stage_totals().evaluations.push_back(info_.evaluations);
+    recorder_.stage_totals().unsettled.push_back(info_.extra.at("step_limit_points").value);
     recorder_.stage_totals().wall += info_.wall_s;
   }
 
@@ -207,6 +208,8 @@ RunStatus advance_stage(Ground& ground, const Stage& stage, RunRecorder& recorde
                          .on_failed = [&](const fem::FailedStep& step) { run.failed(step); }});
   run.end();
   recorder.log().line(fmt::format("{}: {}, peak memory {:.0f} MB", stage.name, recorder.disk_use(), peak_memory() * 1e-6));
+  const std::string unsettled = unsettled_line(recorder.stage_totals(), ground.strain.size());
+  if (!unsettled.empty()) recorder.log().line(unsettled);
   if (report.status == fem::StepStatus::gave_up) {
     recorder.log().line(fmt::format("{} failed: {}", stage.name, report.message));
     return RunStatus::failed;

@@ -3,8 +3,9 @@
 import signal
 
 import h5py
+import numpy as np
 
-from program import check, check_same, command, fresh, run, start_and_signal
+from program import check, check_same, command, fresh, run, start_and_signal, table
 
 CASE = "tunnel_elastic"
 SETTINGS = ["volume_loss.increments=30", "volume_loss.total=5 %", "output.every=2"]
@@ -86,4 +87,28 @@ stopped = fresh("stopped_specimen")
 code = start_and_signal(command("biaxial_bvp", stopped, SPECIMEN), stopped / "increments/0005.h5", signal.SIGINT)
 check(code == 130, f"a specimen stopped by SIGINT ended with {code} instead of 130")
 run(command("biaxial_bvp", stopped, SPECIMEN, "--resume"))
+check_same(straight, stopped)
+
+# Other fields after a resume: the histories say what the earlier or the later files lack.
+other = fresh("other_fields")
+start_and_signal(command("biaxial_bvp", other, SPECIMEN), other / "increments/0005.h5", signal.SIGINT)
+run(command("biaxial_bvp", other, [*SPECIMEN, 'output.fields=["stress"]'], "--resume"))
+with h5py.File(other / "run.h5", "r") as result:
+    columns = {name: column[:] for name, column in result["tables/gauss_histories"].items()}
+check(len({len(column) for column in columns.values()}) == 1, "columns of different lengths")
+check(not np.isnan(columns["stress_yy"]).any() and np.isnan(columns["strain_yy"][-1]) and not np.isnan(columns["strain_yy"][0]),
+      "the histories of a run resumed with other fields")
+
+# A specimen of grains whose every increment is relaxed, some cut, stopped behind each few: the factor is kept as well.
+GRAINS = ["packing.grains=60", "packing.candidates=1", "packing.folder=packings", "biaxial_bvp.columns=1", "biaxial_bvp.rows=2",
+          "biaxial_bvp.strain=10 %", "biaxial_bvp.strain_step=0.5 %"]
+straight = fresh("straight_relaxed")
+run(command("biaxial_bvp", straight, GRAINS, "--threads", "1"))
+check(min(row["relaxations"] for row in table(straight)) > 0, "an increment was not relaxed: the test tests nothing")
+stopped = fresh("stopped_relaxed")
+for wait_for, resume in (("0003.h5", []), ("0008.h5", ["--resume"]), ("0014.h5", ["--resume"])):
+    code = start_and_signal(command("biaxial_bvp", stopped, GRAINS, *resume, "--threads", "1"), stopped / "increments" / wait_for,
+                            signal.SIGTERM)
+    check(code == 130, f"a relaxed specimen stopped by SIGTERM ended with {code}")
+run(command("biaxial_bvp", stopped, GRAINS, "--resume", "--threads", "1"))
 check_same(straight, stopped)

@@ -66,6 +66,19 @@ TEST(LoadStepper, CutStepsGiveTheBitsOfSmallStepsAskedFor) {
   EXPECT_EQ(cut.material.state(), asked.material.state());
 }
 
+/// Equilibrium ends at a parameter: steps cut until they would not move it converge, and lead nowhere.
+TEST(LoadStepper, AStepTooSmallToMoveTheParameterIsGivenUp) {
+  Sheared block(1e300);
+  block.path.external_force = [&](double parameter) {
+    const double force = parameter <= 1.3 ? 0.0 : std::nan("");
+    return Eigen::VectorXd::Constant(block.mesh.n_dofs(), force).eval();
+  };
+  const StepReport report = advance_load(block.solver, block.state, block.path, {1, 2}, {.smallest = 1e-300});
+  EXPECT_EQ(report.status, StepStatus::gave_up);
+  EXPECT_LE(block.state.parameter, 1.3);
+  EXPECT_NEAR(block.state.parameter, 1.3, 1e-12);
+}
+
 TEST(LoadStepper, ResumesWithTheSameBitsAtAnyIncrement) {
   const std::vector<double> targets{1, 2, 3};
   for (const Kinematics kinematics : {Kinematics::updated_lagrangian, Kinematics::fixed_mesh}) {

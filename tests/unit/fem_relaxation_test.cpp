@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "tests/fem_support.hpp"
 
@@ -14,6 +15,8 @@ namespace {
 class CollapsingMaterial final : public MaterialBatch {
  public:
   static constexpr double young = 1e7, limit = 1e-3, loss = 0.5, too_stiff = 3;
+
+  int fails_from = std::numeric_limits<int>::max();  ///< the first evaluation that is not usable
 
   explicit CollapsingMaterial(std::size_t n) : committed_(n), trial_(n) {}
   [[nodiscard]] std::size_t size() const override { return committed_.size(); }
@@ -30,6 +33,8 @@ class CollapsingMaterial final : public MaterialBatch {
     answer(trial_, stress, tangent);
     BatchReport report;
     report.work = size();
+    report.usable = evaluations_ < fails_from;
+    if (!report.usable) report.message = "point 3: overlap";
     return report;
   }
   void commit() override { committed_ = trial_; }
@@ -157,6 +162,15 @@ TEST(Relaxation, WhatNeverCalmsFailsAndLeavesNothing) {
   EXPECT_EQ(pillar.state.displacement.norm(), 0);
   EXPECT_EQ(pillar.state.coordinates, pillar.mesh.coordinates);
   EXPECT_EQ(pillar.state.parameter, 0);
+}
+
+TEST(Relaxation, WhatFailsSaysWhy) {
+  Pillar pillar;
+  pillar.material.fails_from = 2;  // one good iterate, then none
+  const StepReport report = pillar.advance({.smallest = 1, .relax_below = 1, .relaxation = {.near_residual = 0}});
+  EXPECT_EQ(report.status, StepStatus::gave_up);
+  EXPECT_EQ(report.last.status, NewtonStatus::material_failed);
+  EXPECT_NE(report.message.find("point 3: overlap"), std::string::npos) << report.message;
 }
 
 TEST(Relaxation, TooFarFromEquilibriumIsCutInstead) {
