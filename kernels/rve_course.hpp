@@ -34,6 +34,14 @@ struct RunScales {
           .reach = 2.0 * largest + skin};
 }
 
+/// A grain's constants for the sweep. @param largest_radius of the packing [m]
+template <class real>
+[[nodiscard]] GrainShape<real> grain_shape(const Packing& packing, std::size_t grain, double largest_radius) {
+  const double r = packing.radii[grain];
+  return {static_cast<real>(r), static_cast<real>(mobility_of(packing.material_of(grain), r)),
+          static_cast<real>(rotational_mobility_of(packing.material_of(grain), r, largest_radius))};
+}
+
 template <class DriveType>
 struct RveCourse {
   using Drive = DriveType;
