@@ -111,24 +111,29 @@ Work advance_with(RveBatch& batch, std::span<const typename Drive::Request> requ
                                                   : choose<Drive, double>(batch, requests, settings, reports);
 }
 
-/// Teams are for devices of their own; only lanes solve for static tangents.
-bool runs_teams(const EngineSettings& settings) {
+bool wants_lanes(const StrainRequest&) { return false; }
+bool wants_lanes(const ServoRequest& r) { return r.microstructure.any(); }
+
+/// Teams are for devices of their own; only lanes solve for static tangents and record microstructures.
+template <class Request>
+bool runs_teams(const EngineSettings& settings, std::span<const Request> requests) {
   if (settings.backend != Backend::automatic) return settings.backend == Backend::teams;
-  return !std::is_same_v<Kokkos::DefaultExecutionSpace, Kokkos::DefaultHostExecutionSpace> &&
-         settings.tangent == TangentKind::contact;
+  constexpr bool has_device = !std::is_same_v<Kokkos::DefaultExecutionSpace, Kokkos::DefaultHostExecutionSpace>;
+  return has_device && settings.tangent == TangentKind::contact &&
+         std::none_of(requests.begin(), requests.end(), [](const Request& r) { return wants_lanes(r); });
 }
 
 }  // namespace
 
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {
-  if (runs_teams(settings)) return advance_teams(batch, requests, settings, reports);
+  if (runs_teams(settings, requests)) return advance_teams(batch, requests, settings, reports);
   return advance_with<StrainDrive>(batch, requests, settings, reports);
 }
 
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {
-  if (runs_teams(settings)) return advance_teams(batch, requests, settings, reports);
+  if (runs_teams(settings, requests)) return advance_teams(batch, requests, settings, reports);
   return advance_with<ServoDrive>(batch, requests, settings, reports);
 }
 

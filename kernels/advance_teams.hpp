@@ -11,7 +11,8 @@
 namespace voussoir::kernels {
 
 /// Given motions, on Kokkos' default execution space.
-/// @throws std::invalid_argument for a static tangent, a team the space cannot form, or packings whose list does not fit the scratch
+/// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team the space cannot form, or packings
+/// whose list does not fit the scratch
 Work advance_teams(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
                    std::span<RveReport> reports);
 

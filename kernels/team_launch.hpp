@@ -17,17 +17,11 @@ namespace voussoir::kernels {
 template <class Run>
 KOKKOS_FUNCTION void judge_team(const Run& run, int step) {
   auto& course = run.course();
-  const auto& sums = run.shared().sums;
   Measurement seen;
-  bool looked = false;
-  const auto measure = [&] {
-    looked = true;
-    seen = measurement_of(sums, 0, current_cell(course, run.shared().cell), run.scales(), run.settings.pressure_floor);
-    return seen;
-  };
-  course.running = judge(course, step, run.settings, sums, 0, measure) == Outcome::running;
+  const Outcome outcome = judge(course, step, run.settings, run.shared().sums, 0, run.shared().cell, run.scales(), seen);
+  course.running = outcome == Outcome::running;
   if constexpr (std::is_same_v<typename Run::Drive, ServoControl>) {
-    if (!looked || !course.drive.samples(step)) return;
+    if (outcome == Outcome::lost || !course.drive.samples(step)) return;
     const int at = run.batch.sample_count(run.rve)++;
     run.batch.samples(run.rve, at) = course.drive.sample(step, seen);
   }
@@ -108,6 +102,7 @@ template <class Batch>
 void make_sample_room(Batch& batch, std::span<const ServoRequest> requests) {
   int room = 0;
   for (const ServoRequest& r : requests) {
+    if (r.microstructure.any()) throw std::invalid_argument("teams: no microstructure is recorded along a path");
     if (r.trace != nullptr) room = std::max(room, (r.max_steps - 1) / r.trace_interval + 1);
   }
   batch.samples = decltype(batch.samples)("voussoir::team_launch::samples", requests.size(), static_cast<std::size_t>(room));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <vector>
@@ -217,6 +218,18 @@ TEST_F(TeamKernel, HasTheLanesBitsAndTraceUnderAServo) {
     EXPECT_EQ(teams[k].strain_y, lanes[k].strain_y);
     EXPECT_EQ(teams[k].stress_yy, lanes[k].stress_yy);
     EXPECT_EQ(teams[k].unbalanced, lanes[k].unbalanced);
+  }
+}
+
+TEST(TeamScratch, GrainsOfAnRveFitTheFastMemoryOfAGpu) {
+  constexpr std::size_t fast = 40 * 1024;  // what Kokkos leaves of a block's 48 KiB
+  EXPECT_LT(team_scratch_bytes(700, Precision::float32).hot, fast);
+  for (const int grains : {700, 1500}) {
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
+      const TeamScratchBytes bytes = team_scratch_bytes(grains, precision);
+      std::printf("%d grains: %zu bytes fast, %zu besides\n", grains, bytes.hot, bytes.cold);
+      EXPECT_LT(bytes.hot + bytes.cold, 20U << 20);  // Kokkos' limit of level 1
+    }
   }
 }
 
