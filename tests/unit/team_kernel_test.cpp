@@ -15,11 +15,11 @@
 namespace voussoir::kernels {
 namespace {
 
-/// Team sizes that the default execution space forms; a GPU's teams are not to be compared with the host's lanes.
+/// Team sizes that the default execution space forms, to 2: threads that wait for one another are slow where cores are shared.
 std::vector<int> team_sizes() {
   const int most = Kokkos::DefaultExecutionSpace().concurrency();
   std::vector<int> sizes{0, 1};
-  for (int size = 2; size <= std::min(most, 4); ++size) sizes.push_back(size);
+  for (int size = 2; size <= std::min(most, 2); ++size) sizes.push_back(size);
   return sizes;
 }
 
@@ -193,19 +193,20 @@ TEST_F(TeamKernel, TooFullAListIsReportedAndKeepsTheState) {
 }
 
 TEST_F(TeamKernel, HasTheLanesBitsAndTraceUnderAServo) {
-  const ServoRequest squeeze{.x = {true, -1.5e5}, .y = {true, -1.2e5}, .max_rate = 1e-5, .max_steps = 3000};
-  const ServoRequest biaxial{.x = {true, -1e5}, .y = {false, -1e-6}, .max_rate = 1e-5, .max_steps = 3000, .end_strain_y = 2e-3};
+  const ServoRequest squeeze{.x = {true, -1.5e5}, .y = {true, -1.2e5}, .max_rate = 1e-5, .max_steps = 300};
+  const ServoRequest biaxial{.x = {true, -1e5}, .y = {false, -1e-6}, .max_rate = 1e-5, .max_steps = 3000, .end_strain_y = 2e-4};
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     const auto reports =
         expect_lanes_bits([&] { return clones(dense_, 2); }, std::vector{squeeze, biaxial}, {.precision = precision});
-    EXPECT_EQ(reports[0].status, RveStatus::converged);
+    EXPECT_EQ(reports[0].status, RveStatus::step_limit);
+    EXPECT_EQ(reports[1].status, RveStatus::converged);
   }
   const auto trace = [&](Backend backend) {
     RveBatch batch = clones(dense_, 2);
     std::vector<ServoSample> samples;
     std::vector<ServoRequest> requests{squeeze, biaxial};
     requests[1].trace = &samples;
-    requests[1].trace_interval = 70;
+    requests[1].trace_interval = 20;
     std::vector<RveReport> reports(2);
     advance(batch, std::span<const ServoRequest>(requests), {.precision = Precision::float64, .backend = backend}, reports);
     return samples;
