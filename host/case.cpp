@@ -115,6 +115,9 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   if (input.engine.backend == EngineBackend::teams && input.newton.tangent != TangentChoice::contact) {
     throw root.table("newton").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
   }
+  if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
+    throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");
+  }
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();
   input.resolved = text.resolved();

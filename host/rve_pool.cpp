@@ -27,15 +27,6 @@ kernels::TangentKind kernel_tangent(TangentChoice choice) {
   return kernels::TangentKind::contact;
 }
 
-kernels::Backend kernel_backend(EngineBackend backend) {
-  switch (backend) {
-    case EngineBackend::lanes: return kernels::Backend::lanes;
-    case EngineBackend::teams: return kernels::Backend::teams;
-    case EngineBackend::automatic: break;
-  }
-  return kernels::Backend::automatic;
-}
-
 kernels::Mat2 relative_gradient(const fem::Gradient& h) { return {1.0 + h(0, 0), h(0, 1), h(1, 0), 1.0 + h(1, 1)}; }
 
 /// Next number of the series 1.25^k: counts on a coarse grid, so that a predictor's rounding does not change them.
@@ -44,6 +35,15 @@ int round_up(double steps) {
 }
 
 }  // namespace
+
+kernels::Backend engine_backend(const EngineCase& engine) {
+  switch (engine.backend) {
+    case EngineBackend::lanes: return kernels::Backend::lanes;
+    case EngineBackend::teams: return kernels::Backend::teams;
+    case EngineBackend::automatic: break;
+  }
+  return kernels::Backend::automatic;
+}
 
 kernels::Precision engine_precision(const EngineCase& engine) {
   return engine.precision == Precision::single_precision ? kernels::Precision::float32 : kernels::Precision::float64;
@@ -55,7 +55,7 @@ RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, 
       settings_{.precision = engine_precision(engine),
                 .skin = engine.skin,
                 .hold_tolerance = engine.hold_tolerance,
-                .backend = kernel_backend(engine.backend),
+                .backend = engine_backend(engine),
                 .tangent = kernel_tangent(tangent)},
       microstructure_(microstructure),
       batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),

@@ -30,7 +30,7 @@ struct EngineSettings {
   int list_interval = 8;           ///< steps between looks at displacements
   int guard_interval = 256;        ///< steps between looks at overlaps while straining
   Backend backend = Backend::automatic;
-  int team_size = 0;               ///< threads of a team; 0: Kokkos chooses
+  int team_size = 0;               ///< threads of a team; 0: Kokkos chooses, one on CPUs, where several starve on shared cores
   TangentKind tangent = TangentKind::contact;
   double tangent_tolerance = 2e-3; ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
   int tangent_iterations = 800;    ///< limit

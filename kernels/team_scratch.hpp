@@ -9,8 +9,8 @@
 
 namespace voussoir::kernels {
 
-/// Room of a team's list. Discs in contact have at most 3 pairs each; at a skin of 0.1 d packings of sand list 2.5. An RVE that
-/// needs more ends as `neighbour_overflow`.
+/// Room of a team's list. Discs in contact have at most 3 pairs each, a skin lists more. An RVE that needs more room ends as
+/// `neighbour_overflow`.
 inline constexpr int listed_per_grain = 8;
 
 /// What all threads of a team share.

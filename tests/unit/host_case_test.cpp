@@ -49,10 +49,13 @@ TEST(Case, DefaultsAreThoseOfTheDeclarations) {
   EXPECT_EQ(input.newton.smallest_cut, declared.newton.smallest_cut);
 }
 
-TEST(Case, TeamsHaveNoStaticTangent) {
+TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
   const std::string teams = "kind = 'tunnel'\n[engine]\nbackend = 'teams'\n";
   EXPECT_EQ(load_case(write(teams)).engine.backend, EngineBackend::teams);
   EXPECT_NE(complaint(teams, {"newton.tangent=elastic"}).find("newton.tangent"), std::string::npos);
+  const std::string biaxial = "kind = 'biaxial'\n[engine]\nbackend = 'teams'\n[output]\nmicrostructure = ['fabric']\n";
+  EXPECT_NE(complaint(biaxial, {}).find("output.microstructure"), std::string::npos);
+  EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, EngineBackend::teams);
 }
 
 TEST(Case, UnitsBecomeSi) {
