@@ -148,7 +148,8 @@ int run_biaxial(const Case& input, const RunOptions& options) {
   if (options.resume) std::printf("biaxial tests run all at once and have no checkpoint: they begin anew\n");
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const std::vector<PackedRve> rves = packings_of(input, note);
-  const kernels::EngineSettings settings{.precision = engine_precision(input.engine), .skin = input.engine.skin};
+  const kernels::EngineSettings settings{
+      .precision = engine_precision(input.engine), .skin = input.engine.skin, .backend = engine_backend(input.engine)};
   const BiaxialCase& test = input.biaxial;
   const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings,
                                     input.output.microstructure);

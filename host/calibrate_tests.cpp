@@ -96,7 +96,8 @@ std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet>
       if (note) note(out[k].fault);
     }
   }
-  const kernels::EngineSettings settings{.precision = engine_precision(input.engine), .skin = input.engine.skin};
+  const kernels::EngineSettings settings{
+      .precision = engine_precision(input.engine), .skin = input.engine.skin, .backend = engine_backend(input.engine)};
   const BiaxialCase& test = input.biaxial;
   std::vector<BiaxialCurve> curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings);
   for (std::size_t c = 0; c < curves.size(); ++c) {

@@ -112,6 +112,12 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   }
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
+  if (input.engine.backend == EngineBackend::teams && input.newton.tangent != TangentChoice::contact) {
+    throw root.table("newton").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
+  }
+  if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
+    throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");
+  }
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();
   input.resolved = text.resolved();

@@ -18,6 +18,7 @@ enum class CaseKind { pack, probe, biaxial, biaxial_bvp, calibrate, column, tunn
 enum class MaterialKind { grains, linear_elastic };
 enum class Precision { single_precision, double_precision };
 enum class TangentChoice { contact, elastic, static_ };
+enum class EngineBackend { automatic, lanes, teams };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
 
 /// [[soil.class]] Grains up to a size, made of one stuff (Table 1). Keys that are not given are those of [soil].
@@ -69,6 +70,7 @@ struct EngineCase {
   Precision precision = Precision::single_precision;  ///< value type of the pair loop
   double inertial_number = 3.0e-4;  ///< target inertial number of an increment [-]
   double hold_tolerance = 3.0e-4;   ///< unbalanced force ratio that ends the hold [-]
+  EngineBackend backend = EngineBackend::automatic;  ///< one SIMD lane or one team of threads per RVE; automatic: teams on a GPU
   int hold_cap = 1000;              ///< most steps of a hold
   double skin = 0.1;                ///< neighbour skin over the mean grain diameter [-]
   int minimum_steps = 50;           ///< fewest strain steps of an increment

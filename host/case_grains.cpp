@@ -126,6 +126,10 @@ EngineCase read_engine(const io::Table& table) {
   const char* width = engine.precision == Precision::single_precision ? "float" : "double";
   engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? Precision::single_precision
                                                                                       : Precision::double_precision;
+  const std::string backend = table.choice("backend", {"auto", "lanes", "teams"}, "auto");
+  engine.backend = backend == "lanes"   ? EngineBackend::lanes
+                   : backend == "teams" ? EngineBackend::teams
+                                        : EngineBackend::automatic;
   read_quantity(table, "inertial_number", Dimension::none, engine.inertial_number,
                 {.at_least = "1e-6", .at_most = "1e-2"});
   read_quantity(table, "hold_tolerance", Dimension::none, engine.hold_tolerance,

@@ -70,9 +70,10 @@ inline PackedRve read_rve(ByteReader& read) {
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
   auto& [engine, tangent, microstructure] = options;
-  auto& [preset, precision, inertial_number, hold_tolerance, hold_cap, skin, minimum_steps, maximum_steps] = engine;
+  auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps] = engine;
   static_cast<void>(preset);
   transfer(&precision, 1);
+  transfer(&backend, 1);
   for (auto* number : {&inertial_number, &hold_tolerance, &skin}) transfer(number, 1);
   for (auto* count : {&hold_cap, &minimum_steps, &maximum_steps}) transfer(count, 1);
   transfer(&tangent, 1);

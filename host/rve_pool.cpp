@@ -36,6 +36,15 @@ int round_up(double steps) {
 
 }  // namespace
 
+kernels::Backend engine_backend(const EngineCase& engine) {
+  switch (engine.backend) {
+    case EngineBackend::lanes: return kernels::Backend::lanes;
+    case EngineBackend::teams: return kernels::Backend::teams;
+    case EngineBackend::automatic: break;
+  }
+  return kernels::Backend::automatic;
+}
+
 kernels::Precision engine_precision(const EngineCase& engine) {
   return engine.precision == Precision::single_precision ? kernels::Precision::float32 : kernels::Precision::float64;
 }
@@ -46,6 +55,7 @@ RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, 
       settings_{.precision = engine_precision(engine),
                 .skin = engine.skin,
                 .hold_tolerance = engine.hold_tolerance,
+                .backend = engine_backend(engine),
                 .tangent = kernel_tangent(tangent)},
       microstructure_(microstructure),
       batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),

@@ -13,6 +13,9 @@ namespace voussoir::host {
 /// The case's value type as the engine names it.
 [[nodiscard]] kernels::Precision engine_precision(const EngineCase& engine);
 
+/// The case's backend as the engine names it.
+[[nodiscard]] kernels::Backend engine_backend(const EngineCase& engine);
+
 /// What a pool is told besides its packing and its size.
 struct PoolOptions {
   EngineCase engine;

@@ -36,10 +36,8 @@ void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums)
   for (std::size_t l = 0; l < Run::width; ++l) {
     auto& lane = run.lanes[l];
     if (!lane.running) continue;
-    const auto measure = [&] {
-      return measurement_of(sums, l, current_cell(lane, run.lists[l].cell), run.scales, run.settings.pressure_floor);
-    };
-    switch (judge(lane, step, run.settings, sums, l, measure)) {
+    Measurement seen;
+    switch (judge(lane, step, run.settings, sums, l, run.lists[l].cell, run.scales, seen)) {
       case Outcome::running: break;
       case Outcome::ended: freeze(run, l, lane.status); break;
       case Outcome::lost: discard(run, l, lane.status); break;

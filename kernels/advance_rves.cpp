@@ -5,17 +5,17 @@
 #include <exception>
 #include <memory>
 #include <numeric>
+#include <type_traits>
 #include <vector>
 
 #include "kernels/advance_group.hpp"
+#include "kernels/advance_teams.hpp"
 #include "kernels/flush_subnormals.hpp"
+#include "kernels/schedule.hpp"
 
 namespace voussoir::kernels {
 
 namespace {
-
-int predicted_steps(const StrainRequest& r) { return r.strain_steps + r.hold_cap / 4; }
-int predicted_steps(const ServoRequest& r) { return r.max_steps; }
 
 /// RVEs of one packing side by side, most work first, so that lanes end together and the longest group starts first.
 template <int width, class Request>
@@ -91,13 +91,6 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
 /// One RVE per packing leaves wide lanes empty: those run one to a group in the same code.
 bool mostly_alone(const RveBatch& batch) { return batch.size() < 2 * batch.packings.size(); }
 
-bool rolls(const RveBatch& batch) {
-  return std::any_of(batch.packings.begin(), batch.packings.end(), [](const Packing& p) {
-    return std::any_of(p.materials.begin(), p.materials.end(),
-                       [](const GrainMaterial& m) { return m.rolling_stiffness > 0 && m.rolling_limit > 0; });
-  });
-}
-
 template <class Drive, class real>
 Work choose(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
             std::span<RveReport> reports) {
@@ -118,15 +111,29 @@ Work advance_with(RveBatch& batch, std::span<const typename Drive::Request> requ
                                                   : choose<Drive, double>(batch, requests, settings, reports);
 }
 
+bool wants_lanes(const StrainRequest&) { return false; }
+bool wants_lanes(const ServoRequest& r) { return r.microstructure.any(); }
+
+/// Teams are for devices of their own; only lanes solve for static tangents and record microstructures.
+template <class Request>
+bool runs_teams(const EngineSettings& settings, std::span<const Request> requests) {
+  if (settings.backend != Backend::automatic) return settings.backend == Backend::teams;
+  constexpr bool has_device = !std::is_same_v<Kokkos::DefaultExecutionSpace, Kokkos::DefaultHostExecutionSpace>;
+  return has_device && settings.tangent == TangentKind::contact &&
+         std::none_of(requests.begin(), requests.end(), [](const Request& r) { return wants_lanes(r); });
+}
+
 }  // namespace
 
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {
+  if (runs_teams(settings, requests)) return advance_teams(batch, requests, settings, reports);
   return advance_with<StrainDrive>(batch, requests, settings, reports);
 }
 
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {
+  if (runs_teams(settings, requests)) return advance_teams(batch, requests, settings, reports);
   return advance_with<ServoDrive>(batch, requests, settings, reports);
 }
 

@@ -149,17 +149,20 @@ class ServoDrive : public ServoControl {
   [[nodiscard]] const MicrostructureRequest& recorded_quantities() const { return request_.microstructure; }
   void record(const Microstructure& m) { recorded_ = m; }
 
-  Verdict judge(int step, const Measurement& m) {
+  /// Runs on the host; marked for both because its caller is.
+  KOKKOS_INLINE_FUNCTION Verdict judge(int step, const Measurement& m) {
     const Verdict verdict = ServoControl::judge(step, m);
-    if (samples(step)) {
-      request_.trace->push_back(sample(step, m));
-      request_.trace->back().microstructure = recorded_;
-    }
+    KOKKOS_IF_ON_HOST((if (samples(step)) keep(sample(step, m));))
     return verdict;
   }
 
  private:
   Microstructure recorded_;
+
+  void keep(const ServoSample& sample) {
+    request_.trace->push_back(sample);
+    request_.trace->back().microstructure = recorded_;
+  }
 };
 
 }  // namespace voussoir::kernels

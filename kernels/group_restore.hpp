@@ -54,11 +54,8 @@ void restore_grains(Run& run) {
   run.group.grains.assign(n, GrainLanes<V>{V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0)});
   run.group.shapes.resize(n);
   run.group.row.resize(n + 1);
-  const double largest = run.scales.largest_radius;
   for (std::size_t i = 0; i < n; ++i) {
-    const double r = packing.radii[i];
-    run.group.shapes[i] = {static_cast<real>(r), static_cast<real>(mobility_of(packing.material_of(i), r)),
-                           static_cast<real>(rotational_mobility_of(packing.material_of(i), r, largest))};
+    run.group.shapes[i] = grain_shape<real>(packing, i, run.scales.largest_radius);
   }
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "kernels/schedule.hpp"
+
 namespace voussoir::kernels {
 
 namespace {
@@ -89,6 +91,13 @@ const char* name_of(RveStatus s) {
     case RveStatus::not_finite: return "not_finite";
   }
   return "unknown";
+}
+
+bool rolls(const RveBatch& batch) {
+  return std::any_of(batch.packings.begin(), batch.packings.end(), [](const Packing& p) {
+    return std::any_of(p.materials.begin(), p.materials.end(),
+                       [](const GrainMaterial& m) { return m.rolling_stiffness > 0 && m.rolling_limit > 0; });
+  });
 }
 
 RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of) {

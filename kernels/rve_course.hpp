@@ -34,6 +34,14 @@ struct RunScales {
           .reach = 2.0 * largest + skin};
 }
 
+/// A grain's constants for the sweep. @param largest_radius of the packing [m]
+template <class real>
+[[nodiscard]] GrainShape<real> grain_shape(const Packing& packing, std::size_t grain, double largest_radius) {
+  const double r = packing.radii[grain];
+  return {static_cast<real>(r), static_cast<real>(mobility_of(packing.material_of(grain), r)),
+          static_cast<real>(rotational_mobility_of(packing.material_of(grain), r, largest_radius))};
+}
+
 template <class DriveType>
 struct RveCourse {
   using Drive = DriveType;
@@ -147,10 +155,11 @@ template <class V>
 /// What a measuring step decides: `ended` keeps the state, `lost` gives it up.
 enum class Outcome { running, ended, lost };
 
-/// Sets the status of a course that ends. @param measure () -> Measurement, called when the drive looks
-template <class V, class Drive, class Measure>
+/// Sets the status of a course that ends. @param reference cell at the last rebase; @param seen what the drive saw, where it looked
+template <class V, class Drive>
 KOKKOS_INLINE_FUNCTION Outcome judge(RveCourse<Drive>& course, int step, const EngineSettings& settings,
-                                     const SweepSums<V>& sums, std::size_t l, const Measure& measure) {
+                                     const SweepSums<V>& sums, std::size_t l, const Mat2& reference, const RunScales& scales,
+                                     Measurement& seen) {
   if (guards(settings, step)) {
     course.overlap = relative_overlap(static_cast<double>(sums.largest_overlap[l]));
     if (!(course.overlap <= settings.overlap_limit)) {
@@ -159,9 +168,9 @@ KOKKOS_INLINE_FUNCTION Outcome judge(RveCourse<Drive>& course, int step, const E
     }
   }
   if (!course.drive.looks(step)) return Outcome::running;
-  const Measurement m = measure();
-  course.unbalanced = m.unbalanced;
-  const Verdict verdict = course.drive.judge(step, m);
+  seen = measurement_of(sums, l, current_cell(course, reference), scales, settings.pressure_floor);
+  course.unbalanced = seen.unbalanced;
+  const Verdict verdict = course.drive.judge(step, seen);
   if (verdict == Verdict::running) return Outcome::running;
   course.status = verdict == Verdict::converged ? RveStatus::converged : RveStatus::step_limit;
   return Outcome::ended;

@@ -15,6 +15,10 @@ enum class Precision { float32, float64 };
 /// the springs that have yielded.
 enum class TangentKind { contact, elastic, static_ };
 
+/// Who advances the RVEs: one SIMD lane each (CPUs), or one team of threads each (GPUs; on a CPU the same bits, more slowly).
+/// `automatic`: teams where Kokkos' default execution space is a device of its own.
+enum class Backend { automatic, lanes, teams };
+
 /// Numerical settings of a run. The case file's [engine] table sets them for a mesh; packings are made with these.
 struct EngineSettings {
   Precision precision = Precision::float32;
@@ -25,6 +29,8 @@ struct EngineSettings {
   int look_interval = 16;          ///< steps between looks at stress and unbalanced force
   int list_interval = 8;           ///< steps between looks at displacements
   int guard_interval = 256;        ///< steps between looks at overlaps while straining
+  Backend backend = Backend::automatic;
+  int team_size = 0;               ///< threads of a team; 0: Kokkos chooses, one on CPUs, where several starve on shared cores
   TangentKind tangent = TangentKind::contact;
   double tangent_tolerance = 2e-3; ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
   int tangent_iterations = 800;    ///< limit

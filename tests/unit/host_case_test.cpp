@@ -49,6 +49,15 @@ TEST(Case, DefaultsAreThoseOfTheDeclarations) {
   EXPECT_EQ(input.newton.smallest_cut, declared.newton.smallest_cut);
 }
 
+TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
+  const std::string teams = "kind = 'tunnel'\n[engine]\nbackend = 'teams'\n";
+  EXPECT_EQ(load_case(write(teams)).engine.backend, EngineBackend::teams);
+  EXPECT_NE(complaint(teams, {"newton.tangent=elastic"}).find("newton.tangent"), std::string::npos);
+  const std::string biaxial = "kind = 'biaxial'\n[engine]\nbackend = 'teams'\n[output]\nmicrostructure = ['fabric']\n";
+  EXPECT_NE(complaint(biaxial, {}).find("output.microstructure"), std::string::npos);
+  EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, EngineBackend::teams);
+}
+
 TEST(Case, UnitsBecomeSi) {
   const Case input = load_case(write("kind = 'tunnel'\n[ground]\nunit_weight = '18 kN/m3'\n[volume_loss]\ntotal = '10 %'\n"),
                                {"soil.friction=30 deg", "engine.precision=double"});

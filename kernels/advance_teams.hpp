@@ -1,0 +1,29 @@
+#pragma once
+/// The engine's verbs with one RVE per team of threads: what a GPU runs. The time loop is inside the kernel and every team ends
+/// with its RVE. An RVE's answer has the bits of `EngineSettings::backend = lanes` on the same processor, whatever the team's size.
+///
+/// Called through `advance` (advance_rves.hpp).
+
+#include <span>
+
+#include "kernels/advance_rves.hpp"
+
+namespace voussoir::kernels {
+
+/// Given motions, on Kokkos' default execution space.
+/// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team the space cannot form, or packings
+/// whose list does not fit the scratch
+Work advance_teams(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
+                   std::span<RveReport> reports);
+
+/// Stress-controlled cells.
+Work advance_teams(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
+                   std::span<RveReport> reports);
+
+/// Bytes of scratch one running team takes, in fast memory and besides it.
+struct TeamScratchBytes {
+  std::size_t hot, cold;
+};
+[[nodiscard]] TeamScratchBytes team_scratch_bytes(int grains, Precision precision);
+
+}  // namespace voussoir::kernels
