@@ -85,7 +85,8 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
       ++report.cuts;
       if (callbacks.on_failed) callbacks.on_failed({from, to, report.last});
       const double next = (to - from) * options.cut;
-      if (next < options.smallest * nominal || !(from + next > from)) {  // the latter would be no step at all
+      const bool shorter = from + next > from && from + next < to;  // else rounding makes it no step, or the same one
+      if (next < options.smallest * nominal || !shorter) {
         report.status = StepStatus::gave_up;
         report.message = describe(report.last, from, to);
         return false;
