@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/stored_packing.hpp"
 #include "io/packing_file.hpp"
 
 namespace voussoir::host {
@@ -229,15 +230,7 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
 }
 
 PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe) {
-  const io::Packing file = io::load_packing_csv(recipe.file);
-  PackedRve rve;
-  rve.packing = packing_of(soil, file.radius, file.thickness);
-  for (std::size_t i = 0; i < file.grains(); ++i) {
-    rve.position.push_back(file.x[i]);
-    rve.position.push_back(file.y[i]);
-  }
-  rve.rotation = file.rotation;
-  rve.cell = {file.cell[0], file.cell[1], file.cell[2], file.cell[3]};
+  PackedRve rve = grains_from(io::load_packing_csv(recipe.file), soil);
   kernels::RveBatch batch = batch_of(std::span(&rve, 1));
   const std::vector<kernels::RveReport> reports = consolidate(batch, recipe.pressure, 0.1);
   take_results(std::span(&rve, 1), batch, reports);

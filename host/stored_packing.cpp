@@ -29,12 +29,7 @@ io::Packing stored_packing(const PackedRve& rve, const std::string& recipe, cons
   return file;
 }
 
-std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCase& soil) {
-  const std::vector<std::string> histories{"tangential_force", "rolling_moment"};
-  const auto number = [&](const char* name) {
-    const auto found = file.numbers.find(name);
-    return found == file.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
-  };
+PackedRve grains_from(const io::Packing& file, const SoilCase& soil) {
   PackedRve rve;
   rve.packing = packing_of(soil, file.radius, file.thickness);
   for (std::size_t i = 0; i < file.grains(); ++i) {
@@ -43,6 +38,16 @@ std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCas
   }
   rve.rotation = file.rotation;
   rve.cell = {file.cell[0], file.cell[1], file.cell[2], file.cell[3]};
+  return rve;
+}
+
+std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCase& soil) {
+  const std::vector<std::string> histories{"tangential_force", "rolling_moment"};
+  const auto number = [&](const char* name) {
+    const auto found = file.numbers.find(name);
+    return found == file.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+  };
+  PackedRve rve = grains_from(file, soil);
   rve.contact_history = file.history;
   for (std::size_t c = 0; c < file.contacts(); ++c) {
     if (file.contact_i[c] >= file.contact_j[c]) return {};
