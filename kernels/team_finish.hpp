@@ -36,7 +36,7 @@ KOKKOS_FUNCTION void homogenise_team(const Run& run) {
     at.springs(p) = {pair.normal, pair.tangential, pair.weight};
     return pair.weight[0] > 0;
   });
-  const real overlap = largest<real>(run, run.listed(), [&](int p) { return static_cast<real>(at.branches(p).overlap); });
+  const real overlap = largest_overlap(run);
   each(run, 11, [&](int q) {
     if (q < 4) set_stress(out.sums, q, stress_sum(run, q));
     if (q >= 4 && q < 10) out.tangent[q - 4] = tangent_sum(run, q - 4);

@@ -76,6 +76,13 @@ KOKKOS_FORCEINLINE_FUNCTION void set_stress(SweepSums<V>& sums, int q, const V& 
   if (q == 3) sums.stress_yy = value;
 }
 
+/// The largest overlap of the listed pairs.
+template <class Run>
+[[nodiscard]] KOKKOS_FUNCTION typename Run::real largest_overlap(const Run& run) {
+  using real = typename Run::real;
+  return largest<real>(run, run.listed(), [&](int p) { return static_cast<real>(run.at.branches(p).overlap); });
+}
+
 /// The sums of a measuring step, one a thread, in the order of the lanes' sweep.
 template <class Run>
 KOKKOS_FUNCTION void sum_step(const Run& run) {
@@ -83,7 +90,7 @@ KOKKOS_FUNCTION void sum_step(const Run& run) {
   using real = typename Run::real;
   const auto& at = run.at;
   SweepSums<V>& sums = run.shared().sums;
-  const real overlap = largest<real>(run, run.listed(), [&](int p) { return static_cast<real>(at.branches(p).overlap); });
+  const real overlap = largest_overlap(run);
   each(run, 6, [&](int q) {
     if (q < 4) set_stress(sums, q, stress_sum(run, q));
     if (q == 5) sums.largest_overlap = V(overlap);
