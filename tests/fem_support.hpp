@@ -46,7 +46,7 @@ struct SofteningOptions {
 };
 
 /// Path-independent: stress from the total strain, the sum of the increments' sym(F_rel - I).
-class SofteningMaterial final : public fem::MaterialBatch {
+class SofteningMaterial : public fem::MaterialBatch {
  public:
   SofteningMaterial(std::size_t n, const SofteningOptions& options)
       : options_(options), committed_(n, Eigen::Vector3d::Zero()), trial_(committed_) {}

@@ -183,14 +183,12 @@ TEST(Newton, NoiseFloorsWidenTheBoundsAndCanBeSwitchedOff) {
 }
 
 /// A law that is a fixed but rough function of the gradient, as an RVE's is: independent errors at every new gradient.
-class RoughMaterial final : public MaterialBatch {
+class RoughMaterial final : public SofteningMaterial {
  public:
-  RoughMaterial(std::size_t n, double noise) : smooth_(n, {.strain_scale = 0.02, .too_stiff = 1.5}), noise_(noise) {}
-  [[nodiscard]] std::size_t size() const override { return smooth_.size(); }
-  void begin_increment() override {}
+  RoughMaterial(std::size_t n, double noise) : SofteningMaterial(n, {.strain_scale = 0.02, .too_stiff = 1.5}), noise_(noise) {}
   BatchReport evaluate(std::span<const Gradient> gradients, std::span<Stress> stress,
                        std::span<Tangent> tangent) override {
-    BatchReport report = smooth_.evaluate(gradients, stress, tangent);
+    BatchReport report = SofteningMaterial::evaluate(gradients, stress, tangent);
     report.stress_noise = noise_;
     for (std::size_t i = 0; i < size(); ++i) {
       std::seed_seq seed{i,
@@ -202,38 +200,24 @@ class RoughMaterial final : public MaterialBatch {
     }
     return report;
   }
-  void commit() override { smooth_.commit(); }
-  void committed(std::span<Stress> s, std::span<Tangent> t) const override { smooth_.committed(s, t); }
-  [[nodiscard]] std::vector<PointField> fields() const override { return {}; }
-  [[nodiscard]] std::vector<std::byte> state() const override { return smooth_.state(); }
-  void set_state(std::span<const std::byte> bytes) override { smooth_.set_state(bytes); }
 
  private:
-  SofteningMaterial smooth_;
   double noise_;
 };
 
 /// Stresses times the next factor of a list at each evaluation, the last one from then on.
-class ScriptedMaterial final : public MaterialBatch {
+class ScriptedMaterial final : public SofteningMaterial {
  public:
-  ScriptedMaterial(std::size_t n, std::vector<double> factors) : smooth_(n, {}), factors_(std::move(factors)) {}
-  [[nodiscard]] std::size_t size() const override { return smooth_.size(); }
-  void begin_increment() override {}
+  ScriptedMaterial(std::size_t n, std::vector<double> factors) : SofteningMaterial(n, {}), factors_(std::move(factors)) {}
   BatchReport evaluate(std::span<const Gradient> gradients, std::span<Stress> stress,
                        std::span<Tangent> tangent) override {
-    const BatchReport report = smooth_.evaluate(gradients, stress, tangent);
+    const BatchReport report = SofteningMaterial::evaluate(gradients, stress, tangent);
     const double factor = factors_[std::min(next_++, factors_.size() - 1)];
     for (Stress& s : stress) s *= factor;
     return report;
   }
-  void commit() override { smooth_.commit(); }
-  void committed(std::span<Stress> s, std::span<Tangent> t) const override { smooth_.committed(s, t); }
-  [[nodiscard]] std::vector<PointField> fields() const override { return {}; }
-  [[nodiscard]] std::vector<std::byte> state() const override { return smooth_.state(); }
-  void set_state(std::span<const std::byte> bytes) override { smooth_.set_state(bytes); }
 
  private:
-  SofteningMaterial smooth_;
   std::vector<double> factors_;
   std::size_t next_ = 0;
 };
