@@ -14,7 +14,7 @@ namespace voussoir::host {
 namespace {
 
 std::filesystem::path write(const std::string& text) {
-  const std::filesystem::path file = "case_under_test.toml";
+  const auto file = std::filesystem::path(testing::TempDir()) / "case_under_test.toml";
   std::ofstream(file) << text;
   return file;
 }
