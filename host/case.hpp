@@ -75,6 +75,7 @@ struct EngineCase {
   double skin = 0.1;                ///< neighbour skin over the mean grain diameter [-]
   int minimum_steps = 50;           ///< fewest strain steps of an increment
   int maximum_steps = 2000;         ///< most strain steps of an increment
+  double defer = 0;                 ///< change of stress over pressure up to which RVEs answer by their tangent [-]; 0: never
 };
 
 /// [ground] The half domain: symmetry axis at x = 0, base at y = 0 (method.md, section 4).

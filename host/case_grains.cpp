@@ -138,6 +138,7 @@ EngineCase read_engine(const io::Table& table) {
   read_quantity(table, "skin", Dimension::none, engine.skin, {.at_least = "0.005", .at_most = "1"});
   read_integer(table, "minimum_steps", engine.minimum_steps, {.at_least = 1, .at_most = 10'000'000});
   read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
+  read_quantity(table, "defer", Dimension::none, engine.defer, {.at_least = "0", .at_most = "0.1"});
   if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
   return engine;
 }

@@ -15,7 +15,7 @@ enum class Command : std::uint8_t {
   start,            ///< build's revision, threads -> host's name, threads
   make,             ///< recipe of the pool -> committed reports
   begin_increment,  ///< ->
-  evaluate,         ///< gradients -> seconds, particle-steps, trial reports
+  evaluate,         ///< gradients -> seconds, particle-steps, error of what was deferred, trial reports
   commit,           ///< ->
   fields,           ///< -> number of fields, then each
   states,           ///< first, number of RVEs -> their records
@@ -70,11 +70,11 @@ inline PackedRve read_rve(ByteReader& read) {
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
   auto& [engine, tangent, microstructure] = options;
-  auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps] = engine;
+  auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps, defer] = engine;
   static_cast<void>(preset);
   transfer(&precision, 1);
   transfer(&backend, 1);
-  for (auto* number : {&inertial_number, &hold_tolerance, &skin}) transfer(number, 1);
+  for (auto* number : {&inertial_number, &hold_tolerance, &skin, &defer}) transfer(number, 1);
   for (auto* count : {&hold_cap, &minimum_steps, &maximum_steps}) transfer(count, 1);
   transfer(&tangent, 1);
   transfer(&microstructure, 1);

@@ -140,16 +140,19 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
   });
   ledger_.waiting += now() - own_end;
   place(own_->trial_reports(), points_[0], trial_);
+  double deferral_error = own_->deferral_error();
   for (std::size_t r = 1; r <= others(); ++r) {
     ByteReader read = values_of(replies[r - 1]);
     slowest = std::max(slowest, read.value<double>());
     work.particle_steps += read.value<kernels::Work>().particle_steps;
+    deferral_error = std::max(deferral_error, read.value<double>());
     place(read.list<kernels::RveReport>(), points_[r], trial_);
     ledger_.bytes += static_cast<double>(replies[r - 1].size());
   }
   copy_answers(trial_, stress, tangent);
   fem::BatchReport report = summarise(trial_, own_->pressure_floor());
   report.work = work.particle_steps;
+  report.deferral_error = deferral_error;
   ++ledger_.evaluations;
   ledger_.slowest += slowest;
   ledger_.evaluating += now() - start;

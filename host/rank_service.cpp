@@ -75,6 +75,7 @@ class Service {
     const kernels::Work work = pool().advance(gradients);
     reply.value(std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
     reply.value(work);
+    reply.value(pool().deferral_error());
     reply.list(pool().trial_reports());
   }
 

@@ -81,6 +81,8 @@ void RunRecorder::report(const io::IncrementInfo& info) {
   if (column("relaxations") > 0) text += fmt::format(", relaxed in {} substeps", column("relaxations"));
   if (column("open_points") > 0) text += fmt::format(", {} points open", column("open_points"));
   if (column("step_limit_points") > 0) text += fmt::format(", {} points at the step limit", column("step_limit_points"));
+  if (column("deferred_points") > 0) text += fmt::format(", {} points deferred", column("deferred_points"));
+  if (column("deferral_error") > 0) text += fmt::format(", deferral was off by {:.1e} p", column("deferral_error"));
   if (column("slowest_steps") > 0) {
     text += fmt::format(", slowest RVE {} with {} steps", column("slowest_point"), column("slowest_steps"));
   }

@@ -14,6 +14,8 @@ namespace {
 /// unbalanced ratio (docs/trade.md), so those are counted.
 constexpr double noise_share = 0.29;
 
+}  // namespace
+
 fem::Stress stress_of(const kernels::RveReport& r) { return {r.stress[0], r.stress[3], 0.5 * (r.stress[1] + r.stress[2])}; }
 
 fem::Tangent tangent_of(const kernels::RveReport& r) {
@@ -22,8 +24,6 @@ fem::Tangent tangent_of(const kernels::RveReport& r) {
   out << d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5];
   return out;
 }
-
-}  // namespace
 
 void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
                   std::span<fem::Tangent> tangent) {
@@ -46,6 +46,7 @@ fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double p
       out.slowest = k;
       out.slowest_steps = r.steps;
     }
+    if (r.steps == 0) ++out.deferred;
     if (r.status == kernels::RveStatus::open) ++out.open;
     if (r.status == kernels::RveStatus::step_limit) ++out.step_limit;
     const double s = noise_share * r.unbalanced * std::max(r.pressure(), pressure_floor);

@@ -61,7 +61,8 @@ RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, 
       batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
       requests_(n),
       trial_reports_(n),
-      committed_reports_(n) {
+      committed_reports_(n),
+      deferral_(engine.defer, settings_.pressure_floor) {
   for (std::size_t k = 0; k < n; ++k) store_rve(rve, batch_, k);
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
   for (auto& report : committed_reports_) {
@@ -70,9 +71,13 @@ RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, 
     }
     if (report.status == kernels::RveStatus::step_limit) report.status = kernels::RveStatus::converged;  // no motion was asked
   }
+  deferral_.start(committed_reports_);
 }
 
-void RvePool::begin_increment() { steps_are_fixed_ = false; }
+void RvePool::begin_increment() {
+  steps_are_fixed_ = false;
+  deferral_.begin_increment();
+}
 
 /// Steps that keep the target inertial number at the RVE's committed pressure. A rotation costs none, the path is rigid all the
 /// way.
@@ -85,19 +90,39 @@ int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
   return std::clamp(round_up(std::clamp(steps, 1.0, most)), engine_.minimum_steps, engine_.maximum_steps);
 }
 
-void RvePool::choose_steps(std::span<const fem::Gradient> gradients) {
+/// @param anew whatever the steps were before
+void RvePool::choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew) {
+  kernels::StrainRequest& request = requests_[rve];
+  request.f_rel = relative_gradient(gradient);
+  const int steps = steps_for(rve, request.f_rel);
+  if (anew || steps > step_regret * request.strain_steps) request.strain_steps = steps;
+  request.hold_cap = engine_.hold_cap;
+}
+
+/// Grains run where they must, with all that was deferred.
+kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients) {
+  running_.clear();
+  increment_.assign(gradients.begin(), gradients.end());
   for (std::size_t k = 0; k < size(); ++k) {
-    kernels::StrainRequest& request = requests_[k];
-    request.f_rel = relative_gradient(gradients[k]);
-    const int steps = steps_for(k, request.f_rel);
-    if (!steps_are_fixed_ || steps > step_regret * request.strain_steps) request.strain_steps = steps;
-    request.hold_cap = engine_.hold_cap;
+    const bool ran = steps_are_fixed_ && deferral_.runs(k);
+    if (deferral_.answer(k, gradients[k], trial_reports_[k])) continue;
+    choose_steps(k, deferral_.whole(k, gradients[k]), !ran);
+    running_.push_back(static_cast<int>(k));
   }
   steps_are_fixed_ = true;
+  const kernels::Work work =
+      kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, trial_reports_, running_);
+  for (const int rve : running_) {
+    const auto k = static_cast<std::size_t>(rve);
+    deferral_.check(k, gradients[k], trial_reports_[k]);
+  }
+  return work;
 }
 
 kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients) {
-  choose_steps(gradients);
+  if (deferral_.on()) return advance_some(gradients);
+  for (std::size_t k = 0; k < size(); ++k) choose_steps(k, gradients[k], !steps_are_fixed_);
+  steps_are_fixed_ = true;
   return kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, trial_reports_);
 }
 
@@ -107,12 +132,18 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
   copy_answers(trial_reports_, stress, tangent);
   fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor);
   report.work = work.particle_steps;
+  report.deferral_error = deferral_.error();
   return report;
 }
 
 void RvePool::commit() {
   kernels::commit(batch_);
   committed_reports_ = trial_reports_;
+  if (!deferral_.on()) return;
+  for (std::size_t k = 0; k < size(); ++k) {
+    if (!deferral_.commit(k, increment_[k], trial_reports_[k])) continue;
+    kernels::copy_state(batch_.trial, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
+  }
 }
 
 void RvePool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const {
@@ -154,7 +185,7 @@ double RvePool::void_ratio_of(std::size_t rve) const {
 }
 
 PackedRve RvePool::packed(std::size_t rve) const {
-  const kernels::RveReport& report = committed_reports_[rve];
+  const kernels::RveReport& report = deferral_.on() ? deferral_.committed(rve).grains : committed_reports_[rve];
   PackedRve out;
   out.packing = batch_.packing(rve);
   load_rve(batch_.committed, rve, out);

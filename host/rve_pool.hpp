@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "fem/material_batch.hpp"
+#include "host/deferral.hpp"
 #include "host/packing.hpp"
 #include "host/rve_pool_state.hpp"
 #include "host/snapshot_source.hpp"
@@ -43,13 +44,14 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
   [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
-  [[nodiscard]] PackedRve packed(std::size_t rve) const;      ///< the same, for another pool to start from
+  [[nodiscard]] PackedRve packed(std::size_t rve) const;      ///< where its grains last ran, for another pool to start from
 
   /// For a pool that is one rank's part of a larger one: the engine's own reports, and states one by one.
   /// `advance` is `evaluate`; what the RVEs answered is in trial_reports().
   kernels::Work advance(std::span<const fem::Gradient> gradients);
   [[nodiscard]] const std::vector<kernels::RveReport>& trial_reports() const { return trial_reports_; }
   [[nodiscard]] const std::vector<kernels::RveReport>& committed_reports() const { return committed_reports_; }
+  [[nodiscard]] double deferral_error() const { return deferral_.error(); }  ///< of the last evaluation [-]
   [[nodiscard]] double pressure_floor() const { return settings_.pressure_floor; }  ///< of the reports' ratios [Pa]
   [[nodiscard]] std::uint64_t identity() const;
   [[nodiscard]] std::vector<std::byte> state_of(std::size_t rve) const;
@@ -63,10 +65,14 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<kernels::StrainRequest> requests_;
   std::vector<kernels::RveReport> trial_reports_;
   std::vector<kernels::RveReport> committed_reports_;
+  Deferral deferral_;
+  std::vector<int> running_;               ///< RVEs whose grains the evaluation needs; only where some may be deferred
+  std::vector<fem::Gradient> increment_;   ///< of the last evaluation; likewise
   bool steps_are_fixed_ = false;
 
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
-  void choose_steps(std::span<const fem::Gradient> gradients);
+  void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);
+  kernels::Work advance_some(std::span<const fem::Gradient> gradients);
   [[nodiscard]] io::RveSnapshot snapshot(std::size_t rve) const;
 };
 

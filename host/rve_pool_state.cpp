@@ -27,6 +27,16 @@ void transfer_report(Transfer& transfer, Report& r) {
   transfer(&r.largest_overlap, 1);
 }
 
+/// What was deferred of one RVE; nothing where none is.
+template <class Transfer, class Deferral>
+void transfer_deferral(Transfer& transfer, Deferral& deferral, std::size_t rve) {
+  if (!deferral.on()) return;
+  auto& at = deferral.committed(rve);
+  transfer(at.gradient.data(), 4);
+  transfer_report(transfer, at.grains);
+  transfer(&at.trust, 1);
+}
+
 /// One order of the numbers for both directions; `count` comes first so that only used contacts are kept.
 template <class Transfer, class States>
 void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t grains) {
@@ -87,6 +97,7 @@ std::uint64_t RvePool::identity() const {
       add(std::array{m.modulus, m.stiffness_ratio, m.friction, m.rolling_stiffness, m.rolling_limit});
     }
   }
+  if (deferral_.on()) add(std::array{deferral_.bound()});
   return hash;
 }
 
@@ -97,6 +108,7 @@ std::vector<std::byte> RvePool::state_of(std::size_t rve) const {
   bytes.reserve(256 + 72 * grains);
   ByteWriter write(bytes);
   transfer_report(write, committed_reports_[rve]);
+  transfer_deferral(write, deferral_, rve);
   transfer_rve(write, batch_.committed, rve, grains);
   return bytes;
 }
@@ -105,11 +117,12 @@ void RvePool::set_states(std::span<const std::size_t> rves, std::span<const Stat
   for (std::size_t k = 0; k < rves.size(); ++k) {
     ByteReader read(records[k], not_of_this_case);
     transfer_report(read, committed_reports_[rves[k]]);
+    transfer_deferral(read, deferral_, rves[k]);
     transfer_rve(read, batch_.committed, rves[k], static_cast<std::size_t>(batch_.packing(rves[k]).size()));
     if (!read.at_end()) throw std::runtime_error(not_of_this_case);
   }
   kernels::forget_candidates(batch_);
-  steps_are_fixed_ = false;
+  begin_increment();
 }
 
 std::vector<std::byte> RvePool::state() const {

@@ -31,6 +31,10 @@ void add_report_columns(const Ground& ground, const fem::NewtonReport& report, i
   info.extra["noise_floor"] = {report.noise_floor, "N/m"};
   info.extra["open_points"] = {static_cast<double>(report.material.open), "-"};
   info.extra["step_limit_points"] = {static_cast<double>(report.material.step_limit), "-"};
+  if (ground.input.engine.defer > 0) {
+    info.extra["deferred_points"] = {static_cast<double>(report.material.deferred), "-"};
+    info.extra["deferral_error"] = {report.material.deferral_error, "-"};
+  }
   if (report.material.slowest_steps > 0) {
     info.extra["slowest_point"] = {static_cast<double>(report.material.slowest), "-"};
     info.extra["slowest_steps"] = {static_cast<double>(report.material.slowest_steps), "-"};

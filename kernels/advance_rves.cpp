@@ -19,9 +19,9 @@ namespace {
 
 /// RVEs of one packing side by side, most work first, so that lanes end together and the longest group starts first.
 template <int width, class Request>
-std::vector<GroupMembers<width>> form_groups(const RveBatch& batch, std::span<const Request> requests) {
-  std::vector<int> order(batch.size());
-  std::iota(order.begin(), order.end(), 0);
+std::vector<GroupMembers<width>> form_groups(const RveBatch& batch, std::span<const Request> requests,
+                                             std::span<const int> rves) {
+  std::vector<int> order(rves.begin(), rves.end());
   const auto steps = [&](int rve) { return predicted_steps(requests[static_cast<std::size_t>(rve)]); };
   const auto packing = [&](int rve) { return batch.packing_of[static_cast<std::size_t>(rve)]; };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -59,11 +59,11 @@ Work count_work(const RveBatch& batch, const std::vector<GroupMembers<width>>& g
 
 template <class V, bool Rolling, class Drive>
 Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
-            std::span<RveReport> reports) {
+            std::span<RveReport> reports, std::span<const int> rves) {
   using Space = Kokkos::DefaultHostExecutionSpace;
   using Run = GroupRun<V, Drive>;
   using Law = LinearContactLaw<V, Rolling>;
-  const auto groups = form_groups<lane_count<V>>(batch, requests);
+  const auto groups = form_groups<lane_count<V>>(batch, requests, rves);
   const Space space;
   Kokkos::Experimental::UniqueToken<Space> tokens(space);
   std::vector<std::unique_ptr<Run>> workers(static_cast<std::size_t>(tokens.size()));
@@ -93,22 +93,28 @@ bool mostly_alone(const RveBatch& batch) { return batch.size() < 2 * batch.packi
 
 template <class Drive, class real>
 Work choose(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
-            std::span<RveReport> reports) {
+            std::span<RveReport> reports, std::span<const int> rves) {
   using Wide = WideLane<real>;
   using Single = SingleLane<real>;
   if (mostly_alone(batch)) {
-    return rolls(batch) ? launch<Single, true, Drive>(batch, requests, settings, reports)
-                        : launch<Single, false, Drive>(batch, requests, settings, reports);
+    return rolls(batch) ? launch<Single, true, Drive>(batch, requests, settings, reports, rves)
+                        : launch<Single, false, Drive>(batch, requests, settings, reports, rves);
   }
-  return rolls(batch) ? launch<Wide, true, Drive>(batch, requests, settings, reports)
-                      : launch<Wide, false, Drive>(batch, requests, settings, reports);
+  return rolls(batch) ? launch<Wide, true, Drive>(batch, requests, settings, reports, rves)
+                      : launch<Wide, false, Drive>(batch, requests, settings, reports, rves);
 }
 
 template <class Drive>
 Work advance_with(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
-                  std::span<RveReport> reports) {
-  return settings.precision == Precision::float32 ? choose<Drive, float>(batch, requests, settings, reports)
-                                                  : choose<Drive, double>(batch, requests, settings, reports);
+                  std::span<RveReport> reports, std::span<const int> rves) {
+  return settings.precision == Precision::float32 ? choose<Drive, float>(batch, requests, settings, reports, rves)
+                                                  : choose<Drive, double>(batch, requests, settings, reports, rves);
+}
+
+std::vector<int> all_of(const RveBatch& batch) {
+  std::vector<int> rves(batch.size());
+  std::iota(rves.begin(), rves.end(), 0);
+  return rves;
 }
 
 bool wants_lanes(const StrainRequest&) { return false; }
@@ -127,14 +133,20 @@ bool runs_teams(const EngineSettings& settings, std::span<const Request> request
 
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {
-  if (runs_teams(settings, requests)) return advance_teams(batch, requests, settings, reports);
-  return advance_with<StrainDrive>(batch, requests, settings, reports);
+  return advance(batch, requests, settings, reports, all_of(batch));
+}
+
+Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
+             std::span<RveReport> reports, std::span<const int> rves) {
+  if (runs_teams(settings, requests)) return advance_teams(batch, requests, settings, reports, rves);
+  return advance_with<StrainDrive>(batch, requests, settings, reports, rves);
 }
 
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {
-  if (runs_teams(settings, requests)) return advance_teams(batch, requests, settings, reports);
-  return advance_with<ServoDrive>(batch, requests, settings, reports);
+  const std::vector<int> rves = all_of(batch);
+  if (runs_teams(settings, requests)) return advance_teams(batch, requests, settings, reports, rves);
+  return advance_with<ServoDrive>(batch, requests, settings, reports, rves);
 }
 
 }  // namespace voussoir::kernels

@@ -22,6 +22,10 @@ struct Work {
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports);
 
+/// The same of some RVEs: `rves` are their numbers, each at most once. The states and reports of the others are left as they are.
+Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
+             std::span<RveReport> reports, std::span<const int> rves);
+
 /// Stress-controlled cells (consolidation, element tests).
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports);

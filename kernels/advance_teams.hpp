@@ -10,15 +10,15 @@
 
 namespace voussoir::kernels {
 
-/// Given motions, on Kokkos' default execution space.
+/// Given motions of some RVEs (their numbers, each once), on Kokkos' default execution space.
 /// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team the space cannot form, or packings
 /// whose list does not fit the scratch
 Work advance_teams(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports);
+                   std::span<RveReport> reports, std::span<const int> rves);
 
 /// Stress-controlled cells.
 Work advance_teams(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports);
+                   std::span<RveReport> reports, std::span<const int> rves);
 
 /// Bytes of scratch one running team takes, in fast memory and besides it.
 struct TeamScratchBytes {

@@ -1,7 +1,6 @@
 #pragma once
 /// The team kernel and its launch. Only advance_teams.cpp and the programs of tests/cuda include it: it is long to compile.
 
-#include <numeric>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
@@ -124,9 +123,8 @@ void append_samples(const Batch&, std::span<const StrainRequest>) {}
 
 template <class Space, class real, class Drive>
 [[nodiscard]] TeamBatch<real, Drive, Space> team_batch(const RveBatch& batch, std::span<const typename Drive::Request> requests,
-                                                       const EngineSettings& settings) {
-  std::vector<int> order(batch.size());
-  std::iota(order.begin(), order.end(), 0);
+                                                       const EngineSettings& settings, std::span<const int> rves) {
+  std::vector<int> order(rves.begin(), rves.end());
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return predicted_steps(requests[static_cast<std::size_t>(a)]) > predicted_steps(requests[static_cast<std::size_t>(b)]);
   });
@@ -149,13 +147,13 @@ template <class Space, class real, class Drive>
 
 template <class Law, class Drive, class Space>
 Work launch_teams(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
-                  std::span<RveReport> reports) {
+                  std::span<RveReport> reports, std::span<const int> rves) {
   using Kernel = AdvanceTeams<Law, Drive, Space>;
   if (settings.tangent != TangentKind::contact) throw std::invalid_argument("teams: the tangent is that of eq. (4)");
-  if (batch.size() == 0) return {};
-  Kernel kernel{.batch = team_batch<Space, real_of<typename Kernel::V>, Drive>(batch, requests, settings),
+  if (rves.empty()) return {};
+  Kernel kernel{.batch = team_batch<Space, real_of<typename Kernel::V>, Drive>(batch, requests, settings, rves),
                 .settings = settings};
-  auto policy = team_policy(static_cast<int>(batch.size()), settings.team_size, kernel);
+  auto policy = team_policy(static_cast<int>(rves.size()), settings.team_size, kernel);
   policy.set_chunk_size(1);
   ask_for_scratch(policy, kernel);
   Kokkos::parallel_for("voussoir::team_launch::advance", policy, kernel);
@@ -163,7 +161,8 @@ Work launch_teams(RveBatch& batch, std::span<const typename Drive::Request> requ
   copy_back(kernel.batch.trial, batch.trial);
   append_samples(kernel.batch, requests);
   Work work;
-  for (std::size_t k = 0; k < batch.size(); ++k) {
+  for (const int rve : rves) {
+    const auto k = static_cast<std::size_t>(rve);
     reports[k] = answers(k);
     work.particle_steps += static_cast<std::size_t>(batch.packing(k).size()) * static_cast<std::size_t>(reports[k].steps);
   }

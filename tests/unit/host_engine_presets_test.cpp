@@ -74,6 +74,13 @@ TEST(EnginePresets, TheirErrorIsOnlyClaimedForTheirValues) {
   EXPECT_NE(note.find("hold_cap"), std::string::npos) << note;
 }
 
+TEST(EnginePresets, WhatDeferralCostsIsSaidWhereItIsOn) {
+  EXPECT_EQ(engine_note(probe_case({}).engine).find("deferred"), std::string::npos);
+  const std::string note = engine_note(probe_case({"engine.defer=2e-3"}).engine);
+  EXPECT_NE(note.find("deferred up to 0.002"), std::string::npos) << note;
+  EXPECT_NE(note.find("standard: "), std::string::npos) << "its error is still that of the grains: " << note;
+}
+
 TEST(EnginePresets, AnUnknownOneIsRefused) { EXPECT_THROW((void)probe_case({"engine.preset=quick"}), io::InputError); }
 
 TEST(EnginePresets, AreSpokenOfWhereTheEngineDecides) {
