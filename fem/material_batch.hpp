@@ -26,7 +26,7 @@ struct BatchReport {
   std::size_t open = 0;     ///< points without any contact (stress 0)
   std::size_t step_limit = 0;  ///< points whose hold ended at its cap
   std::size_t deferred = 0;    ///< points that answered by their last tangent
-  double deferral_error = 0;   ///< largest error of such answers that this call has shown, over the points' pressures [-]
+  double deferral_error = 0;   ///< largest error of earlier such answers that this call has shown, over the points' pressures [-]
   std::size_t slowest = 0;     ///< the point that took most steps
   int slowest_steps = 0;       ///< its steps; 0 for a continuum law
 };

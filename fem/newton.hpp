@@ -65,7 +65,7 @@ struct NewtonReport {
   double viscous_work = 0;                 ///< dissipated by them [J/m]
   std::size_t work = 0;                    ///< sum of BatchReport::work
   PartTimes times;                         ///< where the wall time went
-  BatchReport material;                    ///< of the last evaluation
+  BatchReport material;                    ///< of the last evaluation; its deferral_error: of all that were committed
 
   /// What the tolerance is relative to [N/m].
   [[nodiscard]] double reference() const { return std::max({external_norm, reaction_norm, reference_force}); }

@@ -33,6 +33,7 @@ void tally(NewtonReport& whole, NewtonReport&& part) {
   part.times += whole.times;
   part.relaxations = whole.relaxations + 1;
   part.viscous_work += whole.viscous_work;
+  part.material.deferral_error = std::max(part.material.deferral_error, whole.material.deferral_error);
   for (auto history : {&NewtonReport::residual_history, &NewtonReport::correction_history}) {
     (whole.*history).insert((whole.*history).end(), (part.*history).begin(), (part.*history).end());
     part.*history = std::move(whole.*history);

@@ -118,6 +118,9 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
     throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");
   }
+  if (input.engine.defer > 0 && !runs_on_a_mesh(input.kind)) {
+    throw root.table("engine").error("defer", "is for kinds with a mesh: without one all grains are to run");
+  }
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();
   input.resolved = text.resolved();

@@ -60,7 +60,7 @@ fem::Gradient Deferral::whole(std::size_t rve, const fem::Gradient& h) const {
 }
 
 /// Written so that a number that is none makes the grains run, and say so.
-bool Deferral::may_defer(const Committed& rve, double change) const {
+bool Deferral::within_bound(const Committed& rve, double change) const {
   const double p = rve.grains.pressure();
   return rve.grains.status == kernels::RveStatus::converged && p > pressure_floor_ && change <= bound_ * rve.trust * p;
 }
@@ -68,7 +68,7 @@ bool Deferral::may_defer(const Committed& rve, double change) const {
 bool Deferral::answer(std::size_t rve, const fem::Gradient& h, kernels::RveReport& report) {
   if (trial_[rve].runs) return false;
   const Extrapolation by_tangent = extrapolate(rves_[rve].grains, whole(rve, h));
-  if (!may_defer(rves_[rve], by_tangent.change)) {
+  if (rves_[rve].commits >= most_commits || !within_bound(rves_[rve], by_tangent.change)) {
     trial_[rve].runs = true;
     return false;
   }
@@ -80,10 +80,11 @@ bool Deferral::answer(std::size_t rve, const fem::Gradient& h, kernels::RveRepor
 
 void Deferral::check(std::size_t rve, const fem::Gradient& h, const kernels::RveReport& report) {
   const Committed& before = rves_[rve];
-  if (before.gradient.isZero(0)) return;
+  if (before.commits == 0) return;
   const Extrapolation by_tangent = extrapolate(before.grains, whole(rve, h));
   const double deferred = extrapolate(before.grains, before.gradient).change;
-  const double share = deferred < by_tangent.change ? deferred / by_tangent.change : 1.0;
+  const bool comparable = within_bound(before, by_tangent.change) || deferred >= by_tangent.change;
+  const double share = comparable ? 1.0 : deferred / by_tangent.change;
   trial_[rve].error = share * norm_of(stress_of(report) - by_tangent.stress) / before.grains.pressure();
 }
 
@@ -91,12 +92,14 @@ bool Deferral::commit(std::size_t rve, const fem::Gradient& h, const kernels::Rv
   Committed& at = rves_[rve];
   if (!trial_[rve].runs) {
     at.gradient = whole(rve, h);
+    ++at.commits;
     return true;
   }
   constexpr double least_trust = 1e-3;  // so that it comes back within ten checks
   const double error = trial_[rve].error;
   at.trust = error > bound_ ? std::max(0.5 * at.trust * bound_ / error, least_trust) : std::min(1.0, 2 * at.trust);
   at.gradient.setZero();
+  at.commits = 0;
   at.grains = report;
   return false;
 }

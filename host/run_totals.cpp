@@ -50,6 +50,7 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
     checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
     checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.unsettled);
+    if (!t.deferral_error.empty()) checkpoint.put_doubles(fmt::format("totals_deferral_{}", k), t.deferral_error);
   }
   checkpoint.put_text("totals", names);
 }
@@ -65,6 +66,8 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
     t.evaluations = checkpoint.get_doubles(fmt::format("totals_evaluations_{}", totals.size()));
     const std::string unsettled = fmt::format("totals_unsettled_{}", totals.size());
     if (checkpoint.has(unsettled)) t.unsettled = checkpoint.get_doubles(unsettled);  // older ones have none
+    const std::string deferral = fmt::format("totals_deferral_{}", totals.size());
+    if (checkpoint.has(deferral)) t.deferral_error = checkpoint.get_doubles(deferral);
     t.cuts = static_cast<int>(numbers.at(0));
     t.particle_steps = numbers.at(1);
     t.parts = {numbers.at(2), numbers.at(3), numbers.at(4)};
@@ -82,6 +85,15 @@ std::string unsettled_line(const StageTotals& stage, std::size_t points) {
                      "neither residual nor noise says how far from it their stress is",
                      stage.stage, increments, stage.unsettled.size(),
                      *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points);
+}
+
+std::string deferral_line(const StageTotals& stage, double bound) {
+  if (stage.deferral_error.empty()) return {};
+  const double largest = *std::max_element(stage.deferral_error.begin(), stage.deferral_error.end());
+  const auto beyond = std::count_if(stage.deferral_error.begin(), stage.deferral_error.end(), [=](double e) { return e > bound; });
+  return fmt::format("{}: RVEs that answered by their tangent were off by up to {:.1e} of their pressure where their grains have run since; "
+                     "in {} of {} increments one was off by more than engine.defer = {:g}",
+                     stage.stage, largest, beyond, stage.deferral_error.size(), bound);
 }
 
 std::vector<std::string> totals_table(const std::vector<StageTotals>& totals) {

@@ -13,6 +13,7 @@ struct StageTotals {
   std::string stage;
   std::vector<double> evaluations;  ///< of each increment, cut tries included
   std::vector<double> unsettled;    ///< of each increment, points that ended at the step limit: not at rest
+  std::vector<double> deferral_error;  ///< of each increment, over pressure; none unless RVEs may be deferred [-]
   int cuts = 0;                     ///< tries that did not converge
   double particle_steps = 0;
   fem::PartTimes parts;
@@ -27,6 +28,10 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint);
 /// Which of the stage's increments ended with points that are not at rest; empty: none.
 /// @param points of the mesh
 [[nodiscard]] std::string unsettled_line(const StageTotals& stage, std::size_t points);
+
+/// By how much the stage's deferred answers were off (host/deferral.hpp); empty: none may be deferred.
+/// @param bound `engine.defer`
+[[nodiscard]] std::string deferral_line(const StageTotals& stage, double bound);
 
 /// Lines of a table, one row a stage and a sum: increments, wall time by part [s], evaluations an increment (median and
 /// largest), cuts, particle-steps and their rate.

@@ -35,6 +35,7 @@ void transfer_deferral(Transfer& transfer, Deferral& deferral, std::size_t rve) 
   transfer(at.gradient.data(), 4);
   transfer_report(transfer, at.grains);
   transfer(&at.trust, 1);
+  transfer(&at.commits, 1);
 }
 
 /// One order of the numbers for both directions; `count` comes first so that only used contacts are kept.

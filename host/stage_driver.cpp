@@ -31,10 +31,6 @@ void add_report_columns(const Ground& ground, const fem::NewtonReport& report, i
   info.extra["noise_floor"] = {report.noise_floor, "N/m"};
   info.extra["open_points"] = {static_cast<double>(report.material.open), "-"};
   info.extra["step_limit_points"] = {static_cast<double>(report.material.step_limit), "-"};
-  if (ground.input.engine.defer > 0) {
-    info.extra["deferred_points"] = {static_cast<double>(report.material.deferred), "-"};
-    info.extra["deferral_error"] = {report.material.deferral_error, "-"};
-  }
   if (report.material.slowest_steps > 0) {
     info.extra["slowest_point"] = {static_cast<double>(report.material.slowest), "-"};
     info.extra["slowest_steps"] = {static_cast<double>(report.material.slowest_steps), "-"};
@@ -89,7 +85,10 @@ class StageRun {
     info_.evaluations += report.evaluations;
     info_.particle_steps += static_cast<double>(report.work);
     relaxations_ += report.relaxations;
-    if (report.status == fem::NewtonStatus::converged) viscous_work_ += report.viscous_work;
+    if (report.status == fem::NewtonStatus::converged) {
+      viscous_work_ += report.viscous_work;
+      deferral_error_ = std::max(deferral_error_, report.material.deferral_error);
+    }
     times_ += report.times;
     recorder_.stage_totals().particle_steps += static_cast<double>(report.work);
     recorder_.stage_totals().parts += report.times;
@@ -107,6 +106,14 @@ class StageRun {
     recorder_.stage_totals().evaluations.push_back(info_.evaluations);
     recorder_.stage_totals().unsettled.push_back(info_.extra.at("step_limit_points").value);
     recorder_.stage_totals().wall += info_.wall_s;
+  }
+
+  /// How many RVEs answered by their tangent, and the largest error that the increment's grains have shown of such answers.
+  void add_deferral(const fem::NewtonReport& report) {
+    info_.extra["deferred_points"] = {static_cast<double>(report.material.deferred), "-"};
+    info_.extra["deferral_error"] = {deferral_error_, "-"};
+    recorder_.stage_totals().deferral_error.push_back(deferral_error_);
+    deferral_error_ = 0;
   }
 
   /// The increment is on the disk.
@@ -135,6 +142,7 @@ class StageRun {
     info_.extra["viscous_work"] = {viscous_work_, "J/m"};
     relaxations_ = 0;
     viscous_work_ = 0;
+    if (ground_.input.engine.defer > 0) add_deferral(step.report);
     if (stage_.on_record) stage_.on_record(info_);
     count_increment();
     const bool last_target = done_ == static_cast<int>(stage_.targets.size());
@@ -162,6 +170,7 @@ class StageRun {
   Clock::time_point since_;
   int relaxations_ = 0;
   double viscous_work_ = 0;
+  double deferral_error_ = 0;
   int done_ = 0;
 };
 
@@ -214,6 +223,8 @@ RunStatus advance_stage(Ground& ground, const Stage& stage, RunRecorder& recorde
   recorder.log().line(fmt::format("{}: {}, peak memory {:.0f} MB", stage.name, recorder.disk_use(), peak_memory() * 1e-6));
   const std::string unsettled = unsettled_line(recorder.stage_totals(), ground.strain.size());
   if (!unsettled.empty()) recorder.log().line(unsettled);
+  const std::string deferral = deferral_line(recorder.stage_totals(), ground.input.engine.defer);
+  if (!deferral.empty()) recorder.log().line(deferral);
   if (report.status == fem::StepStatus::gave_up) {
     recorder.log().line(fmt::format("{} failed: {}", stage.name, report.message));
     return RunStatus::failed;

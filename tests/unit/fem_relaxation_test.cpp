@@ -1,6 +1,7 @@
 // Where no iterate meets its stress again: the increment is relaxed, or it fails and nothing of it stays.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -18,6 +19,8 @@ class CollapsingMaterial final : public MaterialBatch {
 
   int fails_from = std::numeric_limits<int>::max();  ///< the first evaluation that is not usable
 
+  double committed_error = 0;                        ///< largest that a committed evaluation has told; they fall
+
   explicit CollapsingMaterial(std::size_t n) : committed_(n), trial_(n) {}
   [[nodiscard]] std::size_t size() const override { return committed_.size(); }
   void begin_increment() override {}
@@ -33,11 +36,15 @@ class CollapsingMaterial final : public MaterialBatch {
     answer(trial_, stress, tangent);
     BatchReport report;
     report.work = size();
+    report.deferral_error = 1.0 / evaluations_;
     report.usable = evaluations_ < fails_from;
     if (!report.usable) report.message = "point 3: overlap";
     return report;
   }
-  void commit() override { committed_ = trial_; }
+  void commit() override {
+    committed_ = trial_;
+    committed_error = std::max(committed_error, 1.0 / evaluations_);
+  }
   void committed(std::span<Stress> stress, std::span<Tangent> tangent) const override {
     answer(committed_, stress, tangent);
   }
@@ -135,6 +142,7 @@ TEST(Relaxation, CollapseEndsInTheEquilibriumBehindIt) {
   EXPECT_NEAR(pillar.state.displacement[2 * middle + 1], -2 * CollapsingMaterial::limit, 2e-3 * CollapsingMaterial::limit);
   EXPECT_NEAR(pillar.state.deformation[0](1, 1), -2 * CollapsingMaterial::limit, 2e-3 * CollapsingMaterial::limit);
   EXPECT_EQ(pillar.state.last_increment, pillar.state.displacement);  // the whole way
+  EXPECT_EQ(pillar.last.material.deferral_error, pillar.material.committed_error);
 }
 
 TEST(Relaxation, WithoutItNoCutFindsTheEquilibrium) {

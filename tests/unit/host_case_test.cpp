@@ -58,6 +58,17 @@ TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
   EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, EngineBackend::teams);
 }
 
+TEST(Case, RvesAreDeferredOnAMeshOnly) {
+  for (const char* kind : {"tunnel", "column", "biaxial_bvp"}) {
+    EXPECT_EQ(load_case(write(std::string("kind = '") + kind + "'\n"), {"engine.defer=1e-3"}).engine.defer, 1e-3);
+  }
+  for (const char* kind : {"probe", "pack", "biaxial"}) {
+    const std::string text = std::string("kind = '") + kind + "'\n";
+    EXPECT_NE(complaint(text, {"engine.defer=1e-3"}).find("engine.defer"), std::string::npos) << kind;
+    EXPECT_EQ(complaint(text, {"engine.defer=0"}), complaint(text)) << kind;
+  }
+}
+
 TEST(Case, UnitsBecomeSi) {
   const Case input = load_case(write("kind = 'tunnel'\n[ground]\nunit_weight = '18 kN/m3'\n[volume_loss]\ntotal = '10 %'\n"),
                                {"soil.friction=30 deg", "engine.precision=double"});

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -124,6 +125,29 @@ TEST(Deferral, ErrorsAreMeasuredAndCostTrust) {
   EXPECT_NEAR(deferral.committed(0).trust, 0.5e-3 / error, 1e-4);
 }
 
+/// What never comes to its bound runs nevertheless, and the whole difference is then the error: the tangent might have answered.
+TEST(Deferral, EndsInACheckAtTheLatestAfterSomeCommits) {
+  const kernels::RveReport grains = grains_at_rest();
+  Deferral deferral(1e-3, 0);
+  deferral.start(std::span(&grains, 1));
+  kernels::RveReport report;
+  const fem::Gradient tiny = gradient(1e-9, 0, 0, 0);
+  for (int k = 0; k < Deferral::most_commits; ++k) {
+    deferral.begin_increment();
+    ASSERT_TRUE(deferral.answer(0, tiny, report)) << k;
+    ASSERT_TRUE(deferral.commit(0, tiny, report));
+  }
+  deferral.begin_increment();
+  ASSERT_FALSE(deferral.answer(0, tiny, report));
+  report = grains;
+  report.stress[3] += 1e4;  // they have collapsed meanwhile
+  deferral.check(0, tiny, report);
+  EXPECT_NEAR(deferral.error(), 1e4 / 1.5e5, 1e-4);
+  EXPECT_FALSE(deferral.commit(0, tiny, report));
+  deferral.begin_increment();
+  EXPECT_TRUE(deferral.answer(0, tiny, report)) << "its count begins anew";
+}
+
 class DeferringPool : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -179,9 +203,12 @@ TEST_F(DeferringPool, KeepsToItsBound) {
   constexpr double bound = 1e-2;
   RvePool deferring(rve_, engine(bound), 2), plain(rve_, engine(0), 2);
   std::size_t deferred = 0;
+  double error = 0;
   for (int k = 0; k < 20; ++k) {
     const fem::Gradient h = gradient(0, 0, 0, k < 10 ? -3e-6 : 6e-6);
-    deferred += step(deferring, Gradients(2, h)).deferred;
+    const fem::BatchReport report = step(deferring, Gradients(2, h));
+    deferred += report.deferred;
+    error = std::max(error, report.deferral_error);
     const auto answer = stress_;
     step(plain, Gradients(2, h));
     const double p = -0.5 * (stress_[0][0] + stress_[0][1]);
@@ -189,6 +216,22 @@ TEST_F(DeferringPool, KeepsToItsBound) {
   }
   EXPECT_GT(deferred, 10u);
   EXPECT_LT(deferred, 40u);
+  EXPECT_GT(error, 0);
+  EXPECT_LT(error, bound);
+}
+
+/// Teams run some of the RVEs as lanes do.
+TEST_F(DeferringPool, HasTheSameBitsInTeams) {
+  EngineCase with_teams = engine(1e-2);
+  with_teams.backend = EngineBackend::teams;
+  RvePool lanes(rve_, engine(1e-2), 2), teams(rve_, with_teams, 2);
+  for (const auto& second : {tiny, large, large}) {
+    const fem::BatchReport by_lanes = step(lanes, {large, second});
+    const auto answer = stress_;
+    EXPECT_EQ(step(teams, {large, second}).deferred, by_lanes.deferred);
+    EXPECT_EQ(answer, stress_);
+    EXPECT_EQ(teams.state(), lanes.state());
+  }
 }
 
 TEST_F(DeferringPool, AVanishingBoundHasTheBitsOfNone) {

@@ -21,6 +21,7 @@ std::vector<StageTotals> two_stages() {
   StageTotals loss = gravity;
   loss.stage = "volume_loss";
   loss.evaluations = {5, 9, 4};
+  loss.deferral_error = {0, 2e-3, 5e-4};
   loss.cuts = 2;
   return {gravity, loss};
 }
@@ -35,6 +36,7 @@ TEST(RunTotals, ComeBackFromACheckpoint) {
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(read[k].stage, written[k].stage);
     EXPECT_EQ(read[k].evaluations, written[k].evaluations);
+    EXPECT_EQ(read[k].deferral_error, written[k].deferral_error);
     EXPECT_EQ(read[k].cuts, written[k].cuts);
     EXPECT_EQ(read[k].particle_steps, written[k].particle_steps);
     EXPECT_EQ(read[k].parts.material, written[k].parts.material);
@@ -43,6 +45,14 @@ TEST(RunTotals, ComeBackFromACheckpoint) {
     EXPECT_EQ(read[k].output, written[k].output);
     EXPECT_EQ(read[k].wall, written[k].wall);
   }
+}
+
+TEST(RunTotals, SayWhatDeferralWasOffBy) {
+  const std::vector<StageTotals> stages = two_stages();
+  EXPECT_EQ(deferral_line(stages[0], 1e-3), "");
+  const std::string line = deferral_line(stages[1], 1e-3);
+  EXPECT_NE(line.find("up to 2.0e-03 "), std::string::npos) << line;
+  EXPECT_NE(line.find("in 1 of 3 increments"), std::string::npos) << line;
 }
 
 TEST(RunTotals, TableSumsTheStages) {
