@@ -38,7 +38,7 @@ CaseKind read_kind(const io::Table& root) {
 void read_grain_tables(const io::Table& root, Case& input) {
   input.soil = read_soil(root.table("soil"));
   input.packing = read_packing(root.table("packing"));
-  input.engine = read_engine(root.table("engine"));
+  input.engine = read_engine(root.table("engine"), runs_on_a_mesh(input.kind));
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
   if (input.kind != CaseKind::probe && input.packing.file.extension() == ".h5") {
     throw root.table("packing").error("file", "is a stored state, which only kind = \"probe\" starts from: all others need isotropic pressure");
@@ -117,9 +117,6 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   }
   if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
     throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");
-  }
-  if (input.engine.defer > 0 && !runs_on_a_mesh(input.kind)) {
-    throw root.table("engine").error("defer", "is for kinds with a mesh: without one all grains are to run");
   }
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();

@@ -121,7 +121,7 @@ PackingCase read_packing(const io::Table& table) {
   return packing;
 }
 
-EngineCase read_engine(const io::Table& table) {
+EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
   EngineCase engine = engine_preset(table.choice("preset", engine_preset_names(), EngineCase{}.preset));
   const char* width = engine.precision == Precision::single_precision ? "float" : "double";
   engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? Precision::single_precision
@@ -138,7 +138,9 @@ EngineCase read_engine(const io::Table& table) {
   read_quantity(table, "skin", Dimension::none, engine.skin, {.at_least = "0.005", .at_most = "1"});
   read_integer(table, "minimum_steps", engine.minimum_steps, {.at_least = 1, .at_most = 10'000'000});
   read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
+  if (!on_a_mesh) engine.defer = 0;  // whatever the preset says
   read_quantity(table, "defer", Dimension::none, engine.defer, {.at_least = "0", .at_most = "0.1"});
+  if (!on_a_mesh && engine.defer > 0) throw table.error("defer", "is for kinds with a mesh: without one all grains are to run");
   if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
   return engine;
 }

@@ -8,7 +8,7 @@ namespace voussoir::host {
 
 [[nodiscard]] SoilCase read_soil(const io::Table& table);
 [[nodiscard]] PackingCase read_packing(const io::Table& table);
-[[nodiscard]] EngineCase read_engine(const io::Table& table);
+[[nodiscard]] EngineCase read_engine(const io::Table& table, bool on_a_mesh);
 [[nodiscard]] ProbeCase read_probe(const io::Table& table);
 [[nodiscard]] BiaxialCase read_biaxial(const io::Table& table);
 [[nodiscard]] CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil);

@@ -76,7 +76,9 @@ TEST(EnginePresets, TheirErrorIsOnlyClaimedForTheirValues) {
 
 TEST(EnginePresets, WhatDeferralCostsIsSaidWhereItIsOn) {
   EXPECT_EQ(engine_note(probe_case({}).engine).find("deferred"), std::string::npos);
-  const std::string note = engine_note(probe_case({"engine.defer=2e-3"}).engine);
+  EngineCase deferring;
+  deferring.defer = 2e-3;
+  const std::string note = engine_note(deferring);
   EXPECT_NE(note.find("deferred up to 0.002"), std::string::npos) << note;
   EXPECT_NE(note.find("standard: "), std::string::npos) << "its error is still that of the grains: " << note;
 }
