@@ -12,11 +12,13 @@
 namespace voussoir::host {
 namespace {
 
-Case probe_case(const std::vector<std::string>& overrides) {
+Case case_of(const char* kind, const std::vector<std::string>& overrides) {
   const std::filesystem::path file = "preset_under_test.toml";
-  std::ofstream(file) << "kind = 'probe'\n";
+  std::ofstream(file) << "kind = '" << kind << "'\n";
   return load_case(file, overrides);
 }
+
+Case probe_case(const std::vector<std::string>& overrides) { return case_of("probe", overrides); }
 
 TEST(EnginePresets, TheDeclarationsAreThoseOfStandard) {
   const EngineCase declared, standard = engine_preset("standard"), read = probe_case({}).engine;
@@ -72,6 +74,16 @@ TEST(EnginePresets, TheirErrorIsOnlyClaimedForTheirValues) {
   const std::string note = engine_note(probe_case({"engine.preset=fast", "engine.hold_cap=7"}).engine);
   EXPECT_EQ(note.find('%'), std::string::npos) << note;
   EXPECT_NE(note.find("hold_cap"), std::string::npos) << note;
+}
+
+TEST(EnginePresets, DeferOnAMeshOnlyAndNotWhereItIsSwitchedOff) {
+  const double fast = engine_preset("fast").defer;
+  EXPECT_GT(fast, 0);
+  EXPECT_EQ(engine_preset("standard").defer, 0);
+  EXPECT_EQ(engine_preset("reference").defer, 0);
+  EXPECT_EQ(case_of("column", {"engine.preset=fast"}).engine.defer, fast);
+  EXPECT_EQ(case_of("column", {"engine.preset=fast", "engine.defer=0"}).engine.defer, 0);
+  EXPECT_EQ(probe_case({"engine.preset=fast"}).engine.defer, 0);
 }
 
 TEST(EnginePresets, WhatDeferralCostsIsSaidWhereItIsOn) {
