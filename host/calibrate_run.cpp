@@ -28,15 +28,17 @@ void print(const char* label, const SetTests& one, const CalibrateCase& targets)
   std::printf("%-8s beta %.4f  eta %.4f  t %.4f m: ", label, one.set[Parameter::rolling_stiffness],
               one.set[Parameter::rolling_limit], one.set[Parameter::thickness]);
   if (!one.usable()) {
-    std::printf("not usable: %s\n", one.fault.empty() ? fmt::format("{} of {} tests held", one.valid, one.tests).c_str()
-                                                     : one.fault.c_str());
+    const std::string held = fmt::format("{} of {} tests, {} of {} packings held", one.valid, one.tests, one.held_seeds.size(), one.seeds);
+    std::printf("not usable: %s\n", one.fault.empty() ? held.c_str() : one.fault.c_str());
     return;
   }
   const Observation &m = one.mean, &s = one.deviation;
   std::printf("phi_p %5.1f +- %.1f  phi_cs %5.1f +- %.1f  psi_max %5.1f +- %.1f deg  peak at %4.1f +- %.1f %%  contraction",
               m[0] / degree, s[0] / degree, m[1] / degree, s[1] / degree, m[2] / degree, s[2] / degree, m[3] * 100, s[3] * 100);
   for (const double contraction : one.contraction) std::printf(" %.2f", contraction * 100);
-  std::printf(" %%  misfit %.2f\n", misfit(m, targets));
+  std::printf(" %%  misfit %.2f", misfit(m, targets));
+  if (one.valid < one.tests) std::printf("  (%zu of %zu packings held)", one.held_seeds.size(), one.seeds);
+  std::printf("\n");
 }
 
 /// One row a set: what it is, what it gave.
@@ -105,10 +107,10 @@ void print_fit(const SetTests& fit, const CalibrateCase& targets) {
   if (!fit.usable()) return;
   const std::array<CalibrationTarget, 3> wanted{targets.peak, targets.critical, targets.dilatancy};
   const std::array<const char*, 3> names{"phi_p", "phi_cs", "psi_max"};
-  const double n = std::sqrt(static_cast<double>(targets.confirm_seeds.size()));
+  const double n = std::sqrt(static_cast<double>(fit.held_seeds.size()));
   for (std::size_t o = 0; o < wanted.size(); ++o) {
     std::printf("  %-8s wanted %5.1f deg, is %5.1f +- %.1f deg (standard error of %zu packings): off by %+.1f deg\n", names[o],
-                wanted[o].value / degree, fit.mean[o] / degree, fit.deviation[o] / n / degree, targets.confirm_seeds.size(),
+                wanted[o].value / degree, fit.mean[o] / degree, fit.deviation[o] / n / degree, fit.held_seeds.size(),
                 (fit.mean[o] - wanted[o].value) / degree);
   }
   const double strain = fit.mean[Observable::peak_strain];

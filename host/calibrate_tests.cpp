@@ -51,10 +51,22 @@ Observation observe(std::span<const BiaxialCurve> curves, std::span<const Streng
   return {common_angle(peak, peak_p), common_angle(critical, critical_p), std::asin(dilatancy / n), strain / n};
 }
 
-void take_means(SetTests& tests, const Case& input) {
-  const std::vector<std::int64_t> seeds = seeds_of(input.packing);
+/// Those of which no test was lost: `held` of each curve.
+std::vector<std::int64_t> held_seeds(const std::vector<std::int64_t>& seeds, const SetTests& tests) {
+  std::vector<std::int64_t> out;
+  for (const std::int64_t seed : seeds) {
+    bool all = true;
+    for (std::size_t k = 0; k < tests.curves.size(); ++k) {
+      all = all && (tests.curves[k].seed != seed || held(tests.curves[k], tests.strengths[k]));
+    }
+    if (all) out.push_back(seed);
+  }
+  return out;
+}
+
+void take_means(SetTests& tests, const std::vector<double>& pressures) {
   std::vector<Observation> each;
-  for (const std::int64_t seed : seeds) each.push_back(observe(tests.curves, tests.strengths, seed));
+  for (const std::int64_t seed : tests.held_seeds) each.push_back(observe(tests.curves, tests.strengths, seed));
   const auto n = static_cast<double>(each.size());
   for (std::size_t o = 0; o < Observable::count; ++o) {
     double sum = 0, squares = 0;
@@ -63,10 +75,11 @@ void take_means(SetTests& tests, const Case& input) {
     tests.mean[o] = sum;
     tests.deviation[o] = each.size() > 1 ? std::sqrt(squares / (n - 1)) : 0.0;
   }
-  for (const double pressure : input.biaxial.pressures) {
+  for (const double pressure : pressures) {
     double sum = 0;
     for (std::size_t k = 0; k < tests.curves.size(); ++k) {
-      if (tests.curves[k].pressure == pressure) sum += tests.strengths[k].contraction / n;
+      const bool counts = std::ranges::find(tests.held_seeds, tests.curves[k].seed) != tests.held_seeds.end();
+      if (counts && tests.curves[k].pressure == pressure) sum += tests.strengths[k].contraction / n;
     }
     tests.contraction.push_back(sum);
   }
@@ -76,6 +89,12 @@ void take_means(SetTests& tests, const Case& input) {
 
 bool SetTests::contraction_grows() const {
   return std::is_sorted(contraction.begin(), contraction.end()) && contraction.front() < contraction.back();
+}
+
+void summarise(SetTests& tests, const std::vector<std::int64_t>& seeds, const std::vector<double>& pressures) {
+  tests.seeds = seeds.size();
+  if (!tests.curves.empty()) tests.held_seeds = held_seeds(seeds, tests);
+  if (tests.usable()) take_means(tests, pressures);
 }
 
 std::size_t tests_of_a_set(const Case& input) { return seeds_of(input.packing).size() * input.biaxial.pressures.size(); }
@@ -108,7 +127,7 @@ std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet>
     of.curves.push_back(std::move(curves[c]));
   }
   for (SetTests& one : out) {
-    if (one.usable()) take_means(one, input);
+    summarise(one, seeds_of(input.packing), test.pressures);
   }
   return out;
 }

@@ -58,11 +58,16 @@ struct Tables {
   std::string probe =
       "seed,replica,probe,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,change_xx_Pa,change_yy_Pa,change_xy_Pa,"
       "tangent_xxxx_Pa,tangent_xxyy_Pa,tangent_xxxy_Pa,tangent_yyyy_Pa,tangent_yyxy_Pa,tangent_xyxy_Pa,"
-      "steps,unbalanced_ratio,inertial_number,status\n";
+      "tangent_after_xxxx_Pa,tangent_after_xxyy_Pa,tangent_after_xxxy_Pa,tangent_after_yyyy_Pa,tangent_after_yyxy_Pa,"
+      "tangent_after_xyxy_Pa,steps,unbalanced_ratio,inertial_number,status\n";
 };
 
 std::string end_of_row(const kernels::RveReport& report) {
   return fmt::format("{},{:.6g},{:.6g},{}\n", report.steps, report.unbalanced, report.inertial_number, kernels::name_of(report.status));
+}
+
+std::string cells_of(const fem::Tangent& d) {
+  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2));
 }
 
 void print_probe(const Probe& probe, const fem::Stress& change, double strain) {
@@ -122,12 +127,10 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
   for (std::size_t k = 0; k < n; ++k) {
     const Probe& probe = all[k % all.size()];
     const fem::Stress change = after[k] - before[k];
-    const fem::Tangent& d = tangent[k];
     if (show && k < all.size()) print_probe(probe, change, input.probe.strain);
-    tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed,
-                                k / all.size(), probe.name, after[k](0), after[k](1), after[k](2), change(0), change(1), change(2),
-                                d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2)) +
-                    end_of_row(pool.committed_reports()[k]);
+    tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, k / all.size(), probe.name, after[k](0),
+                                after[k](1), after[k](2), change(0), change(1), change(2)) +
+                    cells_of(tangent[k]) + cells_of(tangent_after[k]) + end_of_row(pool.committed_reports()[k]);
   }
   if (show) print_tangent(tangent[0], name_of(input.probe.tangent));
   return report.usable ? "" : fmt::format("seed {}, {}", rve.seed, report.message);

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
+#include "host/calibrate_tests.hpp"
 #include "host/calibration.hpp"
 
 namespace voussoir::host {
@@ -96,6 +100,40 @@ TEST(Calibration, NoStepLeavesTheBox) {
     EXPECT_GE(set[Parameter::thickness], 0.05 * (1 - 1e-12));
   }
   EXPECT_EQ(around(box, {0.2, 0.6, 0.05}, 1).size(), 3U);  // a corner: the corner and a step along each side
+}
+
+/// Three seeds at two pressures; seed k reaches k / 10 of friction, and the seeds of `lost` lose their second test.
+SetTests three_seeds(const std::vector<std::int64_t>& lost) {
+  SetTests tests;
+  for (const double pressure : {1e5, 2e5}) {
+    for (const std::int64_t seed : {1, 2, 3}) {
+      BiaxialCurve curve;
+      curve.seed = seed;
+      curve.pressure = pressure;
+      const bool is_lost = pressure == 2e5 && std::ranges::find(lost, seed) != lost.end();
+      curve.status = is_lost ? kernels::RveStatus::overlap_limit : kernels::RveStatus::converged;
+      tests.curves.push_back(curve);
+      Strength strength;
+      strength.peak_angle = 0.1 * static_cast<double>(seed);
+      strength.contraction = 0.01 * static_cast<double>(seed);
+      tests.strengths.push_back(strength);
+    }
+  }
+  summarise(tests, {1, 2, 3}, {1e5, 2e5});
+  return tests;
+}
+
+TEST(Calibration, APackingThatLosesATestIsLeftOutWhole) {
+  const SetTests all = three_seeds({}), two = three_seeds({3}), one = three_seeds({1, 3});
+  EXPECT_TRUE(all.usable());
+  EXPECT_NEAR(all.mean[Observable::peak_angle], 0.2, 1e-12);
+  EXPECT_TRUE(two.usable());
+  EXPECT_EQ(two.held_seeds, (std::vector<std::int64_t>{1, 2}));
+  EXPECT_NEAR(two.mean[Observable::peak_angle], 0.15, 1e-12);
+  EXPECT_NEAR(two.deviation[Observable::peak_angle], 0.1 / std::sqrt(2.0), 1e-12);
+  ASSERT_EQ(two.contraction.size(), 2U);
+  EXPECT_NEAR(two.contraction[0], 0.015, 1e-12);
+  EXPECT_FALSE(one.usable());
 }
 
 TEST(Calibration, ClassesKeepTheirRatios) {

@@ -1,8 +1,11 @@
-"""From the tables of the runs to errors in percent of the pressure.
+"""From the tables of the runs to errors in percent of the pressure: root mean squares, medians and the worst of all samples. They
+differ where a packing snaps: one whose next rearrangement falls before the end with one setting and after it with another one is
+off by more than all others together.
 
 Of an evaluation (one increment from a given state): e = |sigma - sigma_ref| / (sqrt(2) P), with |.| the tensor's norm and P the larger
 pressure of before and after, so that an isotropic error of P is 100 %. sigma_ref is the mean of the reference solution's
-replicas, the same seed, state and direction. Of a path: e = q/p - (q/p)_ref at the same axial strain, as the mean of replicas.
+replicas, the same seed, state and direction. Of the tangent (eq. (4)) after that evaluation: |D - D_ref| / |D_ref|, with the
+norm of fourth-order tensors (`TANGENT_NORM`). Of a path: e = q/p - (q/p)_ref at the same axial strain, as the mean of replicas.
 """
 
 import csv
@@ -11,6 +14,8 @@ import numpy as np
 
 DIRECTIONS = ("xx", "yy", "xy", "-xx", "-yy")
 NORM = np.sqrt(np.array([1.0, 1.0, 2.0]) / 2)   # (xx, yy, xy): |.| / sqrt(2)
+TANGENT_NORM = np.sqrt(np.array([1.0, 2.0, 4.0, 1.0, 4.0, 4.0]))   # xxxx xxyy xxxy yyyy yyxy xyxy: how often each stands in the sum
+TANGENT = tuple(f"tangent_after_{name}_Pa" for name in ("xxxx", "xxyy", "xxxy", "yyyy", "yyxy", "xyxy"))
 STRAINS = 0.005 * np.arange(1, 6)               # axial; all increment sizes of the plan meet there
 
 
@@ -39,7 +44,7 @@ def stresses(table):
 
 
 def probes(folders):
-    """{(seed, direction): (stress (replica, 3), change (replica, 3), steps, unbalanced, at rest)} of runs."""
+    """{(seed, direction): (stress (replica, 3), change (replica, 3), steps, unbalanced, at rest, tangent (replica, 6))} of runs."""
     found = {}
     for folder in folders:
         table = read(folder / "probe.csv")
@@ -47,11 +52,12 @@ def probes(folders):
             continue
         stress = stresses(table)
         change = np.stack([table["change_xx_Pa"], table["change_yy_Pa"], table["change_xy_Pa"]], axis=-1)
+        tangent = np.stack([table[name] for name in TANGENT], axis=-1)
         for seed in np.unique(table["seed"]):
             for direction in DIRECTIONS:
                 rows = (table["seed"] == seed) & (table["probe"] == direction)
                 found[int(seed), direction] = (stress[rows], change[rows], table["steps"][rows], table["unbalanced_ratio"][rows],
-                                               np.isin(table["status"][rows], ("converged", "open")))
+                                               np.isin(table["status"][rows], ("converged", "open")), tangent[rows])
     return found
 
 
@@ -62,11 +68,11 @@ def pressure(stress):
 def evaluation_error(ours, reference):
     """Errors over all seeds and directions, in percent of P; of those that came to rest. The others say so by their status
     (`flagged`: their share): a packing that collapses or opens within the increment goes on moving when the hold ends."""
-    total, bias, along, scatter, steps, flagged = [], [], [], [], [], []
-    for key, (stress, _, count, _, at_rest) in ours.items():
+    total, bias, along, scatter, tangents, steps, flagged = [], [], [], [], [], [], []
+    for key, (stress, _, count, _, at_rest, tangent) in ours.items():
         if key not in reference:
             continue
-        theirs, their_change = reference[key][:2]
+        theirs, their_change, *_, their_tangent = reference[key]
         steps.append(count.mean())
         flagged.append(1 - at_rest.mean())
         if not at_rest.all():
@@ -78,11 +84,18 @@ def evaluation_error(ours, reference):
         bias.append(np.linalg.norm(off.mean(axis=0)))
         step = their_change.mean(axis=0) * NORM / p
         along.append(off.mean(axis=0) @ step / max(np.linalg.norm(step), 1e-12))
+        tangents.append(tangent_error(tangent, their_tangent.mean(axis=0)))
         scatter.append(rms(np.linalg.norm((theirs - mean) * NORM / p, axis=1)))
     if not total:
         return {}
-    return {"error": 100 * rms(total), "bias": 100 * rms(bias), "along": 100 * float(np.mean(along)), "scatter": 100 * rms(scatter),
-            "worst": 100 * max(total), "steps": float(np.mean(steps)), "flagged": 100 * float(np.mean(flagged)), "samples": len(total)}
+    return {"error": 100 * rms(total), "median": 100 * float(np.median(total)), "bias": 100 * rms(bias), "along": 100 * float(np.mean(along)),
+            "scatter": 100 * rms(scatter), "tangent": 100 * rms(tangents), "tangent_median": 100 * float(np.median(tangents)),
+            "worst": 100 * max(total), "steps": float(np.mean(steps)),
+            "flagged": 100 * float(np.mean(flagged)), "samples": len(total)}
+
+
+def tangent_error(tangent, reference):
+    return rms(np.linalg.norm((tangent - reference) * TANGENT_NORM, axis=1) / np.linalg.norm(reference * TANGENT_NORM))
 
 
 def path(folders):
@@ -120,7 +133,7 @@ def path_error(ours, reference):
     each = np.array([rms(ours[s]["ratio"] - reference[s]["ratio"].mean(axis=0)) for s in seeds])
     volume = np.array([ours[s]["volume"].mean(axis=0) - reference[s]["volume"].mean(axis=0) for s in seeds])
     systematic = off.mean(axis=1)
-    return {"error": 100 * rms(each), "bias": 100 * systematic.mean(),
+    return {"error": 100 * rms(each), "median": 100 * float(np.median(each)), "worst": 100 * each.max(), "bias": 100 * systematic.mean(),
             "bias_error": 100 * systematic.std(ddof=1) / np.sqrt(len(seeds)) if len(seeds) > 1 else np.nan,
             "volume": 100 * volume[:, -1].mean(), "volume_rms": 100 * rms(volume[:, -1]),
             "steps": float(np.mean([ours[s]["steps"] for s in seeds])),
@@ -142,7 +155,7 @@ def noise_share(ours, at_rest):
     """Error of a stress component that an early end of the hold leaves, over unbalanced ratio x pressure: what the pool of RVEs
     assumes when it tells Newton how noisy its stresses are (host/rve_pool.cpp). `at_rest`: the same evaluations held longer."""
     off, expected = [], []
-    for key, (stress, _, _, unbalanced, _) in ours.items():
+    for key, (stress, _, _, unbalanced, *_) in ours.items():
         if key in at_rest:
             off.append(rms(stress - at_rest[key][0]))
             expected.append(rms(unbalanced * np.maximum(pressure(stress), 100.0)))

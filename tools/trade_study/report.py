@@ -5,7 +5,7 @@ import numpy as np
 from voussoir_plots.style import save, use_style
 
 from .errors import evaluation_error, noise_share, path, path_error, path_scatter, probes, STRAINS
-from .plan import PRESSURES, Setting, settings
+from .plan import INCREMENTS, PRESSURES, Setting, settings
 
 STATES = ("isotropic", "sheared")
 LINES = {"inertial_number": ("C0", "o"), "hold_tolerance": ("C1", "s"), "minimum_steps": ("C2", "v"), "maximum_steps": ("C4", "^")}
@@ -17,7 +17,7 @@ class Findings:
 
     def __init__(self, study):
         self.study = study
-        self.chosen = settings()
+        self.chosen = settings()   # of all knobs: a study made in parts shows what is there
         self.evaluation, self.paths, self.scatter, self.curves = {}, {}, {}, {}
         for kpa in study.pressures:
             reference = study.reference(kpa)
@@ -49,18 +49,22 @@ def head(cells):
 
 
 def table_of_presets(findings):
-    text = head(["preset", "p", "an evaluation, isotropic", "sheared", "worst", "steps", "a path: q/p", "of it systematic",
-                 "volumetric strain", "steps an increment"])
+    """Errors as root mean square | median | worst sample."""
+    three = lambda found: " | ".join(figure_of(found.get(key, np.nan)) for key in ("error", "median", "worst"))  # noqa: E731
+    triple = ("rms", "median", "worst")
+    text = head(["preset", "p", *(f"isotropic: {t}" for t in triple), *(f"sheared: {t}" for t in triple), "at rest, %",
+                 "tangent, isotropic", "sheared", "steps", *(f"path: {t}" for t in triple), "of it systematic", "volumetric strain",
+                 "steps an increment"])
     for name in PRESETS:
         setting = f"preset_{name}"
         for kpa in findings.study.pressures:
             isotropic, sheared = (findings.evaluation[kpa, state].get(setting, {}) for state in STATES)
             way = findings.paths[kpa].get(setting, {})
             cell = lambda found, key: figure_of(found.get(key, np.nan))  # noqa: E731
-            text += row([name, PRESSURES[kpa], cell(isotropic, "error"), cell(sheared, "error"),
-                         figure_of(max(isotropic.get("worst", np.nan), sheared.get("worst", np.nan))), cell(sheared, "steps"),
-                         cell(way, "error"), f"{cell(way, 'bias')} ± {cell(way, 'bias_error')}", cell(way, "volume_rms"),
-                         figure_of(way.get("steps", np.nan) / 25)])
+            text += row([name, PRESSURES[kpa], three(isotropic), three(sheared), figure_of(100 - sheared.get("flagged", np.nan), 3),
+                         cell(isotropic, "tangent_median"), cell(sheared, "tangent_median"), cell(sheared, "steps"), three(way),
+                         f"{cell(way, 'bias')} ± {cell(way, 'bias_error')}", cell(way, "volume_rms"),
+                         figure_of(way.get("steps", np.nan) / INCREMENTS)])
     return text
 
 
@@ -77,14 +81,15 @@ def table_of_scatter(findings):
 
 
 def table_of_knob(findings, knob):
-    chosen = [s for s in findings.chosen if s.knob == knob]
-    text = head([f"`{knob}`", *(f"{PRESSURES[kpa]}: {what}" for kpa in findings.study.pressures for what in ("evaluation", "path", "steps"))])
-    for setting in chosen:
+    """Medians: a single packing that snaps would hide what the knob does to all others."""
+    text = head([f"`{knob}`", *(f"{PRESSURES[kpa]}: {what}" for kpa in findings.study.pressures
+                               for what in ("evaluation", "tangent", "path", "steps"))])
+    for setting in (s for s in findings.chosen if s.knob == knob):
         cells = [setting.label]
         for kpa in findings.study.pressures:
-            way = findings.paths[kpa].get(setting.name, {})
-            cells += [figure_of(findings.evaluation[kpa, "sheared"].get(setting.name, {}).get("error", np.nan)),
-                      figure_of(way.get("error", np.nan)), figure_of(way.get("steps", np.nan) / setting.increments)]
+            once, way = findings.evaluation[kpa, "sheared"].get(setting.name, {}), findings.paths[kpa].get(setting.name, {})
+            cells += [figure_of(found.get(key, np.nan)) for found, key in ((once, "median"), (once, "tangent_median"), (way, "median"))]
+            cells.append(figure_of(way.get("steps", np.nan) / setting.increments))
         text += row(cells)
     return text
 
@@ -117,11 +122,15 @@ def table_of_noise(findings):
 
 
 def tables(findings):
-    parts = [("Presets", table_of_presets(findings)), ("Scatter", table_of_scatter(findings))]
+    """Of what was run."""
+    done = {s.knob for s in findings.chosen if any(s.name in findings.paths[kpa] for kpa in findings.study.pressures)}
+    parts = [("Presets", table_of_presets(findings))] if "preset" in done else []
+    parts.append(("Scatter", table_of_scatter(findings)))
     parts += [(knob, table_of_knob(findings, knob)) for knob in ("inertial_number", "hold_tolerance", "hold_cap", "minimum_steps",
-                                                                "maximum_steps", "skin", "precision", "increments")]
-    parts += [(knob, table_of_matter(findings, knob)) for knob in ("modulus", "grains")]
-    parts.append(("Noise share", table_of_noise(findings)))
+                                                                "maximum_steps", "skin", "precision", "increments") if knob in done]
+    parts += [(knob, table_of_matter(findings, knob)) for knob in ("modulus", "grains") if knob in done]
+    if {"hold_cap", "hold_tolerance"} <= done:
+        parts.append(("Noise share", table_of_noise(findings)))
     return "".join(f"## {title}\n\n{text}\n" for title, text in parts)
 
 
@@ -132,42 +141,47 @@ def points(findings, knob, measure):
     return np.array(found).reshape(-1, 2)
 
 
+ROWS = (("one evaluation, sheared state", "median error of stress, % of p", lambda f, s, k: _evaluation(f, s, k, "median")),
+        ("tangent (4) after it", "median error of tangent, %", lambda f, s, k: _evaluation(f, s, k, "tangent_median")),
+        ("path to 5 % shear", "median error of q/p, % of p", lambda f, s, k: _path(f, s, k)))
+
+
 def draw_errors(findings, file):
     pressures = findings.study.pressures
-    figure, axes = plt.subplots(2, len(pressures), figsize=(4.1 * len(pressures), 7.4), sharex="col", squeeze=False)
+    figure, axes = plt.subplots(len(ROWS), len(pressures), figsize=(4.1 * len(pressures), 3.5 * len(ROWS)), sharex="col", squeeze=False)
     for column, kpa in enumerate(pressures):
-        measures = ({"of": lambda s, k=kpa: _evaluation(findings, s, k)}, {"of": lambda s, k=kpa: _path(findings, s, k)})
-        for line, measure in enumerate(measures):
-            axis = axes[line][column]
-            for knob, (color, marker) in LINES.items():
-                if line == 0 and knob in ("minimum_steps", "maximum_steps"):
-                    continue
-                at = points(findings, knob, measure["of"])
-                axis.loglog(*at.T, marker=marker, color=color, markersize=5, label=knob.replace("_", " "))
-            for name, (color, marker) in PRESETS.items():
-                at = measure["of"](Setting("preset", name))
-                axis.loglog(*at, marker=marker, color=color, markersize=10, linestyle="", label=f"preset {name}", zorder=5)
-            axis.set_title(f"{PRESSURES[kpa]}, " + ("one evaluation, sheared state" if line == 0 else "path to 5 % shear"))
+        for axis, (what, _, measure) in zip(axes[:, column], ROWS, strict=True):
+            draw_knobs(axis, findings, lambda s, k=kpa, of=measure: of(findings, s, k), what.startswith("path"))
+            axis.set_title(f"{PRESSURES[kpa]}, {what}")
         scatter = findings.scatter[kpa].get("reference_solution", {})
-        axes[1][column].axhline(scatter.get("packings", np.nan), color="0.5", linestyle=":", label="scatter of packings")
-        axes[1][column].axhline(scatter.get("chaos", np.nan), color="0.5", linestyle="--", label="scatter of replicas")
-        axes[1][column].set_xlabel("steps of an increment (all its evaluations)" if column == 0 else "steps of an increment")
-    axes[0][0].set_ylabel("error of stress, % of p")
-    axes[1][0].set_ylabel("error of q/p, % of p")
+        axes[-1][column].axhline(scatter.get("packings", np.nan), color="0.5", linestyle=":", label="scatter of packings")
+        axes[-1][column].axhline(scatter.get("chaos", np.nan), color="0.5", linestyle="--", label="scatter of replicas")
+        axes[-1][column].set_xlabel("steps of an increment (all its evaluations)" if column == 0 else "steps of an increment")
+    for axis, (_, label, _) in zip(axes[:, 0], ROWS, strict=True):
+        axis.set_ylabel(label)
     axes[0][0].legend(fontsize=8)
-    axes[1][-1].legend(fontsize=7.5)
+    axes[-1][-1].legend(fontsize=7.5)
     figure.tight_layout()
     save(figure, file)
 
 
-def _evaluation(findings, setting, kpa):
+def draw_knobs(axis, findings, measure, is_path):
+    for knob, (color, marker) in LINES.items():
+        if is_path or knob not in ("minimum_steps", "maximum_steps"):
+            axis.loglog(*points(findings, knob, measure).T, marker=marker, color=color, markersize=5, label=knob.replace("_", " "))
+    for name, (color, marker) in PRESETS.items():
+        axis.loglog(*measure(Setting("preset", name)), marker=marker, color=color, markersize=10, linestyle="", label=f"preset {name}",
+                    zorder=5)
+
+
+def _evaluation(findings, setting, kpa, key):
     found = findings.evaluation[kpa, "sheared"].get(setting.name, {})
-    return found.get("steps", np.nan), found.get("error", np.nan)
+    return found.get("steps", np.nan), found.get(key, np.nan)
 
 
 def _path(findings, setting, kpa):
     found = findings.paths[kpa].get(setting.name, {})
-    return found.get("steps", np.nan) / setting.increments, found.get("error", np.nan)
+    return found.get("steps", np.nan) / setting.increments, found.get("median", np.nan)
 
 
 def draw_paths(findings, file):
