@@ -28,7 +28,8 @@ void print(const char* label, const SetTests& one, const CalibrateCase& targets)
   std::printf("%-8s beta %.4f  eta %.4f  t %.4f m: ", label, one.set[Parameter::rolling_stiffness],
               one.set[Parameter::rolling_limit], one.set[Parameter::thickness]);
   if (!one.usable()) {
-    const std::string held = fmt::format("{} of {} tests, {} of {} packings held", one.valid, one.tests, one.held_seeds.size(), one.seeds);
+    const std::string held =
+        fmt::format("{} of {} tests, {} of {} packings held", one.valid, one.tests, one.held_seeds.size(), one.seeds);
     std::printf("not usable: %s\n", one.fault.empty() ? held.c_str() : one.fault.c_str());
     return;
   }

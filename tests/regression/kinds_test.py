@@ -1,5 +1,6 @@
 """Kinds without a mesh and sweeps: what is replaced, resumed, stopped; which fields a result file holds."""
 
+import csv
 import signal
 import subprocess
 import time
@@ -23,6 +24,13 @@ check("--replace" in run(probe, code=2).stderr, "a probe's folder does not say w
 run([*probe, "--resume"], code=2)
 run([*probe, "--replace"])
 check(Path("probed/probe.csv").read_bytes() == first, "a probe done again is another one")
+with open("probed/probe.csv", newline="") as opened:
+    probes = {row["probe"]: row for row in csv.DictReader(opened)}
+for name in ("xxxx", "yyyy"):
+    before, turned, pushed = (float(probes[probe][column]) for probe, column in (
+        ("rotation", f"tangent_{name}_Pa"), ("rotation", f"tangent_after_{name}_Pa"), ("-yy", f"tangent_after_{name}_Pa")))
+    check(abs(turned / before - 1) < 2e-3, f"tangent {name} {before} after a rotation of 1e-4: {turned}")
+    check(pushed != before, f"tangent {name} after compression is the one before")
 
 # A packing stored by this program is one to read: it comes to rest again where it was.
 stored = next(Path("packings").glob("packing_*.h5"))

@@ -2,13 +2,15 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.ticker import LogLocator
 from voussoir_plots.style import save, use_style
 
 from .errors import evaluation_error, noise_share, path, path_error, path_scatter, probes, STRAINS
 from .plan import INCREMENTS, PRESSURES, Setting, settings
 
 STATES = ("isotropic", "sheared")
-LINES = {"inertial_number": ("C0", "o"), "hold_tolerance": ("C1", "s"), "minimum_steps": ("C2", "v"), "maximum_steps": ("C4", "^")}
+# Knobs whose paths have the reference solution's increments: the search for sigma_xx is then the same, and its error cancels.
+LINES = {"inertial_number": ("C0", "o"), "hold_tolerance": ("C1", "s"), "hold_cap": ("C2", "v")}
 PRESETS = {"fast": ("C3", "X"), "standard": ("black", "P"), "reference": ("C5", "D")}
 
 
@@ -148,27 +150,29 @@ ROWS = (("one evaluation, sheared state", "median error of stress, % of p", lamb
 
 def draw_errors(findings, file):
     pressures = findings.study.pressures
-    figure, axes = plt.subplots(len(ROWS), len(pressures), figsize=(4.1 * len(pressures), 3.5 * len(ROWS)), sharex="col", squeeze=False)
+    figure, axes = plt.subplots(len(ROWS), len(pressures), figsize=(4.1 * len(pressures), 3.3 * len(ROWS)), sharex="col", squeeze=False)
     for column, kpa in enumerate(pressures):
         for axis, (what, _, measure) in zip(axes[:, column], ROWS, strict=True):
-            draw_knobs(axis, findings, lambda s, k=kpa, of=measure: of(findings, s, k), what.startswith("path"))
+            draw_knobs(axis, findings, lambda s, k=kpa, of=measure: of(findings, s, k))
             axis.set_title(f"{PRESSURES[kpa]}, {what}")
         scatter = findings.scatter[kpa].get("reference_solution", {})
         axes[-1][column].axhline(scatter.get("packings", np.nan), color="0.5", linestyle=":", label="scatter of packings")
         axes[-1][column].axhline(scatter.get("chaos", np.nan), color="0.5", linestyle="--", label="scatter of replicas")
-        axes[-1][column].set_xlabel("steps of an increment (all its evaluations)" if column == 0 else "steps of an increment")
+        axes[-1][column].set_xlabel("steps of an increment (all its evaluations)")
+        axes[-1][column].xaxis.set_minor_locator(LogLocator(subs=(2, 5)))
+        axes[-1][column].xaxis.set_minor_formatter("{x:g}")
+        axes[-1][column].xaxis.set_major_formatter("{x:g}")
     for axis, (_, label, _) in zip(axes[:, 0], ROWS, strict=True):
         axis.set_ylabel(label)
-    axes[0][0].legend(fontsize=8)
-    axes[-1][-1].legend(fontsize=7.5)
-    figure.tight_layout()
+    handles, labels = axes[-1][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="lower center", ncol=4 if len(pressures) > 1 else 2, fontsize=9)
+    figure.tight_layout(rect=(0, 0.06 if len(pressures) > 1 else 0.1, 1, 1))
     save(figure, file)
 
 
-def draw_knobs(axis, findings, measure, is_path):
+def draw_knobs(axis, findings, measure):
     for knob, (color, marker) in LINES.items():
-        if is_path or knob not in ("minimum_steps", "maximum_steps"):
-            axis.loglog(*points(findings, knob, measure).T, marker=marker, color=color, markersize=5, label=knob.replace("_", " "))
+        axis.loglog(*points(findings, knob, measure).T, marker=marker, color=color, markersize=5, label=knob.replace("_", " "))
     for name, (color, marker) in PRESETS.items():
         axis.loglog(*measure(Setting("preset", name)), marker=marker, color=color, markersize=10, linestyle="", label=f"preset {name}",
                     zorder=5)
