@@ -60,8 +60,8 @@ BatchReport LinearElastic::evaluate(std::span<const Gradient> gradients, std::sp
     else
       trial_[i] = committed_[i] + stiffness_ * Eigen::Vector3d(h(0, 0), h(1, 1), h(0, 1) + h(1, 0));
     stress[i] = trial_[i];
-    tangent[i] = stiffness_;
   }
+  std::fill(tangent.begin(), tangent.end(), stiffness_);
   return {};
 }
 

@@ -50,13 +50,15 @@ class MaterialBatch {
   /// asks for more than twice the frozen steps gets them).
   virtual void begin_increment() = 0;
 
-  /// Stress and tangent at committed state + gradients. All spans have `size()` entries.
+  /// Stress and tangent at committed state + gradients. All spans have `size()` entries; an empty `tangent` asks for none, and
+  /// what one costs is saved.
   virtual BatchReport evaluate(std::span<const Gradient> gradients, std::span<Stress> stress, std::span<Tangent> tangent) = 0;
 
   /// The state of the last `evaluate` becomes the committed one.
   virtual void commit() = 0;
 
-  /// Stress of the committed state.
+  /// Stress of the committed state, and the tangent that its evaluation gave or would have given for nothing; an empty
+  /// `tangent` asks for none.
   virtual void committed(std::span<Stress> stress, std::span<Tangent> tangent) const = 0;
 
   /// Further quantities of the committed state (void ratio, coordination, status, ...); what is not needed is not computed.

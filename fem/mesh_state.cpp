@@ -12,6 +12,7 @@ MeshState begin_stage(const Mesh& mesh, const Coordinates& coordinates, const Ma
   state.initial_tangent.resize(material.size());
   std::vector<Stress> stress(material.size());
   material.committed(stress, state.initial_tangent);
+  state.tangent = state.initial_tangent;
   state.start = state.parameter = parameter;
   return state;
 }

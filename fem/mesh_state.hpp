@@ -20,6 +20,7 @@ struct MeshState {
   Coordinates coordinates;               ///< on which the next increment is integrated [m]
   std::vector<Gradient> deformation;     ///< F_n - I since the stage began, n_points [-]
   std::vector<Tangent> initial_tangent;  ///< of the material when the stage began, n_points [Pa]
+  std::vector<Tangent> tangent;          ///< of the last matrix of an increment that was committed, n_points [Pa]
   Eigen::VectorXd last_increment;        ///< displacement of the last converged increment, n_dofs [m]
   double last_step = 0;                  ///< load parameter it spanned; 0: there was none
   double start = 0;                      ///< load parameter when the stage began

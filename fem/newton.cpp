@@ -62,6 +62,7 @@ struct NewtonSolver::Workspace {
   Failure predict();
   Failure take_step();
   [[nodiscard]] std::vector<double> stiffness(double share);
+  [[nodiscard]] bool renews_matrix() const;
   Failure refactor();
   Failure find_step();
   Failure evaluate();
@@ -80,7 +81,7 @@ NewtonReport NewtonSolver::solve_increment(const MeshState& state, const Increme
   for (int iteration = 1;; ++iteration) {
     work.report.iterations = iteration;
     if (const Failure failure = work.take_step()) return work.stop(*failure);  // gradients, material, residual
-    if ((iteration - 1) % options_.refactor_every == 0)
+    if (work.renews_matrix())
       if (const Failure failure = work.refactor()) return work.stop(*failure);  // assemble, factorise
     if (const Failure failure = work.find_step()) return work.stop(*failure);   // solve, accelerate
     if (on_iterate) on_iterate({iteration, work.report.residual, work.report.residual_bound, work.report.material});
@@ -100,7 +101,7 @@ Failure NewtonSolver::Workspace::prepare() {
     constrained[dof] = 1;
   }
   increment.stress.resize(mesh.n_points());
-  increment.tangent.resize(mesh.n_points());
+  if (!load.keep_matrix) increment.tangent.resize(mesh.n_points());
   increment.gradients.resize(mesh.n_points());
   increment.external_force = load.external_force;
   increment.displacement = Eigen::VectorXd::Zero(mesh.n_dofs());
@@ -120,7 +121,8 @@ Failure NewtonSolver::Workspace::predict() {
     for (const auto& [dof, value] : load.prescribed) step[dof] = value;
     return step.allFinite() ? Failure{} : Failure{NewtonStatus::not_finite};
   }
-  solver.material_.committed(increment.stress, increment.tangent);
+  solver.material_.committed(increment.stress, {});
+  increment.tangent = state.tangent;
   if (const Failure failure = refactor()) return failure;
   const Eigen::VectorXd guess = load.predictor_ratio * state.last_increment;
   Eigen::VectorXd lift = Eigen::VectorXd::Zero(mesh.n_dofs());
@@ -199,7 +201,8 @@ Failure NewtonSolver::Workspace::evaluate() {
     increment.gradients[i] = h;
   }
   const PartTimer timer(report.times.material);
-  report.material = solver.material_.evaluate(increment.gradients, increment.stress, increment.tangent);
+  const std::span<Tangent> wanted = renews_matrix() ? std::span(increment.tangent) : std::span<Tangent>();
+  report.material = solver.material_.evaluate(increment.gradients, increment.stress, wanted);
   ++report.evaluations;
   report.work += report.material.work;
   return report.material.usable ? Failure{} : Failure{NewtonStatus::material_failed};
@@ -240,6 +243,10 @@ std::vector<double> NewtonSolver::Workspace::stiffness(double share) {
   std::vector<Tangent> tangents = increment.tangent;
   for (std::size_t i = 0; i < tangents.size(); ++i) tangents[i] += share * state.initial_tangent[i];
   return solver.assembler_.assemble(increment.points, tangents, constrained);
+}
+
+bool NewtonSolver::Workspace::renews_matrix() const {
+  return !load.keep_matrix && (report.iterations - 1) % solver.options_.refactor_every == 0;
 }
 
 /// K with the share that the options give; where that is not positive definite, ten and a hundred times the share.
@@ -317,6 +324,7 @@ void NewtonSolver::commit(MeshState& state, Increment& increment) {
   material_.commit();
   state.displacement += increment.displacement;
   state.last_increment = increment.displacement;
+  if (!increment.tangent.empty()) state.tangent = increment.tangent;
   if (kinematics_ == Kinematics::updated_lagrangian) state.coordinates.reshaped() += increment.displacement;
   for (std::size_t i = 0; i < state.deformation.size(); ++i) {
     const Gradient& h = increment.gradients[i];

@@ -25,7 +25,7 @@ struct NewtonOptions {
   int max_iterations = 40;
   double initial_tangent_share =
       0.02;                ///< times the stage's initial tangent is added to the tangent; > 0 where it may vanish
-  int refactor_every = 1;  ///< iterates between new tangents; the first iterate always has a new one
+  int refactor_every = 1;  ///< iterates between new tangents; the first iterate has a new one unless the load keeps the matrix
   int anderson_depth = 5;  ///< 0: plain Newton
   double anderson_condition = 1e6;  ///< limit on the condition of the least squares; older pairs are dropped beyond
   double growth_limit = 3.0;        ///< a residual grown by more than this halves the step and restarts Anderson
@@ -80,6 +80,7 @@ struct IncrementLoad {
   Eigen::VectorXd first_step = {}; ///< the first iterate, n_dofs [m]; empty: as predictor_ratio says
   double moved = 0;                ///< norm of a displacement that Du is a further part of (relaxation.hpp) [m]
   int max_iterations = 0;          ///< 0: NewtonOptions::max_iterations
+  bool keep_matrix = false;        ///< K stays that of the last call: no tangents are asked for
   double near_residual = 0;        ///< over the reference of the tolerance: ends the iterates as `near` [-]; 0: never
   bool leave_best = false;         ///< max_iterations, near: the material's last evaluation is at the best iterate
 };
@@ -89,7 +90,7 @@ struct Increment {
   Eigen::VectorXd displacement;     ///< Du, n_dofs [m]
   std::vector<Gradient> gradients;  ///< F_rel - I, n_points [-]
   std::vector<Stress> stress;       ///< n_points [Pa]
-  std::vector<Tangent> tangent;     ///< n_points [Pa]
+  std::vector<Tangent> tangent;     ///< those of K, n_points; empty: of an increment that kept the matrix [Pa]
   Eigen::VectorXd external_force;   ///< n_dofs [N/m]
   Eigen::VectorXd reactions;  ///< f_int - f_ext at constrained dofs, zero elsewhere; of the support on the soil [N/m]
   Eigen::VectorXd residual;   ///< f_ext - f_int at free dofs, zero elsewhere, n_dofs [N/m]

@@ -16,7 +16,6 @@ void append(Increment& whole, Increment&& part) {
   for (std::size_t i = 0; i < whole.gradients.size(); ++i)
     whole.gradients[i] += part.gradients[i] + part.gradients[i] * whole.gradients[i];
   whole.stress = std::move(part.stress);
-  whole.tangent = std::move(part.tangent);
   whole.external_force = std::move(part.external_force);
   whole.reactions = std::move(part.reactions);
   whole.residual = std::move(part.residual);
@@ -63,6 +62,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
     load.first_step = factor * solver.linear_solver().solve(increment.residual);
     load.moved = increment.displacement.norm();
     load.max_iterations = 1;
+    load.keep_matrix = true;
     Increment part;
     NewtonReport answer = solver.solve_increment(state, load, part);
     const bool evaluated = answer.status == NewtonStatus::converged || answer.status == NewtonStatus::max_iterations;

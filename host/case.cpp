@@ -112,7 +112,8 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   }
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
-  if (input.engine.backend == EngineBackend::teams && input.newton.tangent != TangentChoice::contact) {
+  const bool static_tangent = input.newton.tangent == TangentChoice::elastic || input.newton.tangent == TangentChoice::static_;
+  if (input.engine.backend == EngineBackend::teams && static_tangent) {
     throw root.table("newton").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
   }
   if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial && input.output.microstructure.any()) {

@@ -17,7 +17,7 @@ namespace voussoir::host {
 enum class CaseKind { pack, probe, biaxial, biaxial_bvp, calibrate, column, tunnel };
 enum class MaterialKind { grains, linear_elastic };
 enum class Precision { single_precision, double_precision };
-enum class TangentChoice { contact, elastic, static_ };
+enum class TangentChoice { automatic, contact, elastic, static_ };
 enum class EngineBackend { automatic, lanes, teams };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
 
@@ -120,11 +120,11 @@ struct NewtonCase {
   double displacement_tolerance = 1.0e-2;  ///< of the last correction, relative to the increment [-]
   int maximum_iterations = 40;
   int anderson_depth = 5;                  ///< 0: plain Newton
-  TangentChoice tangent = TangentChoice::contact;  ///< of the RVEs; kernels/README.md, "Static tangent"
+  TangentChoice tangent = TangentChoice::automatic;  ///< of the RVEs, once an increment; automatic: elastic, on a GPU contact
   double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
   double relax_below = 1.0;                ///< share of a planned step up to which a failed step is relaxed, not cut [-]
   int relax_attempts = 3;                  ///< iterates from the committed state before an increment is relaxed
-  double relax_near = 0.05;                ///< residual below which these end at once, relative as `tolerance` [-]
+  double relax_near = 0.2;                 ///< residual below which these end at once, relative as `tolerance` [-]
   int relax_substeps = 100;                ///< most substeps of a relaxation; 0: none is relaxed
   double smallest_cut = 1.0 / 64.0;        ///< smallest share of a planned step that cutting tries [-]
 };

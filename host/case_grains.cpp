@@ -194,7 +194,7 @@ ProbeCase read_probe(const io::Table& table) {
   read_quantity(table, "pressure", Dimension::pressure, probe.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
   read_quantity(table, "strain", Dimension::none, probe.strain, {.at_least = "1e-7", .at_most = "0.1"});
   read_integer(table, "replicas", probe.replicas, {.at_least = 1, .at_most = 10'000});
-  probe.tangent = read_tangent(table);
+  probe.tangent = read_tangent(table, probe.tangent);
   probe.path = read_path(table);
   return probe;
 }

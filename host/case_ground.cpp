@@ -1,4 +1,6 @@
 // The tables of what has a mesh: [ground], [column], [gravity], [volume_loss], [biaxial_bvp], [newton], [output], [elastic].
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -83,10 +85,11 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
   return test;
 }
 
-TangentChoice read_tangent(const io::Table& table) {
-  const std::string tangent = table.choice("tangent", {"contact", "elastic", "static"}, "contact");
-  if (tangent == "contact") return TangentChoice::contact;
-  return tangent == "elastic" ? TangentChoice::elastic : TangentChoice::static_;
+TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise) {
+  constexpr std::array<const char*, 4> names{"auto", "contact", "elastic", "static"};  // as the enumeration counts them
+  const std::string tangent = table.choice("tangent", {names.begin(), names.end()}, names[static_cast<std::size_t>(otherwise)]);
+  const auto found = std::find(names.begin(), names.end(), tangent);
+  return static_cast<TangentChoice>(found - names.begin());
 }
 
 NewtonCase read_newton(const io::Table& table) {
@@ -96,7 +99,7 @@ NewtonCase read_newton(const io::Table& table) {
                 {.at_most = "1", .positive = true});
   read_integer(table, "maximum_iterations", newton.maximum_iterations, {.at_least = 1, .at_most = 10000});
   read_integer(table, "anderson_depth", newton.anderson_depth, {.at_least = 0, .at_most = 50});
-  newton.tangent = read_tangent(table);
+  newton.tangent = read_tangent(table, newton.tangent);
   read_quantity(table, "initial_tangent_fraction", Dimension::none, newton.initial_tangent_fraction,
                 {.at_least = "0", .at_most = "10"});
   read_quantity(table, "relax_below", Dimension::none, newton.relax_below, {.at_least = "0", .at_most = "1"});

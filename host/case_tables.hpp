@@ -24,7 +24,7 @@ namespace voussoir::host {
 [[nodiscard]] kernels::MicrostructureRequest read_microstructure(const io::Table& table);
 
 /// The key `tangent`.
-[[nodiscard]] TangentChoice read_tangent(const io::Table& table);
+[[nodiscard]] TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise);
 
 /// Reads a key into `member`, whose value before is the key's default. Throws io::InputError.
 void read_quantity(const io::Table& table, const char* key, io::Dimension dimension, double& member,

@@ -1,7 +1,8 @@
 #pragma once
 /// RVEs whose stress hardly changes answer by the tangent of their grains' last run instead of by their grains (`engine.defer`).
 ///
-/// F = R U is the deformation gradient since that run, sigma_g and D its stress and tangent, e = log U. The answer is
+/// F = R U is the deformation gradient since that run, sigma_g and D its stress and tangent (eq. (4) where the
+/// mesh asked for none), e = log U. The answer is
 /// R (sigma_g + D : e) R^T, as long as max(|D : e|, (D_xxxx + D_yyyy)/2 |e|) <= bound x trust x p_g and no more than
 /// `most_commits` commits in a row; else the grains run with the whole of F. Only an RVE whose grains came to rest under pressure is
 /// deferred. Once it runs within an increment it runs to the increment's end, so that the residual does not jump to and fro between

@@ -26,8 +26,7 @@ std::vector<Point> points_at_rest(const Ground& ground) {
   const GroundCase& soil = ground.input.ground;
   const auto n = static_cast<std::size_t>(ground.mesh.n_points());
   std::vector<fem::Stress> stress(n);
-  std::vector<fem::Tangent> tangent(n);
-  ground.material.committed(stress, tangent);
+  ground.material.committed(stress, {});
   const fem::GaussPoints gauss = fem::gauss_points(ground.mesh, ground.mesh.coordinates);
   const fem::Point axis(0.0, soil.axis_height());
   std::vector<Point> points;

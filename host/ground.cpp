@@ -58,8 +58,7 @@ std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd
   const fem::GaussPoints points = fem::gauss_points(ground.mesh, ground.state.coordinates);
   fields.push_back({"gauss_point_coordinates", "m", FieldLocation::gauss, 2, flat(points.positions.reshaped())});
   std::vector<fem::Stress> stress(n);
-  std::vector<fem::Tangent> tangent(n);
-  ground.material.committed(stress, tangent);
+  ground.material.committed(stress, {});
   add_stress_fields(fields, stress);
   add_strain_fields(fields, ground.strain);
   for (fem::PointField& field : ground.material.fields()) {

@@ -51,6 +51,7 @@ void save(const Ground& ground, io::Checkpoint& checkpoint) {
                          {state.coordinates.data(), static_cast<std::size_t>(state.coordinates.size())});
   put_list(checkpoint, "deformation", state.deformation);
   put_list(checkpoint, "initial_tangent", state.initial_tangent);
+  put_list(checkpoint, "tangent", state.tangent);
   checkpoint.put_doubles("last_increment", numbers(state.last_increment));
   const std::array<double, 5> scalars{state.last_step, state.start, state.parameter, state.step_limit,
                                       state.relaxation_factor};
@@ -68,6 +69,7 @@ void restore(Ground& ground, const io::Checkpoint& checkpoint) {
   state.coordinates = Eigen::Map<const fem::Coordinates>(coordinates.data(), 2, ground.mesh.n_nodes());
   state.deformation = get_list<fem::Gradient>(checkpoint, "deformation", points);
   state.initial_tangent = get_list<fem::Tangent>(checkpoint, "initial_tangent", points);
+  state.tangent = get_list<fem::Tangent>(checkpoint, "tangent", points);
   const bool moved = !checkpoint.get_doubles("last_increment").empty();
   state.last_increment = get_vector(checkpoint, "last_increment", moved ? dofs : 0);
   const std::vector<double> scalars = get_sized(checkpoint, "load", 5);

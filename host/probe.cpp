@@ -82,13 +82,13 @@ void print_tangent(const fem::Tangent& tangent, const char* name) {
 }
 
 const char* name_of(TangentChoice tangent) {
-  return tangent == TangentChoice::contact ? "contact" : tangent == TangentChoice::elastic ? "elastic" : "static";
+  return tangent == TangentChoice::contact ? "contact" : tangent == TangentChoice::static_ ? "static" : "elastic";
 }
 
 /// The path; its end into `rve`. Returns what failed.
 std::string take_path(const Case& input, PackedRve& rve, Tables& tables) {
   const std::vector<double> scale = scales(input.probe.replicas);
-  RvePool pool(rve, input.engine, scale.size());
+  RvePool pool(rve, {input.engine}, scale.size());
   const PathEnd end = walk_path(pool, input.probe.path, scale, [&](const PathPoint& at) {
     tables.path += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, at.rve, at.increment,
                                at.evaluations, at.strain.xx, at.strain.yy, 0.5 * (at.strain.xy + at.strain.yx), at.stress(0),
@@ -113,7 +113,7 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
   const std::vector<Probe> all = probes(input.probe.strain);
   const std::vector<double> scale = scales(input.probe.replicas);
   const std::size_t n = all.size() * scale.size();
-  RvePool pool(rve, input.engine, n, input.probe.tangent);
+  RvePool pool(rve, {input.engine, input.probe.tangent}, n);
   std::vector<fem::Gradient> gradients;
   for (const double factor : scale) {
     for (const Probe& probe : all) gradients.emplace_back(factor * probe.gradient);

@@ -15,7 +15,7 @@ enum class Command : std::uint8_t {
   start,            ///< build's revision, threads -> host's name, threads
   make,             ///< recipe of the pool -> committed reports
   begin_increment,  ///< ->
-  evaluate,         ///< gradients -> seconds, particle-steps, error of what was deferred, trial reports
+  evaluate,         ///< whether with tangents, gradients -> seconds, particle-steps, error of what was deferred, trial reports
   commit,           ///< ->
   fields,           ///< -> number of fields, then each
   states,           ///< first, number of RVEs -> their records
@@ -69,7 +69,7 @@ inline PackedRve read_rve(ByteReader& read) {
 /// work where the case was read.
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
-  auto& [engine, tangent, microstructure] = options;
+  auto& [engine, tangent, tangent_tolerance, microstructure] = options;
   auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps, defer] = engine;
   static_cast<void>(preset);
   transfer(&precision, 1);
@@ -77,6 +77,7 @@ void transfer_options(Transfer& transfer, Options& options) {
   for (auto* number : {&inertial_number, &hold_tolerance, &skin, &defer}) transfer(number, 1);
   for (auto* count : {&hold_cap, &minimum_steps, &maximum_steps}) transfer(count, 1);
   transfer(&tangent, 1);
+  transfer(&tangent_tolerance, 1);
   transfer(&microstructure, 1);
 }
 

@@ -111,10 +111,10 @@ void RankPool::begin_increment() {
   ask(others(), [](std::size_t) { return message_of(Command::begin_increment); }, [&] { own_->begin_increment(); });
 }
 
-Message RankPool::gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients) const {
+Message RankPool::gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients, bool with_tangents) const {
   std::vector<double> flat;
   for (const std::size_t p : points_[rank]) flat.insert(flat.end(), gradients[p].data(), gradients[p].data() + 4);
-  Message message = message_of(Command::evaluate);
+  Message message = message_of(Command::evaluate, with_tangents);
   ByteWriter(message).list(flat);
   return message;
 }
@@ -126,7 +126,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
   double own_end = start;
   double slowest = 0;
   const auto message = [&](std::size_t r) {
-    Message m = gradient_message(r, gradients);
+    Message m = gradient_message(r, gradients, !tangent.empty());
     ledger_.bytes += static_cast<double>(m.size());
     return m;
   };
@@ -134,7 +134,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
     const double since = now();
     std::vector<fem::Gradient> mine;
     for (const std::size_t p : points_[0]) mine.push_back(gradients[p]);
-    work = own_->advance(mine);
+    work = own_->advance(mine, !tangent.empty());
     own_end = now();
     slowest = own_end - since;
   });

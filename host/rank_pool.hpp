@@ -47,7 +47,7 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
 
   [[nodiscard]] std::size_t others() const { return points_.size() - 1; }
   [[nodiscard]] Message make_message(std::size_t rank) const;
-  [[nodiscard]] Message gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients) const;
+  [[nodiscard]] Message gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients, bool with_tangents) const;
   [[nodiscard]] std::vector<std::vector<std::byte>> records_of(std::size_t rank, std::size_t first, std::size_t n) const;
   void describe_costs();
 

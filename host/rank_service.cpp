@@ -69,10 +69,11 @@ class Service {
 
   void evaluate(ByteReader& read, ByteWriter& reply) {
     const auto since = std::chrono::steady_clock::now();
+    const bool with_tangents = read.value<bool>();
     const auto flat = read.list<double>();
     std::vector<fem::Gradient> gradients(flat.size() / 4);
     for (std::size_t k = 0; k < gradients.size(); ++k) gradients[k] = Eigen::Map<const fem::Gradient>(flat.data() + 4 * k);
-    const kernels::Work work = pool().advance(gradients);
+    const kernels::Work work = pool().advance(gradients, with_tangents);
     reply.value(std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
     reply.value(work);
     reply.value(pool().deferral_error());

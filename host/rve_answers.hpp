@@ -11,7 +11,7 @@ namespace voussoir::host {
 [[nodiscard]] fem::Stress stress_of(const kernels::RveReport& report);
 [[nodiscard]] fem::Tangent tangent_of(const kernels::RveReport& report);
 
-/// Stresses [Pa] and tangents [Pa] of the reports; all spans have the same length.
+/// Stresses [Pa] and tangents [Pa] of the reports; all spans have the same length, or `tangent` none.
 void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
                   std::span<fem::Tangent> tangent);
 

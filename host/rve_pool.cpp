@@ -18,8 +18,13 @@ namespace {
 /// An evaluation asking for this many times the frozen steps gets more after all: the predictor was far off.
 constexpr int step_regret = 2;
 
-kernels::TangentKind kernel_tangent(TangentChoice choice) {
+/// Of the static tangents that steer the mesh's iterates: some 32 iterations. Run out, they need no fewer evaluations (fem/README.md).
+constexpr double newton_tangent_tolerance = 0.1;
+
+kernels::TangentKind kernel_tangent(TangentChoice choice, kernels::Backend backend) {
   switch (choice) {
+    case TangentChoice::automatic:
+      return kernels::takes_teams(backend) ? kernels::TangentKind::contact : kernels::TangentKind::elastic;
     case TangentChoice::elastic: return kernels::TangentKind::elastic;
     case TangentChoice::static_: return kernels::TangentKind::static_;
     case TangentChoice::contact: break;
@@ -49,20 +54,20 @@ kernels::Precision engine_precision(const EngineCase& engine) {
   return engine.precision == Precision::single_precision ? kernels::Precision::float32 : kernels::Precision::float64;
 }
 
-RvePool::RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent,
-                 const kernels::MicrostructureRequest& microstructure)
-    : engine_(engine),
-      settings_{.precision = engine_precision(engine),
-                .skin = engine.skin,
-                .hold_tolerance = engine.hold_tolerance,
-                .backend = engine_backend(engine),
-                .tangent = kernel_tangent(tangent)},
-      microstructure_(microstructure),
+RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n)
+    : engine_(options.engine),
+      settings_{.precision = engine_precision(engine_),
+                .skin = engine_.skin,
+                .hold_tolerance = engine_.hold_tolerance,
+                .backend = engine_backend(engine_),
+                .tangent = kernel_tangent(options.tangent, engine_backend(engine_)),
+                .tangent_tolerance = options.tangent_tolerance},
+      microstructure_(options.microstructure),
       batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
       requests_(n),
       trial_reports_(n),
       committed_reports_(n),
-      deferral_(engine.defer, settings_.pressure_floor) {
+      deferral_(engine_.defer, settings_.pressure_floor) {
   for (std::size_t k = 0; k < n; ++k) store_rve(rve, batch_, k);
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
   for (auto& report : committed_reports_) {
@@ -100,7 +105,7 @@ void RvePool::choose_steps(std::size_t rve, const fem::Gradient& gradient, bool 
 }
 
 /// Grains run where they must, with all that was deferred.
-kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients) {
+kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings) {
   running_.clear();
   increment_.assign(gradients.begin(), gradients.end());
   for (std::size_t k = 0; k < size(); ++k) {
@@ -111,7 +116,7 @@ kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients) {
   }
   steps_are_fixed_ = true;
   const kernels::Work work =
-      kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, trial_reports_, running_);
+      kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings, trial_reports_, running_);
   for (const int rve : running_) {
     const auto k = static_cast<std::size_t>(rve);
     deferral_.check(k, gradients[k], trial_reports_[k]);
@@ -119,16 +124,19 @@ kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients) {
   return work;
 }
 
-kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients) {
-  if (deferral_.on()) return advance_some(gradients);
+/// Without tangents the reports have eq. (4), which comes with the stress.
+kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients, bool with_tangents) {
+  kernels::EngineSettings settings = settings_;
+  if (!with_tangents) settings.tangent = kernels::TangentKind::contact;
+  if (deferral_.on()) return advance_some(gradients, settings);
   for (std::size_t k = 0; k < size(); ++k) choose_steps(k, gradients[k], !steps_are_fixed_);
   steps_are_fixed_ = true;
-  return kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, trial_reports_);
+  return kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings, trial_reports_);
 }
 
 fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
                                    std::span<fem::Tangent> tangent) {
-  const kernels::Work work = advance(gradients);
+  const kernels::Work work = advance(gradients, !tangent.empty());
   copy_answers(trial_reports_, stress, tangent);
   fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor);
   report.work = work.particle_steps;
@@ -233,7 +241,7 @@ std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> po
 
 std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points, const PackingNote& note) {
   PackedRve rve = choose_packing(input, note);
-  const PoolOptions options{input.engine, input.newton.tangent, input.output.microstructure};
+  const PoolOptions options{input.engine, input.newton.tangent, newton_tangent_tolerance, input.output.microstructure};
   if (rank_count() > 1) return make_rank_pool(std::move(rve), options, n_points, note);
   return std::make_unique<RvePool>(rve, options, n_points);
 }

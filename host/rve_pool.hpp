@@ -21,16 +21,14 @@ namespace voussoir::host {
 struct PoolOptions {
   EngineCase engine;
   TangentChoice tangent = TangentChoice::contact;
-  kernels::MicrostructureRequest microstructure;  ///< what fields() shall hold besides; computed there, at each call
+  double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< of a static one [-]
+  kernels::MicrostructureRequest microstructure = {};  ///< what fields() shall hold besides; computed there, at each call
 };
 
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
-  /// `n` clones of `rve`. @param microstructure what fields() shall hold besides; computed there, at each call
-  RvePool(const PackedRve& rve, const EngineCase& engine, std::size_t n, TangentChoice tangent = TangentChoice::contact,
-          const kernels::MicrostructureRequest& microstructure = {});
-  RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n)
-      : RvePool(rve, options.engine, n, options.tangent, options.microstructure) {}
+  /// `n` clones of `rve`.
+  RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n);
 
   [[nodiscard]] std::size_t size() const override { return batch_.size(); }
   void begin_increment() override;
@@ -47,8 +45,8 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] PackedRve packed(std::size_t rve) const;      ///< where its grains last ran, for another pool to start from
 
   /// For a pool that is one rank's part of a larger one: the engine's own reports, and states one by one.
-  /// `advance` is `evaluate`; what the RVEs answered is in trial_reports().
-  kernels::Work advance(std::span<const fem::Gradient> gradients);
+  /// `advance` is `evaluate`; what the RVEs answered is in trial_reports(), eq. (4) instead of a dearer tangent where none is wanted.
+  kernels::Work advance(std::span<const fem::Gradient> gradients, bool with_tangents);
   [[nodiscard]] const std::vector<kernels::RveReport>& trial_reports() const { return trial_reports_; }
   [[nodiscard]] const std::vector<kernels::RveReport>& committed_reports() const { return committed_reports_; }
   [[nodiscard]] double deferral_error() const { return deferral_.error(); }  ///< of the last evaluation [-]
@@ -72,7 +70,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
 
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
   void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);
-  kernels::Work advance_some(std::span<const fem::Gradient> gradients);
+  kernels::Work advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings);
   [[nodiscard]] io::RveSnapshot snapshot(std::size_t rve) const;
 };
 

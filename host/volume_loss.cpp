@@ -89,8 +89,7 @@ fem::Constraints volume_loss_constraints(const fem::Mesh& mesh, double from, dou
 OpeningCheck check_opening(const Ground& ground, const K0Table& k0) {
   const fem::Mesh& mesh = ground.mesh;
   std::vector<fem::Stress> stress(static_cast<std::size_t>(mesh.n_points()));
-  std::vector<fem::Tangent> tangent(stress.size());
-  ground.material.committed(stress, tangent);
+  ground.material.committed(stress, {});
   const fem::GaussPoints points = fem::gauss_points(mesh, mesh.coordinates);
   const Eigen::VectorXd unbalanced =
       fem::internal_force(mesh, points, stress).force - ground_weight(mesh, ground.input.ground, 1.0);

@@ -120,16 +120,20 @@ std::vector<int> all_of(const RveBatch& batch) {
 bool wants_lanes(const StrainRequest&) { return false; }
 bool wants_lanes(const ServoRequest& r) { return r.microstructure.any(); }
 
-/// Teams are for devices of their own; only lanes solve for static tangents and record microstructures.
+/// Only lanes solve for static tangents and record microstructures.
 template <class Request>
 bool runs_teams(const EngineSettings& settings, std::span<const Request> requests) {
   if (settings.backend != Backend::automatic) return settings.backend == Backend::teams;
-  constexpr bool has_device = !std::is_same_v<Kokkos::DefaultExecutionSpace, Kokkos::DefaultHostExecutionSpace>;
-  return has_device && settings.tangent == TangentKind::contact &&
+  return takes_teams(settings.backend) && settings.tangent == TangentKind::contact &&
          std::none_of(requests.begin(), requests.end(), [](const Request& r) { return wants_lanes(r); });
 }
 
 }  // namespace
+
+bool takes_teams(Backend backend) {
+  constexpr bool has_device = !std::is_same_v<Kokkos::DefaultExecutionSpace, Kokkos::DefaultHostExecutionSpace>;
+  return backend == Backend::teams || (backend == Backend::automatic && has_device);
+}
 
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {

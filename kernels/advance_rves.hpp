@@ -17,6 +17,9 @@ struct Work {
   std::size_t lane_steps = 0;      ///< the same with frozen and empty lanes counted: what the hardware did
 };
 
+/// Whether teams of threads run what any of them can; a static tangent or a recorded microstructure needs lanes (`automatic`).
+[[nodiscard]] bool takes_teams(Backend backend);
+
 /// Given motions. `requests` and `reports` have batch.size() entries.
 /// Writes batch.trial; never throws for a numerical reason: each RVE's status says how it ended.
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,

@@ -64,7 +64,7 @@ class SofteningMaterial : public fem::MaterialBatch {
       const fem::Gradient& h = gradients[i];
       trial_[i] = committed_[i] + Eigen::Vector3d(h(0, 0), h(1, 1), h(0, 1) + h(1, 0));
       stress[i] = stress_of(trial_[i]);
-      tangent[i] = options_.too_stiff * elastic();
+      if (!tangent.empty()) tangent[i] = options_.too_stiff * elastic();
       if (!(h.norm() <= options_.usable_strain)) {
         report.usable = false;
         report.message = "point " + std::to_string(i) + " was strained too far";
@@ -76,7 +76,7 @@ class SofteningMaterial : public fem::MaterialBatch {
   void committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const override {
     for (std::size_t i = 0; i < size(); ++i) {
       stress[i] = stress_of(committed_[i]);
-      tangent[i] = options_.too_stiff * elastic();
+      if (!tangent.empty()) tangent[i] = options_.too_stiff * elastic();
     }
   }
   [[nodiscard]] std::vector<fem::PointField> fields() const override { return {}; }

@@ -52,7 +52,10 @@ TEST(Case, DefaultsAreThoseOfTheDeclarations) {
 TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
   const std::string teams = "kind = 'tunnel'\n[engine]\nbackend = 'teams'\n";
   EXPECT_EQ(load_case(write(teams)).engine.backend, EngineBackend::teams);
+  EXPECT_EQ(load_case(write(teams)).newton.tangent, TangentChoice::automatic);  // eq. (4) there
+  EXPECT_EQ(complaint(teams, {"newton.tangent=contact"}), "");
   EXPECT_NE(complaint(teams, {"newton.tangent=elastic"}).find("newton.tangent"), std::string::npos);
+  EXPECT_NE(complaint(teams, {"newton.tangent=static"}).find("newton.tangent"), std::string::npos);
   const std::string biaxial = "kind = 'biaxial'\n[engine]\nbackend = 'teams'\n[output]\nmicrostructure = ['fabric']\n";
   EXPECT_NE(complaint(biaxial, {}).find("output.microstructure"), std::string::npos);
   EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, EngineBackend::teams);

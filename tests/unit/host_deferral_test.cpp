@@ -181,7 +181,7 @@ const fem::Gradient tiny = gradient(1e-7, 2e-3, -2e-3, -2e-7);  // it mostly tur
 const fem::Gradient large = gradient(1e-3, 0, 1e-3, -2e-3);
 
 TEST_F(DeferringPool, GivesTheGrainsAllThatWasDeferred) {
-  RvePool deferring(rve_, engine(1e-2), 2), plain(rve_, engine(0), 2);
+  RvePool deferring(rve_, {engine(1e-2)}, 2), plain(rve_, {engine(0)}, 2);
   const fem::BatchReport first = step(deferring, {tiny, large});
   EXPECT_EQ(first.deferred, 1u);
   EXPECT_EQ(step(deferring, {tiny, large}).deferred, 1u);
@@ -193,7 +193,7 @@ TEST_F(DeferringPool, GivesTheGrainsAllThatWasDeferred) {
   std::size_t work = 0;
   for (const auto& h : {large, large, large}) work = step(plain, {h, h}).work;
   EXPECT_EQ(answer[1], stress_[1]) << "an RVE beside a deferred one";
-  RvePool at_once(rve_, engine(0), 2);
+  RvePool at_once(rve_, {engine(0)}, 2);
   step(at_once, Gradients(2, compose(large, compose(tiny, tiny))));
   EXPECT_EQ(answer[0], stress_[0]);
   EXPECT_GT(work, first.work);
@@ -201,7 +201,7 @@ TEST_F(DeferringPool, GivesTheGrainsAllThatWasDeferred) {
 
 TEST_F(DeferringPool, KeepsToItsBound) {
   constexpr double bound = 1e-2;
-  RvePool deferring(rve_, engine(bound), 2), plain(rve_, engine(0), 2);
+  RvePool deferring(rve_, {engine(bound)}, 2), plain(rve_, {engine(0)}, 2);
   std::size_t deferred = 0;
   double error = 0;
   for (int k = 0; k < 20; ++k) {
@@ -224,7 +224,7 @@ TEST_F(DeferringPool, KeepsToItsBound) {
 TEST_F(DeferringPool, HasTheSameBitsInTeams) {
   EngineCase with_teams = engine(1e-2);
   with_teams.backend = EngineBackend::teams;
-  RvePool lanes(rve_, engine(1e-2), 2), teams(rve_, with_teams, 2);
+  RvePool lanes(rve_, {engine(1e-2)}, 2), teams(rve_, {with_teams}, 2);
   for (const auto& second : {tiny, large, large}) {
     const fem::BatchReport by_lanes = step(lanes, {large, second});
     const auto answer = stress_;
@@ -235,7 +235,7 @@ TEST_F(DeferringPool, HasTheSameBitsInTeams) {
 }
 
 TEST_F(DeferringPool, AVanishingBoundHasTheBitsOfNone) {
-  RvePool on(rve_, engine(1e-300), 2), off(rve_, engine(0), 2);
+  RvePool on(rve_, {engine(1e-300)}, 2), off(rve_, {engine(0)}, 2);
   for (const auto& h : {tiny, large}) {
     EXPECT_EQ(step(on, {h, h}).deferred, 0u);
     const auto answer = stress_;
@@ -246,7 +246,7 @@ TEST_F(DeferringPool, AVanishingBoundHasTheBitsOfNone) {
 }
 
 TEST_F(DeferringPool, ACheckpointKeepsWhatIsDeferred) {
-  RvePool straight(rve_, engine(1e-2), 2), resumed(rve_, engine(1e-2), 2), plain(rve_, engine(0), 2);
+  RvePool straight(rve_, {engine(1e-2)}, 2), resumed(rve_, {engine(1e-2)}, 2), plain(rve_, {engine(0)}, 2);
   step(straight, {tiny, large});
   resumed.set_state(straight.state());
   EXPECT_EQ(resumed.state(), straight.state());
@@ -262,7 +262,7 @@ TEST_F(DeferringPool, ACheckpointKeepsWhatIsDeferred) {
 
 /// An RVE that runs at one iterate and is deferred at none after; a failed increment leaves no trace.
 TEST_F(DeferringPool, StartsAnewFromTheCommittedState) {
-  RvePool pool(rve_, engine(1e-2), 2), other(rve_, engine(1e-2), 2);
+  RvePool pool(rve_, {engine(1e-2)}, 2), other(rve_, {engine(1e-2)}, 2);
   step(pool, {tiny, tiny});
   step(other, {tiny, tiny});
   pool.begin_increment();

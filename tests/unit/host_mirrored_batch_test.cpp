@@ -101,7 +101,7 @@ TEST(MirroredBatch, FieldsAreThoseOfTheMirroredGrains) {
   const std::int64_t seed[] = {1};
   const PackedRve rve = make_packings(input.soil, input.packing, seed).front();
   const kernels::MicrostructureRequest wanted{.fabric = true, .coordination = true, .strong_networks = true};
-  const auto pool = [&] { return std::make_unique<RvePool>(rve, input.engine, n, TangentChoice::contact, wanted); };
+  const auto pool = [&] { return std::make_unique<RvePool>(rve, PoolOptions{.engine = input.engine, .microstructure = wanted}, n); };
   MirroredBatch mirrored(pool());
   fem::Gradient h, opposite;  // the mirror image of h: all grains move as those of point 0
   h << -2e-3, 3e-3, 1e-3, 1e-3;

@@ -110,7 +110,7 @@ TEST_F(HostPacking, APoolsStateGoesThroughBytesBitForBit) {
   const std::int64_t seed[] = {1};
   const PackedRve rve = make_packings(input_.soil, input_.packing, seed).front();
   EngineCase engine;
-  RvePool straight(rve, engine, 3), restarted(rve, engine, 3);
+  RvePool straight(rve, {engine}, 3), restarted(rve, {engine}, 3);
   const auto load = [](RvePool& pool, double strain) {
     fem::Gradient h = fem::Gradient::Zero();
     h(1, 1) = -strain;

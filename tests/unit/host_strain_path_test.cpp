@@ -35,7 +35,7 @@ class StrainPath : public testing::Test {
 };
 
 TEST_F(StrainPath, AGivenPathIsThatOfSingleEvaluations) {
-  RvePool pool(rve_, EngineCase{}, 1), by_hand(rve_, EngineCase{}, 1);
+  RvePool pool(rve_, {EngineCase{}}, 1), by_hand(rve_, {EngineCase{}}, 1);
   const auto points = walk(pool, {{.gradient = {1e-3, 2e-3, 0, -1e-3}, .increments = 3}}, {1.0});
   ASSERT_TRUE(end_.usable);
   ASSERT_EQ(points.size(), 4u);  // the start, and three increments
@@ -56,7 +56,7 @@ TEST_F(StrainPath, AGivenPathIsThatOfSingleEvaluations) {
 }
 
 TEST_F(StrainPath, LateralStressIsHeldWhereAsked) {
-  RvePool pool(rve_, EngineCase{}, 2);
+  RvePool pool(rve_, {EngineCase{}}, 2);
   const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 8, .constant_xx = true}}, {1.0, 1.0});
   ASSERT_TRUE(end_.usable);
   for (const PathPoint& at : points) {
@@ -71,7 +71,7 @@ TEST_F(StrainPath, LateralStressIsHeldWhereAsked) {
 }
 
 TEST_F(StrainPath, AStressThatIsMissedIsCounted) {
-  RvePool pool(rve_, EngineCase{}, 1), coarse(rve_, EngineCase{}, 1);
+  RvePool pool(rve_, {EngineCase{}}, 1), coarse(rve_, {EngineCase{}}, 1);
   (void)walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 8, .constant_xx = true}}, {1.0});
   EXPECT_EQ(end_.missed, 0);
   EXPECT_LE(end_.largest_miss, lateral_tolerance);
@@ -83,7 +83,7 @@ TEST_F(StrainPath, AStressThatIsMissedIsCounted) {
 }
 
 TEST_F(StrainPath, SegmentsFollowOneAnother) {
-  RvePool pool(rve_, EngineCase{}, 1);
+  RvePool pool(rve_, {EngineCase{}}, 1);
   const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {0, 0, 0, 1e-3}, .increments = 1}}, {1.0});
   ASSERT_EQ(points.size(), 4u);
   EXPECT_EQ(points.back().increment, 3);
@@ -92,7 +92,7 @@ TEST_F(StrainPath, SegmentsFollowOneAnother) {
 }
 
 TEST_F(StrainPath, AnImpossibleIncrementEndsIt) {
-  RvePool pool(rve_, EngineCase{}, 1);
+  RvePool pool(rve_, {EngineCase{}}, 1);
   const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {-0.5, 0, 0, -0.5}, .increments = 5}}, {1.0});
   EXPECT_FALSE(end_.usable);
   EXPECT_NE(end_.message.find("increment 3"), std::string::npos) << end_.message;
@@ -100,11 +100,11 @@ TEST_F(StrainPath, AnImpossibleIncrementEndsIt) {
 }
 
 TEST_F(StrainPath, TheStoredEndIsTheSameState) {
-  RvePool pool(rve_, EngineCase{}, 1);
+  RvePool pool(rve_, {EngineCase{}}, 1);
   (void)walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 5, .constant_xx = true}}, {1.0});
   const auto stored = restored_packing(stored_packing(pool.packed(0), "test", "0"), soil_);
   ASSERT_TRUE(stored.has_value());
-  RvePool again(*stored, EngineCase{}, 1);
+  RvePool again(*stored, {EngineCase{}}, 1);
   fem::Gradient h;
   h << 0, 5e-4, 0, -5e-4;
   std::vector<fem::Stress> stress(1), stress_again(1);
