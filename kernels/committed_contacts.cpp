@@ -16,11 +16,13 @@ void add_forces(const Packing& packing, double tangential, double moment, Commit
   const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
   const double ri = packing.radii[i], rj = packing.radii[j];
   const PairConstants k = combine(packing.material_of(i), ri, packing.material_of(j), rj);
-  const Law law{V(k.normal_stiffness), V(k.tangential_stiffness), V(k.rolling_stiffness), V(k.friction),
-                V(k.rolling_arm)};
+  const PairCaps caps = caps_of(k, ri + rj);
+  const Law law{V(k.normal_stiffness), V(k.tangential_stiffness), V(k.rolling_stiffness), V(caps.tangential),
+                V(caps.moment)};
   Law::History history{V(tangential), V(moment)};
-  const auto force = law({V(ri + rj - length), V(0.0), V(0.0)}, history);
-  contact.normal_force = force.normal[0];
+  const double overlap = ri + rj - length;
+  const auto force = law({V(overlap / (ri + rj)), V(overlap / length), V(0.0), V(0.0)}, history);
+  contact.normal_force = force.normal_to_branch[0] * length;
   contact.tangential_force = force.tangential[0];
   contact.moment = force.moment[0];
 }

@@ -26,6 +26,17 @@ struct PairConstants {
   double rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
 };
 
+/// Caps of the springs by overlap over R, as the law wants them.
+struct PairCaps {
+  double tangential;  ///< mu k_n R [N]
+  double moment;      ///< [N m]
+};
+
+[[nodiscard]] KOKKOS_INLINE_FUNCTION PairCaps caps_of(const PairConstants& k, double sum_radii) {
+  const double fn = k.normal_stiffness * sum_radii;
+  return {k.friction * fn, k.rolling_arm * fn};
+}
+
 /// Harmonic mean 2 a b / (a + b), of two springs in series; 0 if either is 0.
 KOKKOS_INLINE_FUNCTION double harmonic_mean(double a, double b) { return a + b > 0 ? 2.0 * a * b / (a + b) : 0.0; }
 
@@ -42,19 +53,21 @@ KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1,
           .rolling_arm = arm1 < arm2 ? arm1 : arm2};
 }
 
-/// Relative motion at a contact during one step.
+/// Relative motion at a contact during one step. A law that is linear in the overlap answers to it in two units, which spares the sweep
+/// two products and every contact a wait: R = r_i + r_j, |b| the distance of the centres.
 template <class V>
 struct ContactMotion {
-  V overlap;  ///< delta >= 0 [m]; 0 means no contact
-  V sliding;  ///< increment of the sliding of j past i along t [m]
-  V rolling;  ///< increment of the relative rotation of j against i [rad]
+  V overlap;            ///< delta/R >= 0 [-]; 0 means no contact
+  V overlap_to_branch;  ///< delta/|b| [-]
+  V sliding;            ///< increment of the sliding of j past i along t [m]
+  V rolling;            ///< increment of the relative rotation of j against i [rad]
 };
 
 template <class V>
 struct ContactForce {
-  V normal;      ///< f_n >= 0, repulsion [N]
-  V tangential;  ///< f_t on i along t [N]
-  V moment;      ///< m on i [N m]
+  V normal_to_branch;  ///< f_n/|b| >= 0, repulsion [N/m]
+  V tangential;        ///< f_t on i along t [N]
+  V moment;            ///< m on i [N m]
 };
 
 /// The law's springs at its state.
@@ -74,14 +87,17 @@ struct LinearContactLaw {
     V moment;      ///< [N m], untouched without rolling
   };
 
-  V normal_stiffness, tangential_stiffness, rolling_stiffness, friction, rolling_arm;  ///< as in PairConstants
+  V normal_stiffness, tangential_stiffness, rolling_stiffness;  ///< as in PairConstants
+  V tangential_cap;  ///< mu k_n R, by overlap/R [N]
+  V moment_cap;      ///< min(eta_1 r_1, eta_2 r_2) k_n R, by overlap/R [N m]
 
   /// Without contact every force and the history become zero: both caps are multiples of f_n.
   KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> operator()(const ContactMotion<V>& motion, History& history) const {
-    const V fn = normal_stiffness * motion.overlap;
-    history.tangential = clamp_to(fused(tangential_stiffness, motion.sliding, history.tangential), friction * fn);
+    const V fn = normal_stiffness * motion.overlap_to_branch;
+    history.tangential =
+        clamp_to(fused(tangential_stiffness, motion.sliding, history.tangential), tangential_cap * motion.overlap);
     if constexpr (Rolling) {
-      history.moment = clamp_to(fused(rolling_stiffness, motion.rolling, history.moment), rolling_arm * fn);
+      history.moment = clamp_to(fused(rolling_stiffness, motion.rolling, history.moment), moment_cap * motion.overlap);
       return {fn, history.tangential, history.moment};
     } else {
       return {fn, history.tangential, V(0)};
@@ -89,18 +105,18 @@ struct LinearContactLaw {
   }
 
   /// Its derivative by the motion, with the springs that have yielded left out (their force follows f_n only, which has no
-  /// potential and is neglected). @param history within the caps, as the call above leaves it
+  /// potential and is neglected). @param overlap over R [-]; @param history within the caps, as the call above leaves it
   /// @param elastic_share share of its cap below which a spring holds; above 1, all do that have a cap
   KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> stiffness(const V& overlap, const History& history,
                                                             const V& elastic_share) const {
     const V zero(0);
     const auto touches = zero < overlap;
-    const V fn = larger(normal_stiffness * overlap, zero);
-    const auto sticks = Kokkos::abs(history.tangential) < elastic_share * (friction * fn);
+    const V pressed = larger(overlap, zero);
+    const auto sticks = Kokkos::abs(history.tangential) < elastic_share * (tangential_cap * pressed);
     ContactStiffness<V> k{Kokkos::Experimental::condition(touches, normal_stiffness, zero),
                           Kokkos::Experimental::condition(sticks, tangential_stiffness, zero), zero};
     if constexpr (Rolling) {
-      const auto holds = Kokkos::abs(history.moment) < elastic_share * (rolling_arm * fn);
+      const auto holds = Kokkos::abs(history.moment) < elastic_share * (moment_cap * pressed);
       k.rolling = Kokkos::Experimental::condition(holds, rolling_stiffness, zero);
     }
     return k;

@@ -126,7 +126,7 @@ void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<
       const V to_unit = distance.inverse_length;
       const ContactStiffness<V> k =
           law_of<Law, V>(shape).stiffness(distance.overlap, {pair.tangential, pair.moment}, share);
-      const V y = V(shape.sum_radii) * to_unit;
+      const V y = V(1) + distance.excess;
       system.springs.push_back(
           {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling});
       system.shapes.push_back({shape.other, shape.radius_other});

@@ -66,7 +66,10 @@ void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<c
 template <class V>
 PairShape<real_of<V>> shape_of(const Packing& packing, int i, int j) {
   const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
-  return pair_shape<real_of<V>>(j, packing.material_of(si), packing.radii[si], packing.material_of(sj), packing.radii[sj]);
+  auto shape =
+      pair_shape<real_of<V>>(j, packing.material_of(si), packing.radii[si], packing.material_of(sj), packing.radii[sj]);
+  shape.other_bytes = static_cast<std::int32_t>(sj * sizeof(GrainLanes<V>));
+  return shape;
 }
 
 /// Writes the union of the lanes' lists into the group.
@@ -90,7 +93,7 @@ class UnionBuilder {
     group.row[static_cast<std::size_t>(n)] = count;
     const auto used = static_cast<std::size_t>(count);
     group.pair_shapes.resize(std::max(group.pair_shapes.size(), used + pairs_ahead));
-    for (std::size_t k = 0; k < pairs_ahead; ++k) group.pair_shapes[used + k].other = 0;
+    for (std::size_t k = 0; k < pairs_ahead; ++k) group.pair_shapes[used + k].other_bytes = 0;
   }
 
  private:

@@ -25,10 +25,11 @@ template <class Law, class Run>
       if (!(at.gap[l] < 0)) continue;
       const PairDistance<V> distance = distance_of(at.gap, shape);
       typename Law::History history{pair.tangential, pair.moment};
-      const auto force = law_of<Law, V>(shape)({distance.overlap, zero, zero}, history);
+      const auto force = law_of<Law, V>(shape)({distance.overlap, distance.excess, zero, zero}, history);
       const V to_unit = distance.inverse_length;
       out.push_back({static_cast<int>(i), shape.other, static_cast<double>((at.branch_x * to_unit)[l]),
-                     static_cast<double>((at.branch_y * to_unit)[l]), static_cast<double>(force.normal[l])});
+                     static_cast<double>((at.branch_y * to_unit)[l]),
+                     static_cast<double>((force.normal_to_branch / to_unit)[l])});
     }
   }
   return out;

@@ -28,6 +28,7 @@ struct GrainShape {
   real radius;              ///< [m]
   real mobility;            ///< dt^2/m [m/N]
   real rotational_mobility; ///< dt^2/J [rad/(N m)]
+  real half_mobility, half_rotational_mobility;  ///< half of each
 };
 
 /// A candidate contact, lane by lane.
@@ -42,12 +43,14 @@ struct PairLanes {
 template <class real>
 struct PairShape {
   std::int32_t other;
+  std::int32_t other_bytes;  ///< where `other` stands among a group's grains
   std::int32_t active;  ///< 1 while any lane may hold history; a pair is skipped only when no lane touches and this is 0
-  real sum_radii;       ///< R [m]
-  real inverse_sum;     ///< 1/R
-  real minus_inverse_sum_squared;  ///< -1/R^2
-  real radius_other;
-  real normal_stiffness, tangential_stiffness, rolling_stiffness, friction, rolling_arm;
+  real inverse_sum;     ///< 1/R [1/m]
+  real minus_inverse_sum_squared;  ///< -1/R^2 [1/m^2]
+  real minus_half_sum;  ///< -R/2 [m]
+  real radius_other;    ///< [m]
+  real normal_stiffness, tangential_stiffness, rolling_stiffness;  ///< as in PairConstants
+  real tangential_cap, moment_cap;                                 ///< as in PairCaps
 };
 
 /// Rigid and affine motion of the cells, rounded from double once a step.

@@ -55,7 +55,7 @@ KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<V>& pair, const PairSh
   CellMotion<V> still = cell;
   still.d_xy = still.d_difference = zero;
   RestingPair<V> out;
-  out.action = act<Law>(pair, shape, at, still, zero, zero, zero, zero, radius_i);
+  out.action = act<Law>(pair, shape, at, still, zero, zero, rim_of(radius_i, zero), zero);
   out.weight = Kokkos::Experimental::condition(at.gap < zero, one, zero);
   out.overlap = overlap_measure(at, shape);
   const V to_unit = distance_of(at.gap, shape).inverse_length;

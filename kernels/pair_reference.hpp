@@ -22,18 +22,20 @@ template <class real>
 [[nodiscard]] KOKKOS_INLINE_FUNCTION PairShape<real> pair_shape(int j, const GrainMaterial& of_i, double ri,
                                                                 const GrainMaterial& of_j, double rj) {
   const PairConstants c = combine(of_i, ri, of_j, rj);
+  const PairCaps caps = caps_of(c, ri + rj);
   const auto r = [](double x) { return static_cast<real>(x); };
   return {.other = j,
+          .other_bytes = 0,
           .active = 1,
-          .sum_radii = r(ri + rj),
           .inverse_sum = r(1.0 / (ri + rj)),
           .minus_inverse_sum_squared = r(-1.0 / ((ri + rj) * (ri + rj))),
+          .minus_half_sum = r(-0.5 * (ri + rj)),
           .radius_other = r(rj),
           .normal_stiffness = r(c.normal_stiffness),
           .tangential_stiffness = r(c.tangential_stiffness),
           .rolling_stiffness = r(c.rolling_stiffness),
-          .friction = r(c.friction),
-          .rolling_arm = r(c.rolling_arm)};
+          .tangential_cap = r(caps.tangential),
+          .moment_cap = r(caps.moment)};
 }
 
 }  // namespace voussoir::kernels

@@ -16,37 +16,45 @@ enum class Sweep {
   measure,  ///< also sums stress and unbalanced force
 };
 
-/// Distances of a pair.
+/// Distances of a pair, with y = R/|b|; 0, 0 and 1/R in lanes that do not touch.
 template <class V>
 struct PairDistance {
-  V overlap;         ///< delta = R q, q = 1 - sqrt(1 - e) [m]; 0 in lanes that do not touch
-  V inverse_length;  ///< y/R = 1/|b|, y = R/|b| = (1 - e)^(-1/2) [1/m]
+  V overlap;         ///< q = delta/R = 1 - 1/y [-]
+  V excess;          ///< z = y - 1 = delta/|b| [-]
+  V inverse_length;  ///< y/R = 1/|b| [1/m]
 };
 
-/// Polynomials in e = -g/R^2, y sharpened by one Newton step on y^2 (1 - e) = 1. Fitted to relative errors that grow with e, the
-/// leading terms of q being exact, over 0 .. 0.51. Relative errors of 1/|b| and delta at 1, 10 and 30 % overlap, where an RVE is
-/// given up: in float 1e-9 and 1e-9, 3e-7 and 8e-7, 4e-6 and 1.5e-5; in double 3e-13 and 1e-12, 1e-8 and 5e-8, 8e-7 and 1e-6.
-/// Written for a short chain, since every contact waits for its own.
+/// z/e as a polynomial in e, z = (1 - e)^(-1/2) - 1: the leading terms exact, the others fitted over 0 .. 0.51 to relative errors that
+/// grow with e. Up to 1, 10, 20 and 30 % overlap, where an RVE is given up: in float 3e-10, 9e-7, 5e-6 and 1.2e-5, in double 5e-15,
+/// 5e-9, 2e-7 and 1.4e-6; those of q, y and 1/|b| are smaller.
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION V excess_over(const V& e, const V& e2) {
+  using real = real_of<V>;
+  const auto c = [](double x) { return V(static_cast<real>(x)); };
+  const V e4 = e2 * e2;
+  const V p0 = fused(c(0.375), e, c(0.5));
+  if constexpr (sizeof(real) == sizeof(float)) {
+    const V p2 = fused(c(0.273604941), e, c(0.312499764));
+    const V p4 = fused(c(0.338042773), e, c(0.236938801));
+    const V p6 = fused(c(0.97745921), e, c(-0.282095656));
+    return fused(fused(p6, e2, p4), e4, fused(p2, e2, p0));
+  } else {
+    const V p2 = fused(c(0.2734375), e, c(0.3125));
+    const V p4 = fused(c(0.2255849802289785), e, c(0.246093750790672));
+    const V p6 = fused(c(0.1864639065391075), e, c(0.209713862168221));
+    const V p8 = fused(c(0.8810090424314304), e2, fused(c(-0.2865442362287911), e, c(0.2963936109142559)));
+    return fused(fused(p8, e2, p6), e4 * e2, fused(fused(p4, e2, p2), e2, p0));
+  }
+}
+
+/// e = -g/R^2, then z, then q = z/y = e - (1 - e) z: the subtraction halves e and loses nothing.
 template <class V, class real>
 KOKKOS_FORCEINLINE_FUNCTION PairDistance<V> distance_of(const V& gap, const PairShape<real>& shape) {
-  const auto c = [](double x) { return V(static_cast<real>(x)); };
-  const V half = c(0.5);
+  const auto touches = gap < V(0);
   const V e = gap * V(shape.minus_inverse_sum_squared);
-  const V e2 = e * e;
-  V y, p;
-  if constexpr (sizeof(real) == sizeof(float)) {
-    y = fused(fused(c(0.740802381), e, c(0.274579086)), e2, fused(e, c(0.503145986), c(1)));
-    p = fused(fused(c(0.056653811), e, c(0.012835278)), e2, fused(c(0.040743878), e, c(0.062470505)));
-    p = fused(p, e2, fused(c(0.125), e, half));
-  } else {
-    y = fused(fused(c(0.664884646), e2, fused(c(0.220350043), e, c(0.377895157))), e2, fused(e, half, c(1)));
-    const V high = fused(fused(c(0.050388237365318), e, c(-0.005667201708849)), e2,
-                         fused(c(0.025112181152024), e, c(0.027009218300492)));
-    p = fused(high, e2 * e2, fused(fused(c(0.039067561634641), e, c(0.0625)), e2, fused(c(0.125), e, half)));
-  }
-  const V overlap = V(shape.sum_radii) * e * p;
-  const V sharper = fused(-fused(e, -half, half), y * y, c(1.5));
-  return {Kokkos::Experimental::condition(gap < V(0), overlap, V(0)), y * V(shape.inverse_sum) * sharper};
+  const V z = Kokkos::Experimental::condition(touches, e * excess_over(e, e * e), V(0));
+  const V q = Kokkos::Experimental::condition(touches, fused(e - V(1), z, e), V(0));
+  return {q, z, fused(z, V(shape.inverse_sum), V(shape.inverse_sum))};
 }
 
 /// Force on i, and torques on both, of one pair.
@@ -79,36 +87,50 @@ KOKKOS_FORCEINLINE_FUNCTION V overlap_measure(const PairGeometry<V>& at, const P
 
 template <class Law, class V, class real>
 KOKKOS_FORCEINLINE_FUNCTION Law law_of(const PairShape<real>& shape) {
-  return {V(shape.normal_stiffness), V(shape.tangential_stiffness), V(shape.rolling_stiffness), V(shape.friction),
-          V(shape.rolling_arm)};
+  return {V(shape.normal_stiffness), V(shape.tangential_stiffness), V(shape.rolling_stiffness), V(shape.tangential_cap),
+          V(shape.moment_cap)};
+}
+
+/// What a grain brings to its pairs that turns on its radius.
+template <class V>
+struct GrainRim {
+  V radius;  ///< [m]
+  V spin;    ///< [rad/step]
+  V rolled;  ///< radius * spin, the way of its rim [m/step]
+};
+
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION GrainRim<V> rim_of(const V& radius, const V& spin) {
+  return {radius, spin, radius * spin};
 }
 
 /// Law and forces of a pair that touches in at least one lane. (dw_x, dw_y) is w_j - w_i. The branch is not made a unit vector: what
 /// is needed of n and t is a product with it over |b|. D b is taken less D_xx b, which has no part along t.
 template <class Law, class V, class real>
 KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShape<real>& shape, const PairGeometry<V>& at,
-                                              const CellMotion<V>& cell, const V& dw_x, const V& dw_y, const V& spin_i,
-                                              const V& spin_j, const V& radius_i) {
+                                              const CellMotion<V>& cell, const V& dw_x, const V& dw_y,
+                                              const GrainRim<V>& i, const V& spin_j) {
   const PairDistance<V> distance = distance_of(at.gap, shape);
   const V vx = fused(cell.d_xy, at.branch_y, dw_x);
   const V vy = fused(cell.d_xy, at.branch_x, fused(cell.d_difference, at.branch_y, dw_y));
-  const V across = V(shape.sum_radii) * fused(vy, at.branch_x, -(vx * at.branch_y));
+  const V across = fused(vy, at.branch_x, -(vx * at.branch_y));
+  const V to_sliding = fused(distance.excess, distance.inverse_length, distance.inverse_length);  // y/|b|
   const V radius_j = V(shape.radius_other);
-  const V sliding =
-      fused(distance.inverse_length * distance.inverse_length, across, -fused(radius_j, spin_j, radius_i * spin_i));
+  const V sliding = fused(to_sliding, across, -fused(radius_j, spin_j, i.rolled));
 
   const Law law = law_of<Law, V>(shape);
   typename Law::History history{pair.tangential, pair.moment};
-  const ContactForce<V> f = law({distance.overlap, sliding, spin_j - spin_i}, history);
+  const ContactForce<V> f = law({distance.overlap, distance.excess, sliding, spin_j - i.spin}, history);
   pair.tangential = history.tangential;
   if constexpr (Law::has_rolling) pair.moment = history.moment;
 
-  const V minus_half(real(-0.5));
-  const V arm_i = fused(minus_half, distance.overlap, radius_i);
-  const V arm_j = fused(minus_half, distance.overlap, radius_j);
-  const V nx = at.branch_x * distance.inverse_length;
-  const V ny = at.branch_y * distance.inverse_length;
-  PairAction<V> action{-fused(f.tangential, ny, f.normal * nx), fused(f.tangential, nx, -(f.normal * ny)), V(0), V(0)};
+  const V minus_half_sum(shape.minus_half_sum);
+  const V arm_i = fused(minus_half_sum, distance.overlap, i.radius);
+  const V arm_j = fused(minus_half_sum, distance.overlap, radius_j);
+  const V along = f.normal_to_branch;
+  const V aside = f.tangential * distance.inverse_length;
+  PairAction<V> action{-fused(aside, at.branch_y, along * at.branch_x),
+                       fused(aside, at.branch_x, -(along * at.branch_y)), V(0), V(0)};
   if constexpr (Law::has_rolling) {
     action.torque_i = fused(arm_i, f.tangential, f.moment);
     action.torque_j = fused(arm_j, f.tangential, -f.moment);
@@ -130,8 +152,9 @@ KOKKOS_FORCEINLINE_FUNCTION void add_stress(SweepSums<V>& sums, const PairAction
 /// A velocity component after the kick of one step. Local damping (Cundall): a force that works on the mid-step velocity is cut by
 /// lambda, the other raised.
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION V kicked(const V& velocity, const V& force, const V& mobility, const V& damping) {
-  const V mid = fused(V(real_of<V>(0.5)) * mobility, force, velocity);
+KOKKOS_FORCEINLINE_FUNCTION V kicked(const V& velocity, const V& force, const V& mobility, const V& half_mobility,
+                                     const V& damping) {
+  const V mid = fused(half_mobility, force, velocity);
   return fused(mobility, force - Kokkos::copysign(damping * force, mid), velocity);
 }
 
@@ -139,13 +162,15 @@ KOKKOS_FORCEINLINE_FUNCTION V kicked(const V& velocity, const V& force, const V&
 template <class V, class real>
 KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShape<real>& shape, const CellMotion<V>& cell,
                                            const V& damping, const V& fx, const V& fy, const V& torque) {
-  const V a(shape.mobility);
-  const V kept = choose_if_zero(fx, fy, torque, V(real(0.9)) * cell.alive, cell.alive);  // less of a rattler's velocity
+  const V zero(0);
+  const V a(shape.mobility), half_a(shape.half_mobility);
   const V wx = grain.w_x;
   const V wy = grain.w_y;
-  const V new_x = kept * fused(-cell.rotation, wy, kicked(wx, fx, a, damping));
-  const V new_y = kept * fused(cell.rotation, wx, kicked(wy, fy, a, damping));
-  const V spin = kept * kicked(grain.spin, torque, V(shape.rotational_mobility), damping);
+  const V kept = choose_if_zero(fx, fy, torque, V(real(0.9)) * cell.alive, cell.alive);  // less of a rattler's velocity
+  const V new_x = kept * fused(-cell.rotation, wy, kicked(wx, fx, a, half_a, damping));
+  const V new_y = kept * fused(cell.rotation, wx, kicked(wy, fy, a, half_a, damping));
+  const V spin =
+      kept * kicked(grain.spin, torque, V(shape.rotational_mobility), V(shape.half_rotational_mobility), damping);
   const V ux = grain.u_x;
   const V uy = grain.u_y;
   grain.u_x = ux + fused(cell.e_xx, ux, fused(cell.e_xy, uy, new_x));
@@ -154,7 +179,6 @@ KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShap
   grain.w_y = new_y;
   grain.spin = spin;
   grain.rotation = grain.rotation + spin;
-  const V zero(0);
   grain.force_x = zero;
   grain.force_y = zero;
   grain.torque = zero;
@@ -165,7 +189,7 @@ template <class V>
 KOKKOS_FORCEINLINE_FUNCTION void fetch_ahead([[maybe_unused]] const GrainLanes<V>& grain) {
 #if defined(__GNUC__) && !defined(__CUDA_ARCH__)
   const char* const bytes = reinterpret_cast<const char*>(&grain);
-  for (std::size_t at = 0; at < offsetof(GrainLanes<V>, rotation); at += 64) __builtin_prefetch(bytes + at);
+  for (std::size_t at = 0; at < offsetof(GrainLanes<V>, force_x); at += 64) __builtin_prefetch(bytes + at);
 #endif
 }
 
@@ -178,24 +202,27 @@ void sweep_pairs(GroupState<V>& group, SweepSums<V>& sums) {
   PairShape<real>* const pair_shapes = group.pair_shapes.data();
   const GrainShape<real>* const shapes = group.shapes.data();
   const int* const row = group.row.data();
+  const auto grain_at = [grains](std::int32_t bytes) -> GrainLanes<V>& {
+    return *reinterpret_cast<GrainLanes<V>*>(reinterpret_cast<char*>(grains) + bytes);
+  };
   const CellMotion<V> cell = group.motion;
   const V damping(static_cast<real>(group.local_damping));
 
   for (int i = 0; i < group.n_grains; ++i) {
     GrainLanes<V>& gi = grains[i];
-    const V ux = gi.u_x, uy = gi.u_y, wx = gi.w_x, wy = gi.w_y, spin = gi.spin;
-    const V radius(shapes[i].radius);
+    const V ux = gi.u_x, uy = gi.u_y, wx = gi.w_x, wy = gi.w_y;
+    const GrainRim<V> rim = rim_of(V(shapes[i].radius), gi.spin);
     V fx = gi.force_x, fy = gi.force_y, torque = gi.torque;
-    for (int p = row[i]; p < row[i + 1]; ++p) {
-      PairShape<real>& shape = pair_shapes[p];
-      fetch_ahead(grains[pair_shapes[p + pairs_ahead].other]);
-      GrainLanes<V>& gj = grains[shape.other];
-      const PairGeometry<V> at = geometry_of(pairs[p], cell, gj.u_x - ux, gj.u_y - uy);
+    PairLanes<V>* pair = pairs + row[i];
+    const PairShape<real>* const last = pair_shapes + row[i + 1];
+    for (PairShape<real>* shape = pair_shapes + row[i]; shape != last; ++shape, ++pair) {
+      fetch_ahead(grain_at(shape[pairs_ahead].other_bytes));
+      GrainLanes<V>& gj = grain_at(shape->other_bytes);
+      const PairGeometry<V> at = geometry_of(*pair, cell, gj.u_x - ux, gj.u_y - uy);
       const bool touches = Kokkos::Experimental::any_of(at.gap < V(0));
-      if (!touches && shape.active == 0) continue;
-      shape.active = touches ? 1 : 0;
-      const PairAction<V> action =
-          act<Law>(pairs[p], shape, at, cell, gj.w_x - wx, gj.w_y - wy, spin, gj.spin, radius);
+      if (!touches && shape->active == 0) continue;
+      shape->active = touches ? 1 : 0;
+      const PairAction<V> action = act<Law>(*pair, *shape, at, cell, gj.w_x - wx, gj.w_y - wy, rim, gj.spin);
       fx = fx + action.force_x;
       fy = fy + action.force_y;
       torque = torque + action.torque_i;
@@ -204,7 +231,7 @@ void sweep_pairs(GroupState<V>& group, SweepSums<V>& sums) {
       gj.torque = gj.torque + action.torque_j;
       if constexpr (mode == Sweep::measure) {
         add_stress(sums, action, at);
-        sums.largest_overlap = larger(sums.largest_overlap, overlap_measure(at, shape));
+        sums.largest_overlap = larger(sums.largest_overlap, overlap_measure(at, *shape));
       }
     }
     if constexpr (mode == Sweep::measure) sums.force_squared = fused(fx, fx, fused(fy, fy, sums.force_squared));

@@ -38,8 +38,9 @@ struct RunScales {
 template <class real>
 [[nodiscard]] GrainShape<real> grain_shape(const Packing& packing, std::size_t grain, double largest_radius) {
   const double r = packing.radii[grain];
-  return {static_cast<real>(r), static_cast<real>(mobility_of(packing.material_of(grain), r)),
-          static_cast<real>(rotational_mobility_of(packing.material_of(grain), r, largest_radius))};
+  const auto a = static_cast<real>(mobility_of(packing.material_of(grain), r));
+  const auto a_r = static_cast<real>(rotational_mobility_of(packing.material_of(grain), r, largest_radius));
+  return {static_cast<real>(r), a, a_r, real(0.5) * a, real(0.5) * a_r};
 }
 
 template <class DriveType>

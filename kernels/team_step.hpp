@@ -23,8 +23,8 @@ KOKKOS_FUNCTION void press_pairs(const Run& run) {
     const bool touches = Kokkos::Experimental::any_of(now.gap < V(0));
     if (!touches && shape.active == 0) return;  // what the pair did last, nothing, still stands
     shape.active = touches ? 1 : 0;
-    at.actions(p) = act<typename Run::Law>(pair, shape, now, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y, gi.spin, gj.spin,
-                                           V(run.shape(i).radius));
+    at.actions(p) = act<typename Run::Law>(pair, shape, now, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
+                                           rim_of(V(run.shape(i).radius), gi.spin), gj.spin);
     if constexpr (mode == Sweep::measure) at.branches(p) = {now.branch_x, now.branch_y, overlap_measure(now, shape)};
   });
 }

@@ -87,8 +87,8 @@ struct ShearRow {
       const GrainLanes<V>& gj = state.grains(j);
       PairLanes<V>& pair = state.pairs(i, j);
       const PairGeometry<V> at = geometry_of(pair, cell, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
-      const PairAction<V> action = act<Law>(pair, pair_shape, at, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y, gi.spin,
-                                            gj.spin, V(grain_shape.radius));
+      const PairAction<V> action = act<Law>(pair, pair_shape, at, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
+                                            rim_of(V(grain_shape.radius), gi.spin), gj.spin);
       gi.force_x = gi.force_x + action.force_x;
       gi.force_y = gi.force_y + action.force_y;
       gi.torque = gi.torque + action.torque_i;
@@ -114,15 +114,16 @@ auto shear_row() {
   const GrainMaterial sand;
   const PairConstants k = combine(sand, radius, sand, radius);
   PairShape<real> pair{};
-  pair.sum_radii = real(2.0 * radius);
   pair.inverse_sum = real(0.5 / radius);
   pair.minus_inverse_sum_squared = real(-0.25 / (radius * radius));
+  pair.minus_half_sum = real(-radius);
   pair.radius_other = real(radius);
   pair.normal_stiffness = real(k.normal_stiffness);
   pair.tangential_stiffness = real(k.tangential_stiffness);
   pair.rolling_stiffness = real(k.rolling_stiffness);
-  pair.friction = real(k.friction);
-  pair.rolling_arm = real(k.rolling_arm);
+  const PairCaps caps = caps_of(k, 2.0 * radius);
+  pair.tangential_cap = real(caps.tangential);
+  pair.moment_cap = real(caps.moment);
   const double a = 0.1 / k.normal_stiffness;  // a tenth of the squared stable step
   const GrainShape<real> grain{real(radius), real(a), real(2.0 * a / (radius * radius))};
 

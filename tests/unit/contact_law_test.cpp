@@ -23,8 +23,11 @@ constexpr double yield = cap / kt;           // 2 um: slip begins
 constexpr double moment_cap = arm * fn;      // 6e-3 N m
 constexpr double roll_yield = moment_cap / kr;
 
-Law law() { return {V(kn), V(kt), V(kr), V(mu), V(arm)}; }
-ContactMotion<V> motion(double overlap, double sliding, double rolling) { return {V(overlap), V(sliding), V(rolling)}; }
+// R = |b| = 1 m: an overlap is the same number in every unit.
+Law law() { return {V(kn), V(kt), V(kr), V(mu * kn), V(arm * kn)}; }
+ContactMotion<V> motion(double overlap, double sliding, double rolling) {
+  return {V(overlap), V(overlap), V(sliding), V(rolling)};
+}
 
 /// Sums increments of 1/1000 of the path, as the engine would.
 ContactForce<V> slide_by(Law::History& history, double total)
@@ -46,9 +49,9 @@ constexpr double rounding = 1e-11;  // 1000 sums in double
 TEST(ContactLaw, NormalForceIsLinear)
 {
   Law::History history{V(0), V(0)};
-  EXPECT_EQ(law()(motion(delta, 0, 0), history).normal[0], fn);
-  EXPECT_EQ(law()(motion(3 * delta, 0, 0), history).normal[0], kn * (3 * delta));
-  EXPECT_EQ(law()(motion(0, 0, 0), history).normal[0], 0.0);
+  EXPECT_EQ(law()(motion(delta, 0, 0), history).normal_to_branch[0], fn);
+  EXPECT_EQ(law()(motion(3 * delta, 0, 0), history).normal_to_branch[0], kn * (3 * delta));
+  EXPECT_EQ(law()(motion(0, 0, 0), history).normal_to_branch[0], 0.0);
 }
 
 TEST(ContactLaw, LoadSlideUnloadReverse)
@@ -99,7 +102,7 @@ TEST(ContactLaw, SeparationForgets)
   slide_by(history, 0.9 * yield);
   roll_by(history, 0.9 * roll_yield);
   const ContactForce<V> open = law()(motion(0, yield, roll_yield), history);
-  EXPECT_EQ(open.normal[0], 0.0);
+  EXPECT_EQ(open.normal_to_branch[0], 0.0);
   EXPECT_EQ(open.tangential[0], 0.0);
   EXPECT_EQ(open.moment[0], 0.0);
   EXPECT_EQ(history.tangential[0], 0.0);
@@ -120,7 +123,7 @@ TEST(ContactLaw, RollingSpringWithPlasticCap)
 
 TEST(ContactLaw, WithoutRollingNoMomentAndTheSameShear)
 {
-  const LinearContactLaw<V, false> plain{V(kn), V(kt), V(kr), V(mu), V(arm)};
+  const LinearContactLaw<V, false> plain{V(kn), V(kt), V(kr), V(mu * kn), V(arm * kn)};
   LinearContactLaw<V, false>::History plain_history{V(1), V(7e-3)};
   Law::History history{V(1), V(0)};
   const ContactForce<V> f = plain(motion(delta, 0.3 * yield, 0.5 * roll_yield), plain_history);
@@ -181,19 +184,20 @@ template <class Lane>
 std::vector<std::array<real_of<Lane>, 3>> jagged_path(int lane_offset)
 {
   using real = real_of<Lane>;
-  const LinearContactLaw<Lane, true> rule{Lane(real(kn)), Lane(real(kt)), Lane(real(kr)), Lane(real(mu)), Lane(real(arm))};
+  const LinearContactLaw<Lane, true> rule{Lane(real(kn)), Lane(real(kt)), Lane(real(kr)), Lane(real(mu * kn)),
+                                          Lane(real(arm * kn))};
   typename LinearContactLaw<Lane, true>::History history{Lane(real(0)), Lane(real(0))};
   std::vector<std::array<real, 3>> out;
   for (int k = 0; k < 400; ++k) {
-    ContactMotion<Lane> m{Lane(real(0)), Lane(real(0)), Lane(real(0))};
+    ContactMotion<Lane> m{Lane(real(0)), Lane(real(0)), Lane(real(0)), Lane(real(0))};
     for (std::size_t l = 0; l < Lane::size(); ++l) {
       const double scale = 1 + (lane_offset + static_cast<double>(l)) / 7;
-      m.overlap[l] = static_cast<real>(delta * std::max(0.0, 0.7 + std::sin(0.05 * k * scale)));
+      m.overlap[l] = m.overlap_to_branch[l] = static_cast<real>(delta * std::max(0.0, 0.7 + std::sin(0.05 * k * scale)));
       m.sliding[l] = static_cast<real>(0.4 * yield * std::cos(0.3 * k) * scale);
       m.rolling[l] = static_cast<real>(0.4 * roll_yield * std::sin(0.21 * k) * scale);
     }
     const ContactForce<Lane> f = rule(m, history);
-    for (std::size_t l = 0; l < Lane::size(); ++l) out.push_back({f.normal[l], f.tangential[l], f.moment[l]});
+    for (std::size_t l = 0; l < Lane::size(); ++l) out.push_back({f.normal_to_branch[l], f.tangential[l], f.moment[l]});
   }
   return out;
 }
@@ -232,9 +236,9 @@ TEST(ContactLawLanes, FloatFollowsDouble)
 TEST(ContactLawLanes, ANotANumberStaysInItsLane)
 {
   using Lane = WideLane<double>;
-  const LinearContactLaw<Lane, true> rule{Lane(kn), Lane(kt), Lane(kr), Lane(mu), Lane(arm)};
+  const LinearContactLaw<Lane, true> rule{Lane(kn), Lane(kt), Lane(kr), Lane(mu * kn), Lane(arm * kn)};
   typename LinearContactLaw<Lane, true>::History history{Lane(0.0), Lane(0.0)};
-  ContactMotion<Lane> m{Lane(delta), Lane(0.5 * yield), Lane(0.5 * roll_yield)};
+  ContactMotion<Lane> m{Lane(delta), Lane(delta), Lane(0.5 * yield), Lane(0.5 * roll_yield)};
   m.sliding[0] = std::numeric_limits<double>::quiet_NaN();
   const ContactForce<Lane> f = rule(m, history);
   for (std::size_t l = 1; l < Lane::size(); ++l) {
