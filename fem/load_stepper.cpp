@@ -73,6 +73,7 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
     const bool may_relax = options.relaxation.max_substeps > 0 && to - from <= options.relax_below * nominal * (1 + 1e-9);
     if (may_relax) {
       load.leave_best = true;
+      load.settle = true;
       load.max_iterations = options.relaxation.max_attempts;
       load.near_residual = options.relaxation.near_residual;
     }

@@ -25,6 +25,7 @@ struct BatchReport {
   std::size_t work = 0;     ///< particle-steps spent by this call (0 for a continuum law)
   std::size_t open = 0;     ///< points without any contact (stress 0)
   std::size_t step_limit = 0;  ///< points whose hold ended at its cap
+  double unsettled_stress = 0;  ///< rms over all points of what those may be off by, each by its own pressure [Pa]
   std::size_t deferred = 0;    ///< points that answered by their last tangent
   double deferral_error = 0;   ///< largest error of earlier such answers that this call has shown, over the points' pressures [-]
   std::size_t slowest = 0;     ///< the point that took most steps

@@ -229,6 +229,7 @@ void NewtonSolver::Workspace::form_residual() {
       options.noise_factor * noise_force(mesh, increment.points, constrained, report.material.stress_noise);
   report.noise_floor = std::min(noise, options.noise_limit * allowed);
   report.residual_bound = allowed + report.noise_floor;
+  report.unsettled_force = noise_force(mesh, increment.points, constrained, report.material.unsettled_stress);
   report.largest_nodal_ratio = 0;
   for (int node = 0; node < mesh.n_nodes(); ++node) {
     const double scale = internal.magnitude[node] + load.external_force.segment<2>(2 * node).norm();
@@ -283,6 +284,7 @@ Failure NewtonSolver::Workspace::find_step() {
 
 bool NewtonSolver::Workspace::converged() const {
   const double correction = report.correction_history.back();
+  if (load.settle && report.unsettled_force > solver.options_.tolerance * report.reference()) return false;
   return report.residual <= report.residual_bound &&
          (correction <= report.correction_bound || correction <= solver.options_.length_tolerance);
 }

@@ -55,6 +55,7 @@ struct NewtonReport {
   double residual = 0;                     ///< |R_free| at the end [N/m]
   double residual_bound = 0;               ///< what it is compared with [N/m], the noise floor included
   double noise_floor = 0;                  ///< its part of residual_bound [N/m]
+  double unsettled_force = 0;              ///< on |R|, of BatchReport::unsettled_stress [N/m]
   double correction_bound = 0;             ///< what the last correction is compared with [m], its noise floor included
   double external_norm = 0;                ///< |f_ext| [N/m]
   double reaction_norm = 0;                ///< |reactions| [N/m]
@@ -82,6 +83,7 @@ struct IncrementLoad {
   int max_iterations = 0;          ///< 0: NewtonOptions::max_iterations
   bool keep_matrix = false;        ///< K stays that of the last call: no tangents are asked for
   double near_residual = 0;        ///< over the reference of the tolerance: ends the iterates as `near` [-]; 0: never
+  bool settle = false;             ///< points at their step limit must not matter: unsettled_force within the tolerance, or not converged
   bool leave_best = false;         ///< max_iterations, near: the material's last evaluation is at the best iterate
 };
 

@@ -56,6 +56,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
   const std::vector<std::byte> material_before = solver.material().state();
   NewtonReport report = attempt;
   double factor = state.relaxation_factor;
+  int settling = 0;
   solver.commit(state, increment);
   for (int substep = 0; substep < options.max_substeps; ++substep) {
     IncrementLoad load{path.external_force(to), path.prescribed_increment(to, to), 0, path.reference_force};
@@ -63,6 +64,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
     load.moved = increment.displacement.norm();
     load.max_iterations = 1;
     load.keep_matrix = true;
+    load.settle = settling < options.max_settling;
     Increment part;
     NewtonReport answer = solver.solve_increment(state, load, part);
     const bool evaluated = answer.status == NewtonStatus::converged || answer.status == NewtonStatus::max_iterations;
@@ -73,6 +75,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
       factor = next_factor(factor, driving, left, options);
     }
     const NewtonStatus status = answer.status;
+    if (answer.residual <= answer.residual_bound) ++settling;
     tally(report, std::move(answer));
     if (!evaluated) break;
     solver.commit(state, part);

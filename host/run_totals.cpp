@@ -50,6 +50,7 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
     checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
     checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.unsettled);
+    checkpoint.put_doubles(fmt::format("totals_unsettled_share_{}", k), t.unsettled_share);
     if (!t.deferral_error.empty()) checkpoint.put_doubles(fmt::format("totals_deferral_{}", k), t.deferral_error);
   }
   checkpoint.put_text("totals", names);
@@ -64,8 +65,8 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
     StageTotals t;
     t.stage = names.substr(begin, end - begin);
     t.evaluations = checkpoint.get_doubles(fmt::format("totals_evaluations_{}", totals.size()));
-    const std::string unsettled = fmt::format("totals_unsettled_{}", totals.size());
-    if (checkpoint.has(unsettled)) t.unsettled = checkpoint.get_doubles(unsettled);  // older ones have none
+    t.unsettled = checkpoint.get_doubles(fmt::format("totals_unsettled_{}", totals.size()));
+    t.unsettled_share = checkpoint.get_doubles(fmt::format("totals_unsettled_share_{}", totals.size()));
     const std::string deferral = fmt::format("totals_deferral_{}", totals.size());
     if (checkpoint.has(deferral)) t.deferral_error = checkpoint.get_doubles(deferral);
     t.cuts = static_cast<int>(numbers.at(0));
@@ -81,10 +82,11 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
 std::string unsettled_line(const StageTotals& stage, std::size_t points) {
   const auto increments = std::count_if(stage.unsettled.begin(), stage.unsettled.end(), [](double n) { return n > 0; });
   if (increments == 0) return {};
-  return fmt::format("{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest, and "
-                     "neither residual nor noise says how far from it their stress is",
+  return fmt::format("{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest. Were "
+                     "their stress off by as much as their pressure, the residual would be off by {:.2g} of its tolerance at the most",
                      stage.stage, increments, stage.unsettled.size(),
-                     *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points);
+                     *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points,
+                     *std::max_element(stage.unsettled_share.begin(), stage.unsettled_share.end()));
 }
 
 std::string deferral_line(const StageTotals& stage, double bound) {

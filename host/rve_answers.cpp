@@ -36,6 +36,7 @@ void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::St
 fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor) {
   fem::BatchReport out;
   double noise = 0;
+  double unsettled = 0;
   std::size_t failures = 0;
   for (std::size_t k = 0; k < reports.size(); ++k) {
     const kernels::RveReport& r = reports[k];
@@ -48,13 +49,17 @@ fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double p
     }
     if (r.steps == 0) ++out.deferred;
     if (r.status == kernels::RveStatus::open) ++out.open;
-    if (r.status == kernels::RveStatus::step_limit) ++out.step_limit;
+    if (r.status == kernels::RveStatus::step_limit) {
+      ++out.step_limit;
+      unsettled += r.pressure() * r.pressure();
+    }
     const double s = noise_share * r.unbalanced * std::max(r.pressure(), pressure_floor);
     noise += s * s;
   }
   if (failures > 1) out.message += fmt::format(" and {} more", failures - 1);
   out.usable = failures == 0;
   out.stress_noise = std::sqrt(noise / static_cast<double>(reports.size()));
+  out.unsettled_stress = std::sqrt(unsettled / static_cast<double>(reports.size()));
   return out;
 }
 

@@ -31,6 +31,7 @@ void add_report_columns(const Ground& ground, const fem::NewtonReport& report, i
   info.extra["noise_floor"] = {report.noise_floor, "N/m"};
   info.extra["open_points"] = {static_cast<double>(report.material.open), "-"};
   info.extra["step_limit_points"] = {static_cast<double>(report.material.step_limit), "-"};
+  info.extra["unsettled"] = {relative(report.unsettled_force, report, tolerance) / tolerance, "-"};
   if (report.material.slowest_steps > 0) {
     info.extra["slowest_point"] = {static_cast<double>(report.material.slowest), "-"};
     info.extra["slowest_steps"] = {static_cast<double>(report.material.slowest_steps), "-"};
@@ -105,6 +106,7 @@ class StageRun {
     info_.extra["peak_memory"] = {peak_memory(), "B"};
     recorder_.stage_totals().evaluations.push_back(info_.evaluations);
     recorder_.stage_totals().unsettled.push_back(info_.extra.at("step_limit_points").value);
+    recorder_.stage_totals().unsettled_share.push_back(info_.extra.at("unsettled").value);
     recorder_.stage_totals().wall += info_.wall_s;
   }
 

@@ -18,6 +18,7 @@ class CollapsingMaterial final : public MaterialBatch {
   static constexpr double young = 1e7, limit = 1e-3, loss = 0.5, too_stiff = 3;
 
   int tangents_asked = 0;
+  int settled_from = 0;    ///< before this evaluation a point is not at rest, and may be off by 1 MPa
   int fails_from = std::numeric_limits<int>::max();  ///< the first evaluation that is not usable
 
   double committed_error = 0;                        ///< largest that a committed evaluation has told; they fall
@@ -40,6 +41,7 @@ class CollapsingMaterial final : public MaterialBatch {
     report.work = size();
     report.deferral_error = 1.0 / evaluations_;
     report.usable = evaluations_ < fails_from;
+    if (evaluations_ < settled_from) report.unsettled_stress = 1e6;
     if (!report.usable) report.message = "point 3: overlap";
     return report;
   }
@@ -182,6 +184,37 @@ TEST(Relaxation, WhatFailsSaysWhy) {
   EXPECT_EQ(report.status, StepStatus::gave_up);
   EXPECT_EQ(report.last.status, NewtonStatus::material_failed);
   EXPECT_NE(report.message.find("point 3: overlap"), std::string::npos) << report.message;
+}
+
+/// The pillar far below its limit, where two evaluations find the equilibrium.
+NewtonReport settle(int settled_from, const StepOptions& options) {
+  Pillar pillar;
+  pillar.material.settled_from = settled_from;
+  const auto whole = pillar.path.prescribed_increment;
+  pillar.path.prescribed_increment = [=](double from, double to) { return whole(from * 0.01, to * 0.01); };
+  const StepReport report = pillar.advance(options);
+  EXPECT_EQ(report.status, StepStatus::finished) << report.message;
+  EXPECT_LE(pillar.last.residual, pillar.last.residual_bound);
+  return pillar.last;
+}
+
+TEST(Relaxation, GrainsAtTheStepLimitGetFurtherEvaluationsToComeToRest) {
+  const StepOptions options{.relax_below = 1, .use_predictor = false};
+  const NewtonReport at_rest = settle(0, options);
+  EXPECT_EQ(at_rest.unsettled_force, 0);
+  const NewtonReport later = settle(at_rest.evaluations + 2, options);
+  EXPECT_EQ(later.unsettled_force, 0);
+  EXPECT_EQ(later.evaluations, at_rest.evaluations + 2);
+}
+
+TEST(Relaxation, GrainsThatNeverComeToRestAreReported) {
+  const StepOptions options{.relax_below = 1, .use_predictor = false};
+  const NewtonReport never = settle(std::numeric_limits<int>::max(), options);
+  EXPECT_GT(never.unsettled_force, never.residual_bound);
+  EXPECT_LE(never.evaluations, settle(0, options).evaluations + options.relaxation.max_settling + 1);
+  const NewtonReport not_relaxed = settle(std::numeric_limits<int>::max(), {.relax_below = 0, .use_predictor = false});
+  EXPECT_GT(not_relaxed.unsettled_force, not_relaxed.residual_bound);  // nothing is spent where nothing may be relaxed
+  EXPECT_EQ(not_relaxed.relaxations, 0);
 }
 
 TEST(Relaxation, TooFarFromEquilibriumIsCutInstead) {

@@ -22,6 +22,8 @@ std::vector<StageTotals> two_stages() {
   loss.stage = "volume_loss";
   loss.evaluations = {5, 9, 4};
   loss.deferral_error = {0, 2e-3, 5e-4};
+  loss.unsettled = {0, 2, 1};
+  loss.unsettled_share = {0, 0.02, 0.7};
   loss.cuts = 2;
   return {gravity, loss};
 }
@@ -37,6 +39,8 @@ TEST(RunTotals, ComeBackFromACheckpoint) {
     EXPECT_EQ(read[k].stage, written[k].stage);
     EXPECT_EQ(read[k].evaluations, written[k].evaluations);
     EXPECT_EQ(read[k].deferral_error, written[k].deferral_error);
+    EXPECT_EQ(read[k].unsettled, written[k].unsettled);
+    EXPECT_EQ(read[k].unsettled_share, written[k].unsettled_share);
     EXPECT_EQ(read[k].cuts, written[k].cuts);
     EXPECT_EQ(read[k].particle_steps, written[k].particle_steps);
     EXPECT_EQ(read[k].parts.material, written[k].parts.material);
@@ -53,6 +57,15 @@ TEST(RunTotals, SayWhatDeferralWasOffBy) {
   const std::string line = deferral_line(stages[1], 1e-3);
   EXPECT_NE(line.find("up to 2.0e-03 "), std::string::npos) << line;
   EXPECT_NE(line.find("in 1 of 3 increments"), std::string::npos) << line;
+}
+
+TEST(RunTotals, SayWhichPointsWereNotAtRest) {
+  const std::vector<StageTotals> stages = two_stages();
+  EXPECT_EQ(unsettled_line(stages[0], 984), "");
+  const std::string line = unsettled_line(stages[1], 984);
+  EXPECT_NE(line.find("2 of 3 increments"), std::string::npos) << line;
+  EXPECT_NE(line.find("up to 2 of 984"), std::string::npos) << line;
+  EXPECT_NE(line.find("by 0.7 of its tolerance"), std::string::npos) << line;
 }
 
 TEST(RunTotals, TableSumsTheStages) {
