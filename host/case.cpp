@@ -112,9 +112,12 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   }
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
-  const bool static_tangent = input.newton.tangent == TangentChoice::elastic || input.newton.tangent == TangentChoice::static_;
-  if (input.engine.backend == EngineBackend::teams && static_tangent) {
+  const auto of_lanes = [](TangentChoice tangent) { return tangent != TangentChoice::automatic && tangent != TangentChoice::contact; };
+  if (input.engine.backend == EngineBackend::teams && of_lanes(input.newton.tangent)) {
     throw root.table("newton").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
+  }
+  if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::probe && of_lanes(input.probe.tangent)) {
+    throw root.table("probe").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
   }
   if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
     throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");

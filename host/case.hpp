@@ -17,7 +17,7 @@ namespace voussoir::host {
 enum class CaseKind { pack, probe, biaxial, biaxial_bvp, calibrate, column, tunnel };
 enum class MaterialKind { grains, linear_elastic };
 enum class Precision { single_precision, double_precision };
-enum class TangentChoice { automatic, contact, elastic, static_ };
+enum class TangentChoice { automatic, contact, elastic, static_, loading };
 enum class EngineBackend { automatic, lanes, teams };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
 
@@ -121,6 +121,7 @@ struct NewtonCase {
   int maximum_iterations = 40;
   int anderson_depth = 5;                  ///< 0: plain Newton
   TangentChoice tangent = TangentChoice::automatic;  ///< of the RVEs, once an increment; automatic: elastic, on a GPU contact
+  double tangent_strain = 1.0e-6;          ///< of a loading tangent, the strain it is the secant of [-]
   double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
   double relax_below = 1.0;                ///< share of a planned step up to which a failed step is relaxed, not cut [-]
   int relax_attempts = 3;                  ///< iterates from the committed state before an increment is relaxed
@@ -156,7 +157,7 @@ struct ProbeCase {
   double pressure = 1.0e5;      ///< isotropic pressure of the packing [Pa]
   double strain = 1.0e-4;       ///< size of each probe [-]
   int replicas = 1;             ///< copies of path and probes whose gradients differ by 1e-6 of their size: what chaos makes of them
-  TangentChoice tangent = TangentChoice::contact;  ///< that is reported; kernels/README.md, "Static tangent"
+  TangentChoice tangent = TangentChoice::contact;  ///< that is reported; kernels/README.md, "Static tangent"; a loading one of `strain`
   std::vector<PathSegment> path;
 };
 

@@ -11,6 +11,7 @@
 #include "host/engine_presets.hpp"
 #include "host/exit_code.hpp"
 #include "host/packing.hpp"
+#include "host/rve_answers.hpp"
 #include "host/rve_pool.hpp"
 #include "host/stored_packing.hpp"
 #include "host/strain_path.hpp"
@@ -58,16 +59,20 @@ struct Tables {
   std::string probe =
       "seed,replica,probe,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,change_xx_Pa,change_yy_Pa,change_xy_Pa,"
       "tangent_xxxx_Pa,tangent_xxyy_Pa,tangent_xxxy_Pa,tangent_yyyy_Pa,tangent_yyxy_Pa,tangent_xyxy_Pa,"
+      "tangent_yyxx_Pa,tangent_xyxx_Pa,tangent_xyyy_Pa,tangent,"
       "tangent_after_xxxx_Pa,tangent_after_xxyy_Pa,tangent_after_xxxy_Pa,tangent_after_yyyy_Pa,tangent_after_yyxy_Pa,"
-      "tangent_after_xyxy_Pa,steps,unbalanced_ratio,inertial_number,status\n";
+      "tangent_after_xyxy_Pa,tangent_after_yyxx_Pa,tangent_after_xyxx_Pa,tangent_after_xyyy_Pa,tangent_after,"
+      "steps,unbalanced_ratio,inertial_number,status\n";
 };
 
 std::string end_of_row(const kernels::RveReport& report) {
   return fmt::format("{},{:.6g},{:.6g},{}\n", report.steps, report.unbalanced, report.inertial_number, kernels::name_of(report.status));
 }
 
-std::string cells_of(const fem::Tangent& d) {
-  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2));
+std::string cells_of(const kernels::RveReport& report) {
+  const fem::Tangent d = whole_tangent_of(report);
+  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},", d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2),
+                     d(2, 2), d(1, 0), d(2, 0), d(2, 1), kernels::name_of(report.tangent_kind));
 }
 
 void print_probe(const Probe& probe, const fem::Stress& change, double strain) {
@@ -75,14 +80,13 @@ void print_probe(const Probe& probe, const fem::Stress& change, double strain) {
   std::printf("%-9s %12.4f %12.4f %12.4f\n", probe.name, slope(0), slope(1), slope(2));
 }
 
-void print_tangent(const fem::Tangent& tangent, const char* name) {
-  const fem::Tangent d = tangent * 1e-6;
-  std::printf("tangent (%s) [MPa]: xxxx %.4f xxyy %.4f xxxy %.4f yyyy %.4f yyxy %.4f xyxy %.4f\n", name, d(0, 0), d(0, 1), d(0, 2),
-              d(1, 1), d(1, 2), d(2, 2));
-}
-
-const char* name_of(TangentChoice tangent) {
-  return tangent == TangentChoice::contact ? "contact" : tangent == TangentChoice::static_ ? "static" : "elastic";
+/// By the answer's own name: where what was asked for was not found, it is another one.
+void print_tangent(const kernels::RveReport& report) {
+  const fem::Tangent d = whole_tangent_of(report) * 1e-6;
+  std::printf("tangent (%s) [MPa]: xxxx %.4f xxyy %.4f xxxy %.4f yyyy %.4f yyxy %.4f xyxy %.4f", kernels::name_of(report.tangent_kind), d(0, 0),
+              d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2));
+  if (report.tangent_kind == kernels::TangentKind::loading) std::printf(" yyxx %.4f xyxx %.4f xyyy %.4f", d(1, 0), d(2, 0), d(2, 1));
+  std::printf("%s\n", report.tangent_capped ? "; not found within its iterations" : "");
 }
 
 /// The path; its end into `rve`. Returns what failed.
@@ -113,15 +117,16 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
   const std::vector<Probe> all = probes(input.probe.strain);
   const std::vector<double> scale = scales(input.probe.replicas);
   const std::size_t n = all.size() * scale.size();
-  RvePool pool(rve, {input.engine, input.probe.tangent}, n);
+  RvePool pool(rve, {.engine = input.engine, .tangent = input.probe.tangent, .tangent_strain = input.probe.strain}, n);
   std::vector<fem::Gradient> gradients;
   for (const double factor : scale) {
     for (const Probe& probe : all) gradients.emplace_back(factor * probe.gradient);
   }
   std::vector<fem::Stress> before(n), after(n);
-  std::vector<fem::Tangent> tangent(n), tangent_after(n);
-  pool.committed(before, tangent);
-  const fem::BatchReport report = pool.evaluate(gradients, after, tangent_after);
+  std::vector<fem::Tangent> unused(n);
+  pool.committed(before, unused);
+  const kernels::RveReport start = pool.committed_reports().front();
+  const fem::BatchReport report = pool.evaluate(gradients, after, unused);
   pool.commit();
   if (show) std::printf("%-9s %12s %12s %12s   change of stress over strain [MPa], tension positive\n", "probe", "xx", "yy", "xy");
   for (std::size_t k = 0; k < n; ++k) {
@@ -130,9 +135,9 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
     if (show && k < all.size()) print_probe(probe, change, input.probe.strain);
     tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, k / all.size(), probe.name, after[k](0),
                                 after[k](1), after[k](2), change(0), change(1), change(2)) +
-                    cells_of(tangent[k]) + cells_of(tangent_after[k]) + end_of_row(pool.committed_reports()[k]);
+                    cells_of(start) + cells_of(pool.committed_reports()[k]) + end_of_row(pool.committed_reports()[k]);
   }
-  if (show) print_tangent(tangent[0], name_of(input.probe.tangent));
+  if (show) print_tangent(start);
   return report.usable ? "" : fmt::format("seed {}, {}", rve.seed, report.message);
 }
 

@@ -69,7 +69,7 @@ inline PackedRve read_rve(ByteReader& read) {
 /// work where the case was read.
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
-  auto& [engine, tangent, tangent_tolerance, microstructure] = options;
+  auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure] = options;
   auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps, defer] = engine;
   static_cast<void>(preset);
   transfer(&precision, 1);
@@ -78,6 +78,7 @@ void transfer_options(Transfer& transfer, Options& options) {
   for (auto* count : {&hold_cap, &minimum_steps, &maximum_steps}) transfer(count, 1);
   transfer(&tangent, 1);
   transfer(&tangent_tolerance, 1);
+  transfer(&tangent_strain, 1);
   transfer(&microstructure, 1);
 }
 

@@ -25,6 +25,13 @@ fem::Tangent tangent_of(const kernels::RveReport& r) {
   return out;
 }
 
+fem::Tangent whole_tangent_of(const kernels::RveReport& r) {
+  const double* w = r.tangent_skew;
+  fem::Tangent skew;
+  skew << 0, w[0], w[1], -w[0], 0, w[2], -w[1], -w[2], 0;
+  return tangent_of(r) + skew;
+}
+
 void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
                   std::span<fem::Tangent> tangent) {
   for (std::size_t k = 0; k < reports.size(); ++k) {

@@ -9,7 +9,12 @@
 namespace voussoir::host {
 
 [[nodiscard]] fem::Stress stress_of(const kernels::RveReport& report);
-[[nodiscard]] fem::Tangent tangent_of(const kernels::RveReport& report);
+
+/// The symmetric tangent [Pa], which is the one that fem is given.
+[[nodiscard]] fem::Tangent tangent_of(const kernels::RveReport& r);
+
+/// With its antisymmetric part, which loading tangents have: rows by stress, columns by strain [Pa].
+[[nodiscard]] fem::Tangent whole_tangent_of(const kernels::RveReport& r);
 
 /// Stresses [Pa] and tangents [Pa] of the reports; all spans have the same length, or `tangent` none.
 void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,

@@ -27,6 +27,7 @@ kernels::TangentKind kernel_tangent(TangentChoice choice, kernels::Backend backe
       return kernels::takes_teams(backend) ? kernels::TangentKind::contact : kernels::TangentKind::elastic;
     case TangentChoice::elastic: return kernels::TangentKind::elastic;
     case TangentChoice::static_: return kernels::TangentKind::static_;
+    case TangentChoice::loading: return kernels::TangentKind::loading;
     case TangentChoice::contact: break;
   }
   return kernels::TangentKind::contact;
@@ -61,7 +62,8 @@ RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n
                 .hold_tolerance = engine_.hold_tolerance,
                 .backend = engine_backend(engine_),
                 .tangent = kernel_tangent(options.tangent, engine_backend(engine_)),
-                .tangent_tolerance = options.tangent_tolerance},
+                .tangent_tolerance = options.tangent_tolerance,
+                .tangent_strain = options.tangent_strain},
       microstructure_(options.microstructure),
       batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
       requests_(n),
@@ -241,7 +243,12 @@ std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> po
 
 std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points, const PackingNote& note) {
   PackedRve rve = choose_packing(input, note);
-  const PoolOptions options{input.engine, input.newton.tangent, newton_tangent_tolerance, input.output.microstructure};
+  PoolOptions options{.engine = input.engine,
+                      .tangent = input.newton.tangent,
+                      .tangent_strain = input.newton.tangent_strain,
+                      .microstructure = input.output.microstructure};
+  // To a tenth, a loading tangent would be little else than the elastic one that it starts from.
+  if (options.tangent != TangentChoice::loading) options.tangent_tolerance = newton_tangent_tolerance;
   if (rank_count() > 1) return make_rank_pool(std::move(rve), options, n_points, note);
   return std::make_unique<RvePool>(rve, options, n_points);
 }

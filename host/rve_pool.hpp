@@ -22,6 +22,7 @@ struct PoolOptions {
   EngineCase engine;
   TangentChoice tangent = TangentChoice::contact;
   double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< of a static one [-]
+  double tangent_strain = 1.0e-6;  ///< of a loading tangent [-]
   kernels::MicrostructureRequest microstructure = {};  ///< what fields() shall hold besides; computed there, at each call
 };
 

@@ -76,6 +76,35 @@ struct ContactStiffness {
   V normal, tangential, rolling;  ///< [N/m], [N/m], [N m/rad]
 };
 
+/// A spring force that may not pass a share of f_n, over a small motion.
+template <class V>
+struct LimitedForce {
+  V change;      ///< of the force
+  V slope;       ///< of `change` by the spring's own motion: 0 at the cap
+  V by_closing;  ///< and by the contact's closing: 0 but at the cap
+};
+
+/// What a small motion changes in a contact's forces, and the slopes of that. Closing is the increase of the overlap over R.
+template <class V>
+struct ContactStep {
+  V closing;                            ///< as far as the contact follows it: an opening one does to its last touch [-]
+  V normal_stiffness;                   ///< k_n; 0 where it opens [N/m]
+  LimitedForce<V> tangential, moment;   ///< f_t [N], m [N m]
+};
+
+/// @param stiffness 0 where the contact opens; @param motion of the spring; @param held its force before, within its cap
+/// @param cap after the motion; @param cap_slope of it by closing
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION LimitedForce<V> limited_force(const V& stiffness, const V& motion, const V& held, const V& cap,
+                                                          const V& cap_slope) {
+  using Kokkos::Experimental::condition;
+  const V zero(0), trial = stiffness * motion;
+  const V lowest = -cap - held, highest = cap - held;
+  const auto below = trial < lowest, above = highest < trial;
+  return {condition(below, lowest, condition(above, highest, trial)), condition(below || above, zero, stiffness),
+          condition(below, -cap_slope, condition(above, cap_slope, zero))};
+}
+
 /// Linear normal spring, tangential spring with Coulomb cap, rolling spring with plastic cap (Iwashita and Oda 1998).
 template <class V, bool Rolling>
 struct LinearContactLaw {
@@ -120,6 +149,27 @@ struct LinearContactLaw {
       k.rolling = Kokkos::Experimental::condition(holds, rolling_stiffness, zero);
     }
     return k;
+  }
+
+  /// What operator() changes in the forces of a contact that touches, without its cancellation; a contact that does not stays away.
+  /// @param overlap over R, and history, at rest, within the caps; @param closing increase of the overlap over R
+  /// @param sliding, rolling as in ContactMotion
+  KOKKOS_FORCEINLINE_FUNCTION ContactStep<V> step(const V& overlap, const History& history, const V& closing,
+                                                  const V& sliding, const V& rolling) const {
+    using Kokkos::Experimental::condition;
+    const V zero(0);
+    const auto stays = (zero < overlap) && (zero < overlap + closing);
+    const V followed = condition(stays, closing, -overlap), pressed = overlap + followed;
+    const auto where_it_stays = [&](const V& x) { return condition(stays, x, zero); };
+    ContactStep<V> out{followed, where_it_stays(normal_stiffness),
+                       limited_force(where_it_stays(tangential_stiffness), sliding, history.tangential,
+                                     tangential_cap * pressed, where_it_stays(tangential_cap)),
+                       {zero, zero, zero}};
+    if constexpr (Rolling) {
+      out.moment = limited_force(where_it_stays(rolling_stiffness), rolling, history.moment, moment_cap * pressed,
+                                 where_it_stays(moment_cap));
+    }
+    return out;
   }
 };
 

@@ -35,12 +35,20 @@ template <class real>
 struct SpringShape {
   int other;
   real radius_other;
+  int pair;  ///< its place in the group's list
 };
+
+template <class V>
+using PerStrain = std::array<V, unit_strains>;
+
+/// A grain's motions, or the forces on it, by unit strain.
+template <class V>
+using StrainDofs = std::array<GrainDofs<V>, unit_strains>;
 
 /// Working arrays of one grain in the conjugate gradients.
 template <class V>
 struct SolverGrain {
-  std::array<GrainDofs<V>, unit_strains> motion, residual, direction, image;
+  StrainDofs<V> motion, residual, direction, image;
   GrainDofs<V> inverse_diagonal;  ///< of K; 0 where the grain has no stiffness
 };
 
@@ -50,6 +58,7 @@ struct SpringSystem {
   std::vector<int> row;  ///< springs of grain i: row[i] .. row[i + 1]
   std::vector<SpringLanes<V>> springs;
   std::vector<SpringShape<real_of<V>>> shapes;
+  std::vector<V> overlaps;  ///< delta/R by spring [-]; 0 in lanes where the pair does not touch
   std::vector<real_of<V>> radii;
   std::vector<SolverGrain<V>> grains;
 };
@@ -71,6 +80,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_unit_strain(int a, const SpringLanes<V>& s,
 template <class V>
 struct SpringStrain {
   V normal, sliding, rolling;
+  V across;  ///< displacement of the far end along t: over |b|, the contact's turn
 };
 
 /// @param dx, dy displacement of grain j against i
@@ -80,26 +90,35 @@ KOKKOS_FORCEINLINE_FUNCTION SpringStrain<V> spring_strain(const SpringLanes<V>& 
                                                           const V& spin_j) {
   const V along = fused(dy, s.normal_x, -(dx * s.normal_y));
   return {fused(dx, s.normal_x, dy * s.normal_y), fused(s.ratio, along, -fused(radius_i, spin_i, radius_j * spin_j)),
-          spin_j - spin_i};
+          spin_j - spin_i, along};
 }
 
-/// Adds to `on_i` and `on_j` what the stretched springs do to the two grains.
+/// What the springs of a contact pull with, conjugate to their changes of length.
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION void pull(const SpringLanes<V>& s, const SpringStrain<V>& e, const V& radius_i,
-                                      const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) {
-  const V fn = s.normal * e.normal;
-  const V shear = s.tangential * e.sliding;
-  const V ft = s.ratio * shear;
-  const V m = s.rolling * e.rolling;
-  const V fx = fused(fn, s.normal_x, -(ft * s.normal_y));
-  const V fy = fused(fn, s.normal_y, ft * s.normal_x);
-  on_i = {on_i.x + fx, on_i.y + fy, fused(radius_i, shear, on_i.spin) + m};
-  on_j = {on_j.x - fx, on_j.y - fy, fused(radius_j, shear, on_j.spin) - m};
+struct SpringForce {
+  V normal, shear, moment;  ///< -f_n, f_t / y [N], m [N m]
+};
+
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION SpringForce<V> force_of(const SpringLanes<V>& s, const SpringStrain<V>& e) {
+  return {s.normal * e.normal, s.tangential * e.sliding, s.rolling * e.rolling};
 }
 
-/// Share of its cap at which a spring counts as yielded. @param kind elastic: none does
+/// Adds to `on_i` and `on_j` what the springs do to the two grains. Returns the force on i.
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull(const SpringLanes<V>& s, const SpringForce<V>& f, const V& radius_i,
+                                              const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) {
+  const V ft = s.ratio * f.shear;
+  const V fx = fused(f.normal, s.normal_x, -(ft * s.normal_y));
+  const V fy = fused(f.normal, s.normal_y, ft * s.normal_x);
+  on_i = {on_i.x + fx, on_i.y + fy, fused(radius_i, f.shear, on_i.spin) + f.moment};
+  on_j = {on_j.x - fx, on_j.y - fy, fused(radius_j, f.shear, on_j.spin) - f.moment};
+  return {fx, fy, f.moment};
+}
+
+/// Share of its cap at which a spring counts as yielded; above 1, none does.
 [[nodiscard]] inline double elastic_share(TangentKind kind) {
-  return kind == TangentKind::elastic ? 2.0 : 1.0 - 1e-4;
+  return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0;
 }
 
 /// The springs of every pair that touches in some lane.
@@ -114,6 +133,7 @@ void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<
   system.grains.assign(n, {{none, none, none}, {none, none, none}, {none, none, none}, {none, none, none}, none});
   system.springs.clear();
   system.shapes.clear();
+  system.overlaps.clear();
   for (std::size_t i = 0; i < n; ++i) {
     system.radii[i] = group.shapes[i].radius;
     for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
@@ -129,7 +149,8 @@ void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<
       const V y = V(1) + distance.excess;
       system.springs.push_back(
           {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling});
-      system.shapes.push_back({shape.other, shape.radius_other});
+      system.shapes.push_back({shape.other, shape.radius_other, static_cast<int>(p)});
+      system.overlaps.push_back(distance.overlap);
     }
     system.row[i + 1] = static_cast<int>(system.springs.size());
   }
@@ -148,84 +169,110 @@ KOKKOS_FORCEINLINE_FUNCTION V inverse_or_zero(const V& x) {
   return Kokkos::Experimental::condition(V(0) < x, V(1) / x, V(0));
 }
 
-/// Calls body(spring, i, j, radius_i, radius_j) for all springs, in the order of the lists.
+/// Calls body(c, i, j, radius_i, radius_j) for all springs c, in the order of the lists.
 template <class V, class Body>
 void for_each_spring(SpringSystem<V>& system, const Body& body) {
   for (std::size_t i = 0; i + 1 < system.row.size(); ++i) {
     for (auto c = static_cast<std::size_t>(system.row[i]); c < static_cast<std::size_t>(system.row[i + 1]); ++c) {
       const auto& shape = system.shapes[c];
-      body(system.springs[c], system.grains[i], system.grains[static_cast<std::size_t>(shape.other)],
-           V(system.radii[i]), V(shape.radius_other));
+      body(c, system.grains[i], system.grains[static_cast<std::size_t>(shape.other)], V(system.radii[i]),
+           V(shape.radius_other));
     }
   }
 }
-
-template <class V>
-using PerStrain = std::array<V, unit_strains>;
 
 /// Residuals under the unit strains, the inverse diagonal, and the energies (twice) of the affine motion.
 template <class V>
 void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
   const V zero(0);
-  for_each_spring(
-      system, [&](const SpringLanes<V>& s, SolverGrain<V>& gi, SolverGrain<V>& gj, const V& ri, const V& rj) {
-        add_diagonal(s, ri, gi.inverse_diagonal);
-        add_diagonal(s, rj, gj.inverse_diagonal);
-        for (std::size_t a = 0; a < unit_strains; ++a) {
-          V dx = zero, dy = zero;
-          add_unit_strain(static_cast<int>(a), s, dx, dy);
-          const SpringStrain<V> e = spring_strain(s, dx, dy, ri, zero, rj, zero);
-          pull(s, e, ri, rj, gi.residual[a], gj.residual[a]);
-          energy[a] = fused(s.normal * e.normal, e.normal, fused(s.tangential * e.sliding, e.sliding, energy[a]));
-        }
-      });
+  for_each_spring(system, [&](std::size_t c, SolverGrain<V>& gi, SolverGrain<V>& gj, const V& ri, const V& rj) {
+    const SpringLanes<V>& s = system.springs[c];
+    add_diagonal(s, ri, gi.inverse_diagonal);
+    add_diagonal(s, rj, gj.inverse_diagonal);
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      V dx = zero, dy = zero;
+      add_unit_strain(static_cast<int>(a), s, dx, dy);
+      const SpringStrain<V> e = spring_strain(s, dx, dy, ri, zero, rj, zero);
+      pull(s, force_of(s, e), ri, rj, gi.residual[a], gj.residual[a]);
+      energy[a] = fused(s.normal * e.normal, e.normal, fused(s.tangential * e.sliding, e.sliding, energy[a]));
+    }
+  });
   for (SolverGrain<V>& g : system.grains) {
     auto& d = g.inverse_diagonal;
     d = {inverse_or_zero(d.x), inverse_or_zero(d.y), inverse_or_zero(d.spin)};
   }
 }
 
-/// image = -K direction. Rows gather grain i's part in registers.
-template <class V>
-void apply_springs(SpringSystem<V>& system) {
+/// Adds to forces(i) what the contacts do to grain i under the motions(i), both StrainDofs of all grains.
+/// act(c, a, strain, radius_i, radius_j, on_i, on_j) is contact c under motion a. Rows gather grain i's part in registers.
+template <class V, class Motions, class Forces, class Act>
+void respond(const SpringSystem<V>& system, const Motions& motions, const Forces& forces, const Act& act) {
   for (std::size_t i = 0; i + 1 < system.row.size(); ++i) {
-    SolverGrain<V>& gi = system.grains[i];
-    const auto from = gi.direction;
-    auto on = gi.image;
+    const StrainDofs<V> from = motions(i);
+    StrainDofs<V> on = forces(i);
     const V ri(system.radii[i]);
     for (auto c = static_cast<std::size_t>(system.row[i]); c < static_cast<std::size_t>(system.row[i + 1]); ++c) {
       const SpringLanes<V>& s = system.springs[c];
-      SolverGrain<V>& gj = system.grains[static_cast<std::size_t>(system.shapes[c].other)];
+      const auto j = static_cast<std::size_t>(system.shapes[c].other);
+      const StrainDofs<V>& to = motions(j);
+      StrainDofs<V>& on_j = forces(j);
       const V rj(system.shapes[c].radius_other);
       for (std::size_t a = 0; a < unit_strains; ++a) {
-        const GrainDofs<V>& to = gj.direction[a];
-        const SpringStrain<V> e = spring_strain(s, to.x - from[a].x, to.y - from[a].y, ri, from[a].spin, rj, to.spin);
-        pull(s, e, ri, rj, on[a], gj.image[a]);
+        act(c, a, spring_strain(s, to[a].x - from[a].x, to[a].y - from[a].y, ri, from[a].spin, rj, to[a].spin), ri, rj,
+            on[a], on_j[a]);
       }
     }
-    gi.image = on;
+    forces(i) = on;
   }
+}
+
+/// The springs as `respond` takes them.
+template <class V>
+struct SpringsAct {
+  const SpringSystem<V>& system;
+
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(std::size_t c, std::size_t, const SpringStrain<V>& e, const V& radius_i,
+                                              const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
+    pull(system.springs[c], force_of(system.springs[c], e), radius_i, radius_j, on_i, on_j);
+  }
+};
+
+/// image = -K direction.
+template <class V>
+void apply_springs(SpringSystem<V>& system) {
+  respond(
+      system, [&](std::size_t i) -> const StrainDofs<V>& { return system.grains[i].direction; },
+      [&](std::size_t i) -> StrainDofs<V>& { return system.grains[i].image; }, SpringsAct<V>{system});
+}
+
+/// Total strain of spring c under unit strain `a` and the grains' motion in answer to it.
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION SpringStrain<V> strain_of(const SpringLanes<V>& s, std::size_t a, const SolverGrain<V>& gi,
+                                                      const SolverGrain<V>& gj, const V& ri, const V& rj, V& dx,
+                                                      V& dy) {
+  dx = gj.motion[a].x - gi.motion[a].x;
+  dy = gj.motion[a].y - gi.motion[a].y;
+  add_unit_strain(static_cast<int>(a), s, dx, dy);
+  return spring_strain(s, dx, dy, ri, gi.motion[a].spin, rj, gj.motion[a].spin);
 }
 
 /// Twice the mixed energies of the three motions.
 template <class V>
 void add_energies(SpringSystem<V>& system, V* tangent) {
-  for_each_spring(system, [&](const SpringLanes<V>& s, const SolverGrain<V>& gi, const SolverGrain<V>& gj, const V& ri,
-                              const V& rj) {
-    std::array<SpringStrain<V>, unit_strains> e;
-    for (std::size_t a = 0; a < unit_strains; ++a) {
-      V dx = gj.motion[a].x - gi.motion[a].x, dy = gj.motion[a].y - gi.motion[a].y;
-      add_unit_strain(static_cast<int>(a), s, dx, dy);
-      e[a] = spring_strain(s, dx, dy, ri, gi.motion[a].spin, rj, gj.motion[a].spin);
-    }
-    std::size_t entry = 0;
-    for (std::size_t a = 0; a < unit_strains; ++a) {
-      const V fn = s.normal * e[a].normal, ft = s.tangential * e[a].sliding, m = s.rolling * e[a].rolling;
-      for (std::size_t b = a; b < unit_strains; ++b, ++entry) {
-        tangent[entry] = fused(fn, e[b].normal, fused(ft, e[b].sliding, fused(m, e[b].rolling, tangent[entry])));
-      }
-    }
-  });
+  for_each_spring(
+      system, [&](std::size_t c, const SolverGrain<V>& gi, const SolverGrain<V>& gj, const V& ri, const V& rj) {
+        const SpringLanes<V>& s = system.springs[c];
+        std::array<SpringStrain<V>, unit_strains> e;
+        V dx, dy;
+        for (std::size_t a = 0; a < unit_strains; ++a) e[a] = strain_of(s, a, gi, gj, ri, rj, dx, dy);
+        std::size_t entry = 0;
+        for (std::size_t a = 0; a < unit_strains; ++a) {
+          const V fn = s.normal * e[a].normal, ft = s.tangential * e[a].sliding, m = s.rolling * e[a].rolling;
+          for (std::size_t b = a; b < unit_strains; ++b, ++entry) {
+            tangent[entry] = fused(fn, e[b].normal, fused(ft, e[b].sliding, fused(m, e[b].rolling, tangent[entry])));
+          }
+        }
+      });
 }
 
 }  // namespace voussoir::kernels

@@ -48,6 +48,7 @@ class StrainDrive {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 rate(int step) const { return step < strain_steps_ ? rate_ : Mat2{}; }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool looks(int step) const { return step >= strain_steps_ && (step % interval_ == 0 || step >= last_); }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double strain_rate() const { return symmetric_norm(rate_); }
+  [[nodiscard]] const Mat2& heading() const { return total_; }  ///< the motion that a loading tangent goes on with
 
   KOKKOS_INLINE_FUNCTION Verdict judge(int step, const Measurement& m) {
     if (step < strain_steps_) return Verdict::running;
@@ -88,6 +89,7 @@ class ServoControl {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 rate(int) const { return {rate_x_.value, 0, 0, rate_y_.value}; }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool looks(int) const { return true; }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double strain_rate() const { return symmetric_norm(rate(0)); }
+  [[nodiscard]] Mat2 heading() const { return rate(0); }
 
   KOKKOS_INLINE_FUNCTION Verdict judge(int step, const Measurement& m) {
     const bool x_ok = follow(request_.x, m.stress_xx, rate_x_);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <span>
 
-#include "kernels/group_run.hpp"
+#include "kernels/group_tangent.hpp"
 #include "kernels/rve_report.hpp"
 
 namespace voussoir::kernels {
@@ -15,32 +15,6 @@ template <class Run>
   double all = 0;
   for (const auto& g : run.group.grains) all += static_cast<double>(g.u_x[l] + g.u_y[l] + g.rotation[l]);
   return std::isfinite(all);
-}
-
-/// Whether static tangent `d` [Pa] is no stiffer than the contact one: it cannot be, but where rounding spoilt the
-/// iterations. False for NaN. The slack covers the factor y (kernels/README.md, "Static tangent").
-[[nodiscard]] inline bool is_softer(const double* d, const double* contact) {
-  constexpr double slack = 1.05;
-  return d[0] <= slack * contact[0] && d[3] <= slack * contact[3] && d[5] <= slack * contact[5];
-}
-
-/// The static tangents into the reports of the lanes that have an answer; eq. (4) stays where they cannot be used.
-template <class Law, class Run>
-void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
-  std::array<bool, Run::width> live{};
-  for (std::size_t l = 0; l < Run::width; ++l) live[l] = run.lanes[l].rve >= 0 && !is_failure(reports[l].status);
-  const auto result = static_tangent<Law>(run.group, run.springs, live, run.settings);
-  for (std::size_t l = 0; l < Run::width; ++l) {
-    const double v = volume_of(run, l);
-    double tangent[6];
-    for (std::size_t k = 0; k < 6; ++k) tangent[k] = static_cast<double>(result.tangent[k][l]) / v;
-    if (!live[l]) continue;
-    reports[l].tangent_iterations = result.iterations[l];
-    reports[l].tangent_capped = !result.converged[l];
-    if (!is_softer(tangent, reports[l].tangent)) continue;
-    std::copy_n(tangent, 6, reports[l].tangent);
-    reports[l].tangent_kind = run.settings.tangent;
-  }
 }
 
 /// Contacts at the final positions with the history that is kept, of the lanes that are `stored`.

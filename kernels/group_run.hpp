@@ -6,8 +6,8 @@
 
 #include "kernels/group_lists.hpp"
 #include "kernels/homogenise.hpp"
+#include "kernels/loading_tangent.hpp"
 #include "kernels/rve_course.hpp"
-#include "kernels/static_tangent.hpp"
 
 namespace voussoir::kernels {
 
@@ -31,6 +31,7 @@ struct GroupRun {
   GroupState<V> group;
   UnionBuilder<V> builder;
   SpringSystem<V> springs;          ///< empty unless the static tangent is asked for
+  StepSystem<V> step;               ///< empty unless the loading one is
   std::vector<std::uint32_t> keys;  ///< scratch of a rebase
   std::vector<KeptContact> kept;    ///< scratch of a restore or rebase
 };

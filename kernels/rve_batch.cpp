@@ -93,6 +93,16 @@ const char* name_of(RveStatus s) {
   return "unknown";
 }
 
+const char* name_of(TangentKind kind) {
+  switch (kind) {
+    case TangentKind::contact: return "contact";
+    case TangentKind::elastic: return "elastic";
+    case TangentKind::static_: return "static";
+    case TangentKind::loading: return "loading";
+  }
+  return "unknown";
+}
+
 bool rolls(const RveBatch& batch) {
   return std::any_of(batch.packings.begin(), batch.packings.end(), [](const Packing& p) {
     return std::any_of(p.materials.begin(), p.materials.end(),

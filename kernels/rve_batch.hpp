@@ -82,6 +82,7 @@ enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, ov
 
 [[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr bool is_failure(RveStatus s) { return s >= RveStatus::neighbour_overflow; }
 [[nodiscard]] const char* name_of(RveStatus s);
+[[nodiscard]] const char* name_of(TangentKind kind);  ///< as a case file has it
 
 /// Answer of one RVE.
 struct RveReport {
@@ -90,9 +91,10 @@ struct RveReport {
   int contacts = 0;
   double stress[4] = {};        ///< Love-Weber, xx xy yx yy, tension positive [Pa]
   double tangent[6] = {};       ///< symmetrised, xxxx xxyy xxxy yyyy yyxy xyxy [Pa]
+  double tangent_skew[3] = {};  ///< of a loading tangent, (D_ab - D_ba)/2 of xxyy xxxy yyxy [Pa]
   TangentKind tangent_kind = TangentKind::contact;
   int tangent_iterations = 0;   ///< of a static tangent
-  bool tangent_capped = false;  ///< they reached their limit: the tangent is too stiff, by less than eq. (4)
+  bool tangent_capped = false;  ///< they reached their limit: too stiff, by less than eq. (4); of `loading`: `elastic` instead
   double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
   double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
   double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]

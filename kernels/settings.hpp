@@ -12,8 +12,9 @@ namespace voussoir::kernels {
 enum class Precision { float32, float64 };
 
 /// Contact tangent, eq. (4), or the packing's own static one (static_tangent.hpp): with every contact stuck, or without
-/// the springs that have yielded.
-enum class TangentKind { contact, elastic, static_ };
+/// the springs that have yielded; or the response to small strains that go on as the last motion did, contacts reaching their
+/// caps on the way (loading_tangent.hpp).
+enum class TangentKind { contact, elastic, static_, loading };
 
 /// Who advances the RVEs: one SIMD lane each (CPUs), or one team of threads each (GPUs; on a CPU the same bits, more slowly).
 /// `automatic`: teams where Kokkos' default execution space is a device of its own.
@@ -34,6 +35,7 @@ struct EngineSettings {
   TangentKind tangent = TangentKind::contact;
   double tangent_tolerance = 2e-3; ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
   int tangent_iterations = 800;    ///< limit
+  double tangent_strain = 1e-6;    ///< of a loading tangent, the strain it is the secant of; negative: against the last motion [-]
 };
 
 /// Given motion of one RVE: F_rel reached in `strain_steps` equal steps, then at most `hold_cap` steps of rest.

@@ -27,6 +27,7 @@ inline constexpr double softest =
 template <class V>
 struct StaticTangent {
   V tangent[6] = {V(0), V(0), V(0), V(0), V(0), V(0)};  ///< as Homogenised::tangent [N m]
+  PerStrain<V> affine;                                  ///< its diagonal for grains that do not move by themselves
   std::array<int, V::size()> iterations{};
   std::array<bool, V::size()> converged{};
 };
@@ -175,7 +176,7 @@ StaticTangent<V> static_tangent(const GroupState<V>& group, SpringSystem<V>& sys
   }
   collect_springs<Law>(group, settings.tangent, system);
   load_springs(system, progress.energy);
-  progress.affine = progress.energy;
+  out.affine = progress.affine = progress.energy;
   relax_springs(system, progress, out, settings);
   add_energies(system, out.tangent);
   return out;

@@ -26,6 +26,7 @@ RUNS = {
     "biaxial_bvp": (["packing.grains=100", "packing.folder=packings", "biaxial_bvp.columns=1", "biaxial_bvp.rows=2",
                      "biaxial_bvp.strain=4 %"], ("q_over_p", "volumetric_strain"), []),
     "pack_gravel": (["packing.grains=300", "packing.folder=packings"], None, []),
+    "probe": (["packing.grains=60", "packing.folder=packings"], None, []),
     "pack": (["packing.grains=100", "packing.seeds=[1]", "packing.folder=packings"], None, []),
 }
 # Calibrations: two sets, one of them confirmed, in one pressure and to 6 %; the wide grading, which so few grains hold badly, to 4 %.

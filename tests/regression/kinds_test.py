@@ -32,6 +32,19 @@ for name in ("xxxx", "yyyy"):
     check(abs(turned / before - 1) < 2e-3, f"tangent {name} {before} after a rotation of 1e-4: {turned}")
     check(pushed != before, f"tangent {name} after compression is the one before")
 
+# The loading tangent is that of the probes' own strain, column by column; elsewhere rows have the tangent that was found.
+words = [PROGRAM, "run", "probe.toml", "-o", str(fresh("probed_tangent")), "--set", "probe.tangent=loading", "--set", "probe.strain=1e-6",
+         "--set", "engine.precision=double", "--set", "engine.hold_tolerance=1e-6", "--set", "engine.hold_cap=100000"]
+for setting in PACK:
+    words += ["--set", setting]
+check("tangent (loading)" in run(words).stdout, "the loading tangent is not shown")
+with open("probed_tangent/probe.csv", newline="") as opened:
+    rows = {row["probe"]: row for row in csv.DictReader(opened)}
+for probed, changed in (("xx", "xx"), ("xx", "yy"), ("yy", "xx"), ("yy", "yy"), ("xy", "xy")):
+    tangent, change = float(rows[probed][f"tangent_{changed}{probed}_Pa"]), float(rows[probed][f"change_{changed}_Pa"])
+    check(abs(tangent * 1e-6 / change - 1) < 0.02, f"tangent {changed}{probed} is {tangent:g} Pa, probed {change * 1e6:g} Pa")
+check(rows["xx"]["tangent"] == "loading" and rows["xx"]["tangent_xxyy_Pa"] != rows["xx"]["tangent_yyxx_Pa"], "the tangent's kind")
+
 # A packing stored by this program is one to read: it comes to rest again where it was.
 stored = next(Path("packings").glob("packing_*.h5"))
 words = [PROGRAM, "run", "probe.toml", "-o", str(fresh("probed_file")), "--set", f"packing.file={stored.absolute()}"]

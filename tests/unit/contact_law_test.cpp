@@ -220,6 +220,75 @@ void check_lanes_against_scalar()
   EXPECT_GT(open, 10);
 }
 
+/// A contact at rest at its share of the caps, and a small motion: every state from stuck to open.
+struct Nudge {
+  double overlap, tangential, moment;
+  ContactMotion<V> by;
+};
+std::vector<Nudge> nudges()
+{
+  std::vector<Nudge> out;
+  for (int k = 0; k < 2000; ++k) {
+    const double overlap = k % 7 == 0 ? 0.0 : delta * (1.2 + std::sin(0.9 * k));
+    const double size = std::pow(10.0, -4 + 5.0 * (k % 11) / 10);  // of the overlap: some open
+    out.push_back({overlap, mu * kn * overlap * std::sin(1.7 * k), arm * kn * overlap * std::cos(2.3 * k),
+                   motion(size * delta * std::sin(3.1 * k), size * yield * std::cos(4.3 * k), size * roll_yield * std::sin(5.9 * k))});
+  }
+  return out;
+}
+
+// The step's changes are what operator() adds to the forces it made before.
+TEST(ContactLaw, StepIsTheChangeOfItsForces)
+{
+  int stuck = 0, sliding = 0, rolling = 0, open = 0;
+  for (const Nudge& n : nudges()) {
+    Law::History history{V(n.tangential), V(n.moment)};
+    const ContactForce<V> before = law()(motion(n.overlap, 0, 0), history);
+    const ContactStep<V> step = law().step(V(n.overlap), history, n.by.overlap, n.by.sliding, n.by.rolling);
+    const double after = n.overlap > 0 ? std::max(0.0, n.overlap + n.by.overlap[0]) : 0.0;  // no new contact
+    const ContactForce<V> f = law()({V(after), V(after), n.by.sliding, n.by.rolling}, history);
+    EXPECT_NEAR(kn * step.closing[0], f.normal_to_branch[0] - before.normal_to_branch[0], 1e-14 * fn);
+    EXPECT_NEAR(step.tangential.change[0], f.tangential[0] - before.tangential[0], 1e-14 * fn);
+    EXPECT_NEAR(step.moment.change[0], f.moment[0] - before.moment[0], 1e-14 * arm * fn);
+    open += after == 0 ? 1 : 0;
+    stuck += step.tangential.slope[0] != 0 && step.moment.slope[0] != 0 ? 1 : 0;
+    sliding += step.tangential.by_closing[0] != 0 ? 1 : 0;
+    rolling += step.moment.by_closing[0] != 0 ? 1 : 0;
+  }
+  EXPECT_GT(std::min({stuck, sliding, rolling, open}), 100);
+}
+
+// Piecewise linear: differences over a thousandth of the motion are the slopes, but across a corner.
+TEST(ContactLaw, StepHasTheSlopesOfItsChange)
+{
+  int corners = 0, compared = 0;
+  for (const Nudge& n : nudges()) {
+    const Law::History history{V(n.tangential), V(n.moment)};
+    const auto at = [&](double overlap, double sliding, double rolling) {
+      return law().step(V(n.overlap), history, n.by.overlap + V(overlap), n.by.sliding + V(sliding),
+                        n.by.rolling + V(rolling));
+    };
+    const double d = 1e-3 * delta, s = 1e-3 * yield, r = 1e-3 * roll_yield;
+    const ContactStep<V> here = at(0, 0, 0), closed = at(d, 0, 0), slid = at(0, s, 0), rolled = at(0, 0, r);
+    const auto same = [&](const ContactStep<V>& there) {
+      return there.normal_stiffness[0] == here.normal_stiffness[0] && there.tangential.slope[0] == here.tangential.slope[0] &&
+             there.tangential.by_closing[0] == here.tangential.by_closing[0] && there.moment.slope[0] == here.moment.slope[0] &&
+             there.moment.by_closing[0] == here.moment.by_closing[0];
+    };
+    if (!same(closed) || !same(slid) || !same(rolled)) {
+      ++corners;
+      continue;
+    }
+    ++compared;
+    EXPECT_NEAR(kn * (closed.closing[0] - here.closing[0]) / d, here.normal_stiffness[0], 1e-9 * kn);
+    EXPECT_NEAR((closed.tangential.change[0] - here.tangential.change[0]) / d, here.tangential.by_closing[0], 1e-9 * kn);
+    EXPECT_NEAR((closed.moment.change[0] - here.moment.change[0]) / d, here.moment.by_closing[0], 1e-9 * arm * kn);
+    EXPECT_NEAR((slid.tangential.change[0] - here.tangential.change[0]) / s, here.tangential.slope[0], 1e-9 * kt);
+    EXPECT_NEAR((rolled.moment.change[0] - here.moment.change[0]) / r, here.moment.slope[0], 1e-9 * kr);
+  }
+  EXPECT_LT(corners, compared / 10);
+}
+
 TEST(ContactLawLanes, WideDoubleIsBitIdenticalToScalar) { check_lanes_against_scalar<double>(); }
 TEST(ContactLawLanes, WideFloatIsBitIdenticalToScalar) { check_lanes_against_scalar<float>(); }
 

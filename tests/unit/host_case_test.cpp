@@ -56,6 +56,7 @@ TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
   EXPECT_EQ(complaint(teams, {"newton.tangent=contact"}), "");
   EXPECT_NE(complaint(teams, {"newton.tangent=elastic"}).find("newton.tangent"), std::string::npos);
   EXPECT_NE(complaint(teams, {"newton.tangent=static"}).find("newton.tangent"), std::string::npos);
+  EXPECT_NE(complaint("kind = 'probe'\n[engine]\nbackend = 'teams'\n", {"probe.tangent=loading"}).find("probe.tangent"), std::string::npos);
   const std::string biaxial = "kind = 'biaxial'\n[engine]\nbackend = 'teams'\n[output]\nmicrostructure = ['fabric']\n";
   EXPECT_NE(complaint(biaxial, {}).find("output.microstructure"), std::string::npos);
   EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, EngineBackend::teams);

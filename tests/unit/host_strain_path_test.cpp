@@ -55,6 +55,41 @@ TEST_F(StrainPath, AGivenPathIsThatOfSingleEvaluations) {
   EXPECT_EQ(points.back().evaluations, 1);
 }
 
+// A larger increment takes more steps: each begins anew.
+TEST_F(StrainPath, EachIncrementChoosesItsSteps) {
+  RvePool pool(rve_, PoolOptions{}, 1), by_hand(rve_, PoolOptions{}, 1);
+  const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}}, {.gradient = {0, 0, 0, -1.7e-3}}}, {1.0});
+  ASSERT_TRUE(end_.usable);
+  std::vector<fem::Stress> stress(1);
+  std::vector<fem::Tangent> tangent(1);
+  for (const double strain : {1e-3, 1.7e-3}) {
+    fem::Gradient h;
+    h << 0, 0, 0, -strain;
+    by_hand.begin_increment();
+    by_hand.evaluate(std::span(&h, 1), stress, tangent);
+    by_hand.commit();
+  }
+  EXPECT_EQ(points.back().stress, stress[0]);
+}
+
+TEST_F(StrainPath, ReplicasAreScaledAndEachFindsItsOwn) {
+  const std::vector<double> scale{1.0, 1.3};
+  for (const bool held : {false, true}) {
+    RvePool pool(rve_, PoolOptions{}, 2);
+    const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 4, .constant_xx = held}}, scale);
+    ASSERT_TRUE(end_.usable);
+    EXPECT_EQ(end_.missed, 0);
+    for (const PathPoint& at : points) {
+      EXPECT_NEAR(at.strain.yy, at.increment * std::log1p(-1e-3 * scale[at.rve]), 1e-12);
+      const double start = points[at.rve].stress(0);
+      if (held) {
+        EXPECT_NEAR(at.stress(0), start, lateral_tolerance * std::abs(start));
+      }
+    }
+    EXPECT_LT(points[points.size() - 1].stress(1), points[points.size() - 2].stress(1)) << "the second is compressed more";
+  }
+}
+
 TEST_F(StrainPath, LateralStressIsHeldWhereAsked) {
   RvePool pool(rve_, {EngineCase{}}, 2);
   const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 8, .constant_xx = true}}, {1.0, 1.0});

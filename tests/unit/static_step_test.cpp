@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "host/rve_answers.hpp"
 #include "kernels/committed_contacts.hpp"
 #include "tests/engine_support.hpp"
 
@@ -182,13 +183,18 @@ EngineSettings to_the_end(TangentKind kind = TangentKind::contact) {
 class StaticStep : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    for (int sheared = 0; sheared < 2; ++sheared) {
-      reference::Rve rve = reference::consolidated_packing(80, 2, 1e5, 0.0, reference::Material{});
-      if (sheared == 1) strain(rve, {1.003, 0, 0, 0.99}, {.steps = 12000, .hold_steps = 1500});
-      states_.push_back(clones(rve, 2));
-      run(states_.back(), std::vector<StrainRequest>(2, {.hold_cap = 200000}), to_the_end());
-      commit(states_.back());
-    }
+    const reference::Rve isotropic = reference::consolidated_packing(80, 2, 1e5, 0.0, reference::Material{});
+    reference::Rve sheared = isotropic;
+    strain(sheared, {1.003, 0, 0, 0.99}, {.steps = 12000, .hold_steps = 1500});
+    add(isotropic, {});
+    add(sheared, {});
+    add(isotropic, {.f_rel = {1.015, 0, 0, 0.95}, .strain_steps = 60000});
+  }
+  static void add(const reference::Rve& rve, StrainRequest to) {
+    to.hold_cap = 200000;
+    states_.push_back(clones(rve, 2));
+    run(states_.back(), std::vector<StrainRequest>(2, to), to_the_end());
+    commit(states_.back());
   }
   static void TearDownTestSuite() { states_.clear(); }
 
@@ -203,20 +209,28 @@ class StaticStep : public testing::Test {
     return {b[0] - a[0], b[3] - a[3], 0.5 * (b[1] + b[2] - a[1] - a[2])};
   }
 
+  /// The loading tangent at rest, columns by unit strain. @param size of the strain it is the secant of; its sign: of all directions
+  static Eigen::Matrix3d loading(int state, double size, const EngineSettings& like) {
+    EngineSettings settings = like;
+    settings.tangent = TangentKind::loading;
+    settings.tangent_strain = size;
+    const RveReport r = run(states_[static_cast<std::size_t>(state)], std::vector<StrainRequest>(2), settings).front();
+    EXPECT_EQ(r.tangent_kind, TangentKind::loading);
+    EXPECT_FALSE(r.tangent_capped);
+    return host::whole_tangent_of(r);
+  }
+
   /// Elastic tangent times `strain`, and what the stress itself changes by: sigma e + e sigma (half of it: the branches), - tr e sigma.
   static Voigt elastic(int state, const Voigt& strain) {
     RveBatch& batch = states_[static_cast<std::size_t>(state)];
     const RveReport r = run(batch, std::vector<StrainRequest>(2), to_the_end(TangentKind::elastic)).front();
-    const double* d = r.tangent;
-    Eigen::Matrix3d matrix;
-    matrix << d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5];
     const double xx = r.stress[0], yy = r.stress[3], xy = 0.5 * (r.stress[1] + r.stress[2]), tr = strain[0] + strain[1];
     const Voigt carried(xx * strain[0] + xy * 0.5 * strain[2], yy * strain[1] + xy * 0.5 * strain[2],
                         0.5 * (0.5 * strain[2] * (xx + yy) + xy * tr));
-    return matrix * strain + carried - tr * Voigt(xx, yy, xy);
+    return host::tangent_of(r) * strain + carried - tr * Voigt(xx, yy, xy);
   }
 
-  static inline std::vector<RveBatch> states_;  ///< isotropic, sheared to 1 %
+  static inline std::vector<RveBatch> states_;  ///< isotropic, sheared to 1 % and to 5 %
 };
 
 const Voigt directions[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -233,6 +247,41 @@ TEST_F(StaticStep, SmallProbesMeasureTheElasticTangent) {
       }
     }
   }
+}
+
+// All main components by columns, forward and back, through the engine. The default tolerance, float and double.
+TEST_F(StaticStep, LoadingTangentIsWhatProbesOfItsSizeMeasure) {
+  const EngineSettings single;
+  for (const int state : {0, 1, 2}) {
+    for (const double size : {1e-6, -1e-6, 1e-5, -1e-5}) {
+      const Eigen::Matrix3d d = loading(state, size, in_double()), rounded = loading(state, size, single);
+      for (int a = 0; a < 3; ++a) {
+        const Voigt measured = probe(state, size * Voigt::Unit(a)) / size;
+        for (const int b : a == 2 ? std::vector<int>{2} : std::vector<int>{0, 1}) {
+          EXPECT_NEAR(d(b, a) / measured[b], 1.0, 0.02) << state << ", " << size << ": " << b << a;
+          EXPECT_NEAR(rounded(b, a) / measured[b], 1.0, 0.02) << state << ", " << size << ": " << b << a;
+        }
+      }
+    }
+  }
+}
+
+// Solved to the end, lanes and dense step are the same numbers, nonsymmetric part and all.
+TEST_F(StaticStep, LoadingTangentFollowsTheDenseStep) {
+  EngineSettings exact = in_double();
+  exact.tangent_tolerance = 1e-9;
+  for (const int state : {0, 1, 2}) {
+    for (const double size : {1e-6, 1e-5, -1e-5}) {
+      const Eigen::Matrix3d d = loading(state, size, exact);
+      for (int a = 0; a < 3; ++a) {
+        const Step step(states_[static_cast<std::size_t>(state)], size * Voigt::Unit(a));
+        const double off = (d.col(a) - step.stress_change() / size).cwiseAbs().maxCoeff();
+        EXPECT_LT(off, 1e-6 * d.cwiseAbs().maxCoeff()) << state << ", " << size << ": " << a << ", " << step.at_caps();
+      }
+    }
+  }
+  const Eigen::Matrix3d d = loading(2, 1e-5, exact);
+  EXPECT_GT(std::abs(d(1, 0) - d(0, 1)), 0.1 * d(1, 1)) << "no contact slides: the test shows nothing";
 }
 
 TEST_F(StaticStep, NoContactAtRestIsAtItsCapButManyAreNear) {

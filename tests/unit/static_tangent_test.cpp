@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "host/rve_answers.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {
@@ -20,13 +21,6 @@ EngineSettings asking(TangentKind kind, double tolerance = 1e-12) {
   settings.tangent = kind;
   settings.tangent_tolerance = tolerance;
   return settings;
-}
-
-Matrix matrix_of(const RveReport& r) {
-  const double* d = r.tangent;
-  Matrix m;
-  m << d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5];
-  return m;
 }
 
 RveBatch one(reference::Rve rve) {
@@ -139,7 +133,7 @@ TEST_F(StaticTangent, LatticeIsAffine) {
   const double unit = 2.0 / (std::sqrt(3.0) * rve.material.thickness) * 3.0 / 8.0;
   Matrix expected;
   expected << 3 * k.normal + kt, k.normal - kt, 0, k.normal - kt, 3 * k.normal + kt, 0, 0, 0, k.normal + kt;
-  expect_near(matrix_of(r), unit * expected, 1e-9);
+  expect_near(host::tangent_of(r), unit * expected, 1e-9);
   EXPECT_EQ(r.tangent_kind, TangentKind::elastic);
   EXPECT_FALSE(r.tangent_capped);
 }
@@ -162,7 +156,7 @@ TEST_F(StaticTangent, RowIsSpringsInSeries) {
   const RveReport r = at_rest(batch, asking(TangentKind::elastic));
   Matrix expected = Matrix::Zero();
   expected(0, 0) = x / (2e-2 * rve.material.thickness * compliance);
-  expect_near(matrix_of(r), expected, 1e-9);
+  expect_near(host::tangent_of(r), expected, 1e-9);
   EXPECT_GT(contact.tangent[0], 1.05 * expected(0, 0));
   EXPECT_GT(contact.tangent[5], 0.1 * expected(0, 0));
 }
@@ -185,13 +179,13 @@ TEST_F(StaticTangent, FollowsTheDenseSolve) {
   for (const reference::Rve* rve : {&dense_, &sheared_}) {
     RveBatch batch = clones(*rve, 1);
     const Matrix told_apart = dense_tangent(*rve, 1.0 - 1e-4), stuck = dense_tangent(*rve, 2.0);
-    expect_near(matrix_of(at_rest(batch, asking(TangentKind::static_))), told_apart, 1e-6);
-    expect_near(matrix_of(at_rest(batch, asking(TangentKind::elastic))), stuck, 1e-6);
+    expect_near(host::tangent_of(at_rest(batch, asking(TangentKind::static_))), told_apart, 1e-6);
+    expect_near(host::tangent_of(at_rest(batch, asking(TangentKind::elastic))), stuck, 1e-6);
     const double by_default = EngineSettings{}.tangent_tolerance;
-    expect_near(matrix_of(at_rest(batch, asking(TangentKind::static_, by_default))), told_apart, 5e-3);
+    expect_near(host::tangent_of(at_rest(batch, asking(TangentKind::static_, by_default))), told_apart, 5e-3);
     EngineSettings single = asking(TangentKind::static_, by_default);
     single.precision = Precision::float32;
-    expect_near(matrix_of(at_rest(batch, single)), told_apart, 5e-3);
+    expect_near(host::tangent_of(at_rest(batch, single)), told_apart, 5e-3);
     if (rve == &dense_) continue;
     EXPECT_LT(told_apart(1, 1), 0.98 * stuck(1, 1)) << "no contact slides: the test shows nothing";
   }
@@ -200,9 +194,9 @@ TEST_F(StaticTangent, FollowsTheDenseSolve) {
 TEST_F(StaticTangent, IsPositiveAndSofterThanTheContactTangent) {
   for (const reference::Rve* rve : {&dense_, &sheared_}) {
     RveBatch batch = clones(*rve, 1);
-    const Matrix contact = matrix_of(at_rest(batch, in_double()));
+    const Matrix contact = host::tangent_of(at_rest(batch, in_double()));
     for (const TangentKind kind : {TangentKind::elastic, TangentKind::static_}) {
-      const Matrix d = matrix_of(at_rest(batch, asking(kind, 2e-3)));
+      const Matrix d = host::tangent_of(at_rest(batch, asking(kind, 2e-3)));
       EXPECT_GT(d.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0);
       EXPECT_GT((contact - d).selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 0);
     }
@@ -215,11 +209,11 @@ TEST_F(StaticTangent, IsPositiveAndSofterThanTheContactTangent) {
 TEST_F(StaticTangent, ElasticOneIsWhatSmallProbesMeasure) {
   for (const double sign : {1.0, -1.0}) {
     RveBatch batch = clones(dense_, 1);
-    const Matrix d = matrix_of(at_rest(batch, asking(TangentKind::elastic))), measured = probe(dense_, sign * 1e-6);
+    const Matrix d = host::tangent_of(at_rest(batch, asking(TangentKind::elastic))), measured = probe(dense_, sign * 1e-6);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(d(k, k), measured(k, k), 0.02 * measured(k, k)) << k;
   }
   RveBatch batch = clones(sheared_, 1);
-  const Matrix d = matrix_of(at_rest(batch, asking(TangentKind::elastic)));
+  const Matrix d = host::tangent_of(at_rest(batch, asking(TangentKind::elastic)));
   EXPECT_NEAR(d(0, 0) / probe(sheared_, -1e-6)(0, 0), 1.0, 0.02);
   EXPECT_NEAR(d(1, 1) / probe(sheared_, 1e-6)(1, 1), 1.0, 0.02);
 }
@@ -231,7 +225,7 @@ TEST_F(StaticTangent, FrictionlessOneIsWhatSmallProbesMeasure) {
   material.rolling_stiffness = 0;
   const reference::Rve rve = reference::consolidated_packing(80, 3, 1e4, 0.0, material);
   RveBatch batch = one(rve);
-  const Matrix d = matrix_of(at_rest(batch, asking(TangentKind::static_))), measured = probe(rve, 1e-8);
+  const Matrix d = host::tangent_of(at_rest(batch, asking(TangentKind::static_))), measured = probe(rve, 1e-8);
   for (int k = 0; k < 2; ++k) EXPECT_NEAR(d(k, k), measured(k, k), 0.02 * measured(k, k)) << k;
 }
 

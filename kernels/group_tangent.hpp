@@ -1,0 +1,90 @@
+#pragma once
+/// The static tangents of a group's lanes in place of eq. (4) in their reports, where they were found and can be used.
+
+#include <algorithm>
+
+#include "kernels/group_run.hpp"
+
+namespace voussoir::kernels {
+
+/// Whether static tangent `d` [Pa] is no stiffer than the contact one: it cannot be, but where rounding spoilt the
+/// iterations. False for NaN. The slack covers the factor y (kernels/README.md, "Static tangent").
+[[nodiscard]] inline bool is_softer(const double* d, const double* contact) {
+  constexpr double slack = 1.05;
+  return d[0] <= slack * contact[0] && d[3] <= slack * contact[3] && d[5] <= slack * contact[5];
+}
+
+/// A tangent that may take eq. (4)'s place in a report.
+struct FoundTangent {
+  TangentKind kind;
+  double tangent[6];  ///< [Pa]
+  double skew[3];     ///< [Pa]
+  int iterations;
+  bool converged;
+};
+
+/// Lane l of a symmetric tangent. @param v volume of its cell [m^3]
+template <class V>
+[[nodiscard]] FoundTangent found_in(const StaticTangent<V>& result, TangentKind kind, std::size_t l, double v) {
+  FoundTangent found{kind, {}, {}, result.iterations[l], result.converged[l]};
+  for (std::size_t k = 0; k < 6; ++k) found.tangent[k] = static_cast<double>(result.tangent[k][l]) / v;
+  return found;
+}
+
+/// Lane l of a loading tangent, with the stress's change by that of the volume. @param stress xx xy yx yy [Pa]
+template <class V>
+[[nodiscard]] FoundTangent found_in(const LoadingTangent<V>& result, const double* stress, std::size_t l, double v) {
+  const double carried[3] = {stress[0], stress[3], 0.5 * (stress[1] + stress[2])};
+  double d[3][3];
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double dilation = a < 2 ? 1.0 : 0.0;
+    for (std::size_t b = 0; b < 3; ++b)
+      d[b][a] = static_cast<double>(result.change[a][b][l]) / v - dilation * carried[b];
+  }
+  return {TangentKind::loading,
+          {d[0][0], 0.5 * (d[0][1] + d[1][0]), 0.5 * (d[0][2] + d[2][0]), d[1][1], 0.5 * (d[1][2] + d[2][1]), d[2][2]},
+          {0.5 * (d[0][1] - d[1][0]), 0.5 * (d[0][2] - d[2][0]), 0.5 * (d[1][2] - d[2][1])},
+          result.iterations[l],
+          result.converged[l]};
+}
+
+/// `found` into the report, unless it cannot be used. @param contact eq. (4)
+inline void replace_tangent(RveReport& report, const FoundTangent& found, const double* contact) {
+  if (!is_softer(found.tangent, contact)) return;
+  std::copy_n(found.tangent, 6, report.tangent);
+  std::copy_n(found.skew, 3, report.tangent_skew);
+  report.tangent_kind = found.kind;
+}
+
+/// The static tangents into the reports of the lanes that have an answer; eq. (4) stays where they cannot be used, and the elastic
+/// one where a loading one is not found.
+template <class Law, class Run>
+void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
+  const bool loads = run.settings.tangent == TangentKind::loading;
+  std::array<bool, Run::width> live{};
+  for (std::size_t l = 0; l < Run::width; ++l) live[l] = run.lanes[l].rve >= 0 && !is_failure(reports[l].status);
+  const auto at_once = static_tangent<Law>(run.group, run.springs, live, run.settings);
+  LoadingTangent<typename Run::Value> on_the_way;
+  if (loads) {
+    run.step.size = step_sizes<typename Run::Value>(run.lanes, run.settings.tangent_strain);
+    on_the_way = loading_tangent<Law>(run.group, run.springs, run.step, at_once, live, run.settings);
+  }
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    if (!live[l]) continue;
+    RveReport& report = reports[l];
+    double contact[6];
+    std::copy_n(report.tangent, 6, contact);
+    const double v = volume_of(run, l);
+    const FoundTangent first = found_in(at_once, loads ? TangentKind::elastic : run.settings.tangent, l, v);
+    report.tangent_iterations = first.iterations;
+    report.tangent_capped = !first.converged;
+    replace_tangent(report, first, contact);
+    if (!loads) continue;
+    const FoundTangent second = found_in(on_the_way, report.stress, l, v);
+    report.tangent_iterations += second.iterations;
+    report.tangent_capped = !second.converged;
+    if (second.converged) replace_tangent(report, second, contact);
+  }
+}
+
+}  // namespace voussoir::kernels

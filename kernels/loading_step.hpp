@@ -1,0 +1,139 @@
+#pragma once
+/// A small step of strain on the contacts at rest, with the law's caps: what it does to the forces, and the slopes of that.
+///
+/// The geometry is linear, the law is not: a contact whose spring would pass its cap follows mu f_n (or arm f_n) instead, an opening
+/// one loses its forces (LinearContactLaw::step). Forces that are carried already turn with their contacts. All motions and forces
+/// are per strain of the step, so that they have the size of static_tangent.hpp's.
+
+#include "kernels/contact_springs.hpp"
+
+namespace voussoir::kernels {
+
+/// What a contact pulls with for its changes of length, at its state in the step. By closing: of forces at their caps.
+template <class V>
+struct StepSlope {
+  V normal, shear, moment, shear_by_closing, moment_by_closing;  ///< k_n, k_t / y [N/m], k_r [N m/rad], [N/m], [N]
+};
+
+template <class V>
+struct StepSpring {
+  V turned_x, turned_y;                          ///< carried force on i, turned by a right angle, over |b| [N/m]
+  std::array<StepSlope<V>, unit_strains> slope;  ///< at the last take_step
+};
+
+/// Working arrays of one grain in the biconjugate gradients, beside those of SolverGrain.
+template <class V>
+struct StepGrain {
+  StrainDofs<V> shadow, half, half_image;
+};
+
+/// What the step adds to a SpringSystem. Reused from group to group; empty unless a loading tangent is asked for.
+template <class V>
+struct StepSystem {
+  PerStrain<V> size;  ///< signed strain of each column's step [-]
+  std::vector<StepSpring<V>> springs;
+  std::vector<StepGrain<V>> grains;
+};
+
+/// Change of sum P (x) b by unit strain: xx, yy, xy (symmetrised) [N m]; the volume's change is not in it.
+template <class V>
+using StressChange = std::array<std::array<V, 3>, unit_strains>;
+
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION SpringForce<V> force_of(const StepSlope<V>& k, const SpringStrain<V>& e) {
+  return {k.normal * e.normal, fused(k.shear, e.sliding, -(k.shear_by_closing * e.normal)),
+          fused(k.moment, e.rolling, -(k.moment_by_closing * e.normal))};
+}
+
+/// As `pull`, with the carried force turned. Returns the change of the force on i.
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull_and_turn(const SpringLanes<V>& s, const StepSpring<V>& carried,
+                                                       const SpringForce<V>& f, const V& across, const V& radius_i,
+                                                       const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) {
+  const GrainDofs<V> change = pull(s, f, radius_i, radius_j, on_i, on_j);
+  const V tx = across * carried.turned_x, ty = across * carried.turned_y;
+  on_i.x = on_i.x + tx;
+  on_i.y = on_i.y + ty;
+  on_j.x = on_j.x - tx;
+  on_j.y = on_j.y - ty;
+  return {change.x + tx, change.y + ty, change.spin};
+}
+
+/// The contacts' carried forces and the arrays' sizes. After collect_springs.
+template <class V>
+void prepare_step(const GroupState<V>& group, const SpringSystem<V>& system, StepSystem<V>& step) {
+  step.springs.resize(system.springs.size());
+  step.grains.resize(system.grains.size());
+  for (std::size_t c = 0; c < system.springs.size(); ++c) {
+    const SpringLanes<V>& s = system.springs[c];
+    const auto p = static_cast<std::size_t>(system.shapes[c].pair);
+    const V fn = V(group.pair_shapes[p].normal_stiffness) * system.overlaps[c] * s.ratio;  // both over |b|
+    const V ft = group.pairs[p].tangential / s.branch;
+    step.springs[c].turned_x = fused(fn, s.normal_y, -(ft * s.normal_x));
+    step.springs[c].turned_y = -fused(fn, s.normal_x, ft * s.normal_y);
+  }
+}
+
+/// The law's answer for contact c under strain `e` of column `a`, per strain of the step; its slopes are kept.
+template <class Law, class V>
+KOKKOS_FORCEINLINE_FUNCTION SpringForce<V> answer(const GroupState<V>& group, const SpringSystem<V>& system,
+                                                  StepSystem<V>& step, std::size_t c, std::size_t a,
+                                                  const SpringStrain<V>& e) {
+  const auto p = static_cast<std::size_t>(system.shapes[c].pair);
+  const V& size = step.size[a];
+  const V over_size = V(1) / size, over_ratio = V(1) / system.springs[c].ratio;
+  const V over_sum(group.pair_shapes[p].inverse_sum);
+  const ContactStep<V> now = law_of<Law, V>(group.pair_shapes[p])
+                                 .step(system.overlaps[c], {group.pairs[p].tangential, group.pairs[p].moment},
+                                       -(size * e.normal * over_sum), size * e.sliding, size * e.rolling);
+  step.springs[c].slope[a] = {now.normal_stiffness, now.tangential.slope * over_ratio, now.moment.slope,
+                              now.tangential.by_closing * over_ratio * over_sum, now.moment.by_closing * over_sum};
+  const V fn = V(group.pair_shapes[p].normal_stiffness) * now.closing / over_sum;
+  return {-(fn * over_size), now.tangential.change * over_ratio * over_size, now.moment.change * over_size};
+}
+
+/// Adds what a contact contributes to the change of the stress. @param force change of that on i; @param dx, dy of the far end
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION void add_change(const SpringLanes<V>& s, const StepSpring<V>& carried,
+                                            const GrainDofs<V>& force, const V& dx, const V& dy,
+                                            std::array<V, 3>& sum) {
+  const V bx = s.branch * s.normal_x, by = s.branch * s.normal_y, half(real_of<V>(0.5));
+  const V px = s.branch * carried.turned_y, py = -(s.branch * carried.turned_x);
+  sum[0] = fused(force.x, bx, fused(px, dx, sum[0]));
+  sum[1] = fused(force.y, by, fused(py, dy, sum[1]));
+  sum[2] = fused(half, fused(force.x, by, fused(force.y, bx, fused(px, dy, py * dx))), sum[2]);
+}
+
+/// Residual forces on the grains at their present motions, the contacts' slopes there, and the change of the stress.
+template <class Law, class V>
+void take_step(const GroupState<V>& group, SpringSystem<V>& system, StepSystem<V>& step, StressChange<V>& change) {
+  const V zero(0);
+  const GrainDofs<V> none{zero, zero, zero};
+  for (SolverGrain<V>& g : system.grains) g.residual = {none, none, none};
+  change.fill({zero, zero, zero});
+  for_each_spring(system, [&](std::size_t c, SolverGrain<V>& gi, SolverGrain<V>& gj, const V& ri, const V& rj) {
+    const SpringLanes<V>& s = system.springs[c];
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      V dx, dy;
+      const SpringStrain<V> e = strain_of(s, a, gi, gj, ri, rj, dx, dy);
+      const SpringForce<V> f = answer<Law>(group, system, step, c, a, e);
+      const GrainDofs<V> on_i = pull_and_turn(s, step.springs[c], f, e.across, ri, rj, gi.residual[a], gj.residual[a]);
+      add_change(s, step.springs[c], on_i, dx, dy, change[a]);
+    }
+  });
+}
+
+/// The contacts' slopes at the last take_step, as `respond` takes them.
+template <class V>
+struct SlopesAct {
+  const SpringSystem<V>& system;
+  const StepSystem<V>& step;
+
+  KOKKOS_FORCEINLINE_FUNCTION void operator()(std::size_t c, std::size_t a, const SpringStrain<V>& e, const V& radius_i,
+                                              const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
+    const StepSpring<V>& now = step.springs[c];
+    pull_and_turn(system.springs[c], now, force_of(now.slope[a], e), e.across, radius_i, radius_j, on_i, on_j);
+  }
+};
+
+}  // namespace voussoir::kernels
