@@ -89,6 +89,10 @@ class Study:
         every = 1 if setting.knob in ("reference", "preset") else FEWER_SEEDS_AT.get(kpa, 1)
         return self.seeds[:max(1, len(self.seeds) // every)]
 
+    def seeds_needed(self, chosen, kpa):
+        """Of the reference solution: no more than those of what it is compared with."""
+        return {seed for setting in chosen for seed in self.seeds_of(setting, kpa)}
+
     def path_folders(self, setting, kpa):
         return {seed: self.folder / f"path_{kpa}" / f"{setting.name}_{seed}" for seed in self.seeds_of(setting, kpa)}
 
@@ -120,23 +124,24 @@ class Study:
             for setting in (self.reference(kpa), *chosen):
                 keys = {k: v for k, v in setting.keys.items() if "." in k}
                 plain = Setting("packing", "_".join(str(v) for v in keys.values()) or "standard", {"preset": "fast", **keys})
-                for seed in self.seeds_of(setting, kpa):
+                for seed in sorted(self.seeds_needed(chosen, kpa) & set(self.seeds_of(setting, kpa))):
                     jobs[self.folder / f"packing_{kpa}" / f"{plain.name}_{seed}"] = self.text(plain, kpa, seed, path=False)
         return jobs.items()
 
     def path_jobs(self, chosen):
         for setting, kpa in self.with_reference(chosen):
             for seed, folder in self.path_folders(setting, kpa).items():
-                yield folder, self.text(setting, kpa, seed, path=True)
+                if seed in self.seeds_needed(chosen, kpa):
+                    yield folder, self.text(setting, kpa, seed, path=True)
 
     def probe_jobs(self, chosen):
         """From the isotropic packing, and from the end of the reference solution's path."""
         for setting, kpa in self.with_reference(chosen):
             ends = self.path_folders(self.reference(kpa), kpa)
-            for seed, folder in self.probe_folders(setting, kpa, "isotropic").items():
-                yield folder, self.text(setting, kpa, seed, path=False)
-            for seed, folder in self.probe_folders(setting, kpa, "sheared").items():
-                yield folder, self.text(setting, kpa, seed, path=False, file=(ends[seed] / f"end_{seed}.h5").resolve())
+            isotropic, sheared = (self.probe_folders(setting, kpa, state) for state in ("isotropic", "sheared"))
+            for seed in sorted(self.seeds_needed(chosen, kpa) & set(isotropic)):
+                yield isotropic[seed], self.text(setting, kpa, seed, path=False)
+                yield sheared[seed], self.text(setting, kpa, seed, path=False, file=(ends[seed] / f"end_{seed}.h5").resolve())
 
     def with_reference(self, chosen):
         return [(setting, kpa) for kpa in self.pressures for setting in (self.reference(kpa), *chosen)]
