@@ -2,7 +2,7 @@
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.ticker import LogLocator
+from matplotlib.ticker import LogLocator, NullFormatter
 from voussoir_plots.style import save, use_style
 
 from .errors import evaluation_error, noise_share, path, path_error, path_scatter, probes, STRAINS
@@ -160,7 +160,8 @@ def draw_errors(findings, file):
         axes[-1][column].axhline(scatter.get("chaos", np.nan), color="0.5", linestyle="--", label="scatter of replicas")
         axes[-1][column].set_xlabel("steps of an increment (all its evaluations)")
         axes[-1][column].xaxis.set_minor_locator(LogLocator(subs=(2, 5)))
-        axes[-1][column].xaxis.set_minor_formatter("{x:g}")
+        low, high = axes[-1][column].get_xlim()
+        axes[-1][column].xaxis.set_minor_formatter("{x:g}" if high < 100 * low else NullFormatter())
         axes[-1][column].xaxis.set_major_formatter("{x:g}")
     for axis, (_, label, _) in zip(axes[:, 0], ROWS, strict=True):
         axis.set_ylabel(label)
