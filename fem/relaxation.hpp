@@ -16,7 +16,7 @@ struct RelaxationOptions {
   int max_substeps = 100;       ///< 0: increments are never relaxed
   int max_attempts = 3;         ///< iterates that start anew from the committed state before
   int max_settling = 3;         ///< substeps at equilibrium for grains at their step limit to come to rest
-  double near_residual = 0.2;   ///< residual over the reference of the tolerance below which they end at once [-]
+  double near_residual = 0.4;   ///< residual over the reference of the tolerance below which they end at once [-]
   double far_residual = 0.5;    ///< residual from which no increment is relaxed: it is cut [-]
   double least_factor = 0.25;   ///< on K^-1 R: the substep's time over the viscous time; the first substep has the last one's
                                 ///< of the relaxation before, 1 at a stage's start

@@ -71,7 +71,7 @@ struct EngineCase {
   double inertial_number = 3.0e-4;  ///< target inertial number of an increment [-]
   double hold_tolerance = 3.0e-4;   ///< unbalanced force ratio that ends the hold [-]
   EngineBackend backend = EngineBackend::automatic;  ///< one SIMD lane or one team of threads per RVE; automatic: teams on a GPU
-  int hold_cap = 1000;              ///< most steps of a hold
+  int hold_cap = 4000;              ///< most steps of a hold
   double skin = 0.1;                ///< neighbour skin over the mean grain diameter [-]
   int minimum_steps = 50;           ///< fewest strain steps of an increment
   int maximum_steps = 2000;         ///< most strain steps of an increment
@@ -125,7 +125,7 @@ struct NewtonCase {
   double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
   double relax_below = 1.0;                ///< share of a planned step up to which a failed step is relaxed, not cut [-]
   int relax_attempts = 3;                  ///< iterates from the committed state before an increment is relaxed
-  double relax_near = 0.2;                 ///< residual below which these end at once, relative as `tolerance` [-]
+  double relax_near = 0.4;                 ///< residual below which these end at once, relative as `tolerance` [-]
   int relax_substeps = 100;                ///< most substeps of a relaxation; 0: none is relaxed
   double smallest_cut = 1.0 / 64.0;        ///< smallest share of a planned step that cutting tries [-]
 };

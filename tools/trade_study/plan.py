@@ -44,7 +44,7 @@ def settings():
     increments, the largest in big ones."""
     every = [Setting("preset", name, {"preset": name}) for name in ("fast", "standard", "reference")]
     knobs = {"inertial_number": (3e-3, 1e-3, 3e-4, 1e-4, 3e-5), "hold_tolerance": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4),
-             "precision": ("float", "double"), "hold_cap": (0, 100, 1000), "skin": (0.05, 0.1, 0.2)}
+             "precision": ("float", "double"), "hold_cap": (0, 100, 1000, 4000), "skin": (0.05, 0.1, 0.2)}
     every += [Setting(knob, f"{value:g}" if not isinstance(value, str) else value, {"preset": "standard", knob: value})
               for knob, values in knobs.items() for value in values]
     every += [Setting("minimum_steps", str(n), {"preset": "standard", "minimum_steps": n}, 100) for n in (10, 20, 50, 100, 200)]
