@@ -231,7 +231,7 @@ template <class V>
 struct SpringsAct {
   const SpringSystem<V>& system;
 
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(std::size_t c, std::size_t, const SpringStrain<V>& e, const V& radius_i,
+  VOUSSOIR_LANES_INLINE void operator()(std::size_t c, std::size_t, const SpringStrain<V>& e, const V& radius_i,
                                               const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
     pull(system.springs[c], force_of(system.springs[c], e), radius_i, radius_j, on_i, on_j);
   }
@@ -247,7 +247,7 @@ void apply_springs(SpringSystem<V>& system) {
 
 /// Total strain of spring c under unit strain `a` and the grains' motion in answer to it.
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION SpringStrain<V> strain_of(const SpringLanes<V>& s, std::size_t a, const SolverGrain<V>& gi,
+VOUSSOIR_LANES_INLINE SpringStrain<V> strain_of(const SpringLanes<V>& s, std::size_t a, const SolverGrain<V>& gi,
                                                       const SolverGrain<V>& gj, const V& ri, const V& rj, V& dx,
                                                       V& dy) {
   dx = gj.motion[a].x - gi.motion[a].x;

@@ -14,6 +14,9 @@
 #include <immintrin.h>
 #endif
 
+/// Of loops that only lanes run: inlined whatever the compiler makes of their length, and not compiled for a device.
+#define VOUSSOIR_LANES_INLINE inline __attribute__((always_inline))
+
 namespace voussoir::kernels {
 
 namespace abi = Kokkos::Experimental::simd_abi;

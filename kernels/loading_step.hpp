@@ -40,14 +40,14 @@ template <class V>
 using StressChange = std::array<std::array<V, 3>, unit_strains>;
 
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION SpringForce<V> force_of(const StepSlope<V>& k, const SpringStrain<V>& e) {
+VOUSSOIR_LANES_INLINE SpringForce<V> force_of(const StepSlope<V>& k, const SpringStrain<V>& e) {
   return {k.normal * e.normal, fused(k.shear, e.sliding, -(k.shear_by_closing * e.normal)),
           fused(k.moment, e.rolling, -(k.moment_by_closing * e.normal))};
 }
 
 /// As `pull`, with the carried force turned. Returns the change of the force on i.
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull_and_turn(const SpringLanes<V>& s, const StepSpring<V>& carried,
+VOUSSOIR_LANES_INLINE GrainDofs<V> pull_and_turn(const SpringLanes<V>& s, const StepSpring<V>& carried,
                                                        const SpringForce<V>& f, const V& across, const V& radius_i,
                                                        const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) {
   const GrainDofs<V> change = pull(s, f, radius_i, radius_j, on_i, on_j);
@@ -76,7 +76,7 @@ void prepare_step(const GroupState<V>& group, const SpringSystem<V>& system, Ste
 
 /// The law's answer for contact c under strain `e` of column `a`, per strain of the step; its slopes are kept.
 template <class Law, class V>
-KOKKOS_FORCEINLINE_FUNCTION SpringForce<V> answer(const GroupState<V>& group, const SpringSystem<V>& system,
+VOUSSOIR_LANES_INLINE SpringForce<V> answer(const GroupState<V>& group, const SpringSystem<V>& system,
                                                   StepSystem<V>& step, std::size_t c, std::size_t a,
                                                   const SpringStrain<V>& e) {
   const auto p = static_cast<std::size_t>(system.shapes[c].pair);
@@ -94,7 +94,7 @@ KOKKOS_FORCEINLINE_FUNCTION SpringForce<V> answer(const GroupState<V>& group, co
 
 /// Adds what a contact contributes to the change of the stress. @param force change of that on i; @param dx, dy of the far end
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION void add_change(const SpringLanes<V>& s, const StepSpring<V>& carried,
+VOUSSOIR_LANES_INLINE void add_change(const SpringLanes<V>& s, const StepSpring<V>& carried,
                                             const GrainDofs<V>& force, const V& dx, const V& dy,
                                             std::array<V, 3>& sum) {
   const V bx = s.branch * s.normal_x, by = s.branch * s.normal_y, half(real_of<V>(0.5));
@@ -129,7 +129,7 @@ struct SlopesAct {
   const SpringSystem<V>& system;
   const StepSystem<V>& step;
 
-  KOKKOS_FORCEINLINE_FUNCTION void operator()(std::size_t c, std::size_t a, const SpringStrain<V>& e, const V& radius_i,
+  VOUSSOIR_LANES_INLINE void operator()(std::size_t c, std::size_t a, const SpringStrain<V>& e, const V& radius_i,
                                               const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
     const StepSpring<V>& now = step.springs[c];
     pull_and_turn(system.springs[c], now, force_of(now.slope[a], e), e.across, radius_i, radius_j, on_i, on_j);

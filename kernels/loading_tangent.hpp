@@ -44,7 +44,7 @@ template <class V>
 
 /// x where the column runs and x is a number other than 0, else 0, which freezes the column.
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION V usable(const V& x, V& running) {
+VOUSSOIR_LANES_INLINE V usable(const V& x, V& running) {
   const V zero(0), magnitude = Kokkos::abs(x);
   const auto fine = (zero < running) && (zero < magnitude) && (magnitude < V(std::numeric_limits<real_of<V>>::max()));
   running = Kokkos::Experimental::condition(fine, running, zero);

@@ -125,7 +125,7 @@ auto shear_row() {
   pair.tangential_cap = real(caps.tangential);
   pair.moment_cap = real(caps.moment);
   const double a = 0.1 / k.normal_stiffness;  // a tenth of the squared stable step
-  const GrainShape<real> grain{real(radius), real(a), real(2.0 * a / (radius * radius))};
+  const GrainShape<real> grain{real(radius), real(a), real(2.0 * a / (radius * radius)), real(0.5 * a), real(a / (radius * radius))};
 
   using Functor = ShearRow<V, Rolling, Space>;
   const Functor functor{.pair_shape = pair,
