@@ -2,6 +2,7 @@
 /// Helpers of the engine's tests: batches made from the oracle's packings.
 
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,32 @@ inline std::vector<RveReport> run(RveBatch& batch, const std::vector<StrainReque
   std::vector<RveReport> reports(batch.size());
   advance(batch, std::span<const StrainRequest>(requests), settings, reports);
   return reports;
+}
+
+/// The first of a batch whose committed states are left as they are.
+inline RveReport at_rest(RveBatch& batch, const EngineSettings& settings) {
+  return run(batch, std::vector(batch.size(), StrainRequest{.hold_cap = 1}), settings).front();
+}
+
+/// One motion of `rve` alone and in a group of 19: number 7 moves alike, the others otherwise; 3 has a position that is not a number, 4 is
+/// pulled open.
+struct AloneAndInAGroup {
+  RveReport alone;
+  std::vector<RveReport> group;
+};
+
+inline AloneAndInAGroup run_alone_and_in_a_group(const reference::Rve& rve, const EngineSettings& settings) {
+  const StrainRequest general{.f_rel = {1.0004, 0.0012, -0.0005, 0.9994}, .strain_steps = 300, .hold_cap = 60};
+  RveBatch alone = clones(rve, 1), batch = clones(rve, 19);
+  std::vector<StrainRequest> requests(19, general);
+  for (std::size_t k = 0; k < 19; ++k) {
+    if (k == 7) continue;
+    const double e = 2e-3 * std::cos(1.0 * static_cast<double>(k));
+    requests[k].f_rel = {1 + 3 * e, 3 * e, -e, 1 - 2 * e};
+  }
+  requests[4].f_rel = {1.2, 0, 0, 1.2};
+  batch.committed.position(3, 3, 0) = std::numeric_limits<double>::quiet_NaN();
+  return {run(alone, {general}, settings).front(), run(batch, requests, settings)};
 }
 
 }  // namespace voussoir::kernels

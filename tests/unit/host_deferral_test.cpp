@@ -11,6 +11,7 @@
 
 #include "host/rve_answers.hpp"
 #include "host/rve_pool.hpp"
+#include "tests/host_support.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -150,13 +151,7 @@ TEST(Deferral, EndsInACheckAtTheLatestAfterSomeCommits) {
 
 class DeferringPool : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    Case input;
-    input.packing.grains = 60;
-    input.packing.pressure = 1e5;
-    const std::int64_t seed[] = {1};
-    rve_ = make_packings(input.soil, input.packing, seed).front();
-  }
+  static void SetUpTestSuite() { rve_ = small_packing(); }
 
   static EngineCase engine(double defer) {
     EngineCase engine;

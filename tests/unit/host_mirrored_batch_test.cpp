@@ -11,6 +11,7 @@
 #include "fem/linear_elastic.hpp"
 #include "host/mirrored_batch.hpp"
 #include "host/rve_pool.hpp"
+#include "tests/host_support.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -95,13 +96,9 @@ std::pair<double, double> fabric_of(const io::RveSnapshot& rve) {
 
 /// Every field of a mirrored point is what its mirrored grains have.
 TEST(MirroredBatch, FieldsAreThoseOfTheMirroredGrains) {
-  Case input;
-  input.packing.grains = 60;
-  input.packing.pressure = 1.0e4;
-  const std::int64_t seed[] = {1};
-  const PackedRve rve = make_packings(input.soil, input.packing, seed).front();
+  const PackedRve rve = small_packing(1.0e4);
   const kernels::MicrostructureRequest wanted{.fabric = true, .coordination = true, .strong_networks = true};
-  const auto pool = [&] { return std::make_unique<RvePool>(rve, PoolOptions{.engine = input.engine, .microstructure = wanted}, n); };
+  const auto pool = [&] { return std::make_unique<RvePool>(rve, PoolOptions{.engine = {}, .microstructure = wanted}, n); };
   MirroredBatch mirrored(pool());
   fem::Gradient h, opposite;  // the mirror image of h: all grains move as those of point 0
   h << -2e-3, 3e-3, 1e-3, 1e-3;

@@ -8,20 +8,14 @@
 #include <vector>
 
 #include "host/stored_packing.hpp"
+#include "tests/host_support.hpp"
 
 namespace voussoir::host {
 namespace {
 
 class StrainPath : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    Case input;
-    input.packing.grains = 60;
-    input.packing.pressure = 1e5;
-    const std::int64_t seed[] = {1};
-    rve_ = make_packings(input.soil, input.packing, seed).front();
-    soil_ = input.soil;
-  }
+  static void SetUpTestSuite() { rve_ = small_packing(); }
 
   std::vector<PathPoint> walk(RvePool& pool, const std::vector<PathSegment>& segments, const std::vector<double>& scale) {
     std::vector<PathPoint> points;
@@ -30,7 +24,6 @@ class StrainPath : public testing::Test {
   }
 
   static inline PackedRve rve_;
-  static inline SoilCase soil_;
   PathEnd end_;
 };
 
@@ -137,7 +130,7 @@ TEST_F(StrainPath, AnImpossibleIncrementEndsIt) {
 TEST_F(StrainPath, TheStoredEndIsTheSameState) {
   RvePool pool(rve_, {EngineCase{}}, 1);
   (void)walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 5, .constant_xx = true}}, {1.0});
-  const auto stored = restored_packing(stored_packing(pool.packed(0), "test", "0"), soil_);
+  const auto stored = restored_packing(stored_packing(pool.packed(0), "test", "0"), SoilCase{});
   ASSERT_TRUE(stored.has_value());
   RvePool again(*stored, {EngineCase{}}, 1);
   fem::Gradient h;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "host/rve_answers.hpp"
@@ -21,10 +20,6 @@ EngineSettings asking(TangentKind kind, double strain = 1e-6, Precision precisio
   settings.tangent = kind;
   settings.tangent_strain = strain;
   return settings;
-}
-
-RveReport at_rest(RveBatch& batch, const EngineSettings& settings) {
-  return run(batch, std::vector(batch.size(), StrainRequest{.hold_cap = 1}), settings).front();
 }
 
 const StrainRequest still{.strain_steps = 400, .hold_cap = 100000};
@@ -110,21 +105,9 @@ TEST_F(LoadingTangent, OfALatticeIsTheElasticOneAndTheStressOfItsOwn) {
 }
 
 TEST_F(LoadingTangent, SameBitsAloneAndInAGroup) {
-  const StrainRequest general{.f_rel = {1.0004, 0.0012, -0.0005, 0.9994}, .strain_steps = 300, .hold_cap = 60};
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     const EngineSettings settings = asking(TangentKind::loading, 1e-5, precision);
-    RveBatch alone = clones(dense_, 1);
-    const RveReport expected = run(alone, {general}, settings).front();
-    RveBatch batch = clones(dense_, 19);
-    std::vector<StrainRequest> requests(19, general);
-    for (std::size_t k = 0; k < 19; ++k) {
-      if (k == 7) continue;
-      const double e = 2e-3 * std::cos(1.0 * static_cast<double>(k));
-      requests[k].f_rel = {1 + 3 * e, 3 * e, -e, 1 - 2 * e};
-    }
-    requests[4].f_rel = {1.2, 0, 0, 1.2};
-    batch.committed.position(3, 3, 0) = std::numeric_limits<double>::quiet_NaN();
-    const auto reports = run(batch, requests, settings);
+    const auto [expected, reports] = run_alone_and_in_a_group(dense_, settings);
     EXPECT_EQ(expected.tangent_kind, TangentKind::loading);
     EXPECT_TRUE(std::equal(expected.tangent, expected.tangent + 6, reports[7].tangent));
     EXPECT_TRUE(std::equal(expected.tangent_skew, expected.tangent_skew + 3, reports[7].tangent_skew));

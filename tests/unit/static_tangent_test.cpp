@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "host/rve_answers.hpp"
@@ -26,11 +25,6 @@ EngineSettings asking(TangentKind kind, double tolerance = 1e-12) {
 RveBatch one(reference::Rve rve) {
   rve.rotations.resize(rve.radii.size(), 0.0);
   return clones(rve, 1);
-}
-
-/// The batch's committed states as they are.
-RveReport at_rest(RveBatch& batch, const EngineSettings& settings) {
-  return run(batch, std::vector(batch.size(), StrainRequest{.hold_cap = 1}), settings).front();
 }
 
 /// Whether `contact`'s springs are beyond `share` of their caps.
@@ -230,22 +224,10 @@ TEST_F(StaticTangent, FrictionlessOneIsWhatSmallProbesMeasure) {
 }
 
 TEST_F(StaticTangent, SameBitsAloneAndInAGroup) {
-  const StrainRequest general{.f_rel = {1.0004, 0.0012, -0.0005, 0.9994}, .strain_steps = 300, .hold_cap = 60};
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     EngineSettings settings = asking(TangentKind::static_, 2e-3);
     settings.precision = precision;
-    RveBatch alone = clones(dense_, 1);
-    const RveReport expected = run(alone, {general}, settings).front();
-    RveBatch batch = clones(dense_, 19);
-    std::vector<StrainRequest> requests(19, general);
-    for (std::size_t k = 0; k < 19; ++k) {
-      if (k == 7) continue;
-      const double e = 2e-3 * std::cos(1.0 * static_cast<double>(k));
-      requests[k].f_rel = {1 + 3 * e, 3 * e, -e, 1 - 2 * e};
-    }
-    requests[4].f_rel = {1.2, 0, 0, 1.2};
-    batch.committed.position(3, 3, 0) = std::numeric_limits<double>::quiet_NaN();
-    const auto reports = run(batch, requests, settings);
+    const auto [expected, reports] = run_alone_and_in_a_group(dense_, settings);
     EXPECT_TRUE(std::equal(expected.tangent, expected.tangent + 6, reports[7].tangent));
     EXPECT_EQ(expected.tangent_iterations, reports[7].tangent_iterations);
     EXPECT_EQ(reports[7].tangent_kind, TangentKind::static_);
