@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/invariants.hpp"
+#include "fem/invariants.hpp"
 #include "host/packing.hpp"
 
 namespace voussoir::host {

@@ -7,7 +7,7 @@
 #include "fem/mesh.hpp"
 #include "fem/mesh_state.hpp"
 #include "host/case.hpp"
-#include "host/invariants.hpp"
+#include "fem/invariants.hpp"
 #include "io/checkpoint.hpp"
 #include "io/result_file.hpp"
 

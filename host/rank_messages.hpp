@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "host/byte_stream.hpp"
+#include "io/byte_stream.hpp"
 #include "host/packing.hpp"
 #include "host/rank_channel.hpp"
 #include "host/rve_pool.hpp"

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "host/byte_stream.hpp"
+#include "io/byte_stream.hpp"
 #include "host/rve_pool.hpp"
 #include "io/hash.hpp"
 

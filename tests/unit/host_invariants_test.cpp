@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/invariants.hpp"
+#include "fem/invariants.hpp"
 
 namespace voussoir::host {
 namespace {
