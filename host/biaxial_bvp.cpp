@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "fem/boundary.hpp"
-#include "host/engine_presets.hpp"
+#include "host/case/engine.hpp"
 #include "host/material_factory.hpp"
 #include "io/result_file.hpp"
 

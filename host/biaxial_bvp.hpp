@@ -9,7 +9,7 @@
 /// No imperfection is put in; what breaks the symmetry is the mirror image at every second point (packing.mirrored) or, without
 /// it, rounding.
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "host/ground.hpp"
 #include "host/stage_driver.hpp"
 

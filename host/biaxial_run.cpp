@@ -11,7 +11,7 @@
 
 #include "host/biaxial.hpp"
 #include "host/exit_code.hpp"
-#include "host/microstructure_fields.hpp"
+#include "host/case/result_fields.hpp"
 #include "host/provenance.hpp"
 #include "host/rve_pool.hpp"
 #include "io/result_file.hpp"

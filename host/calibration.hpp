@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 
 namespace voussoir::host {
 

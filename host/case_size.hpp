@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 
 namespace voussoir::host {
 

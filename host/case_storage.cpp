@@ -5,7 +5,7 @@
 #include <array>
 
 #include "host/case_size.hpp"
-#include "host/microstructure_fields.hpp"
+#include "host/case/result_fields.hpp"
 #include "host/packing.hpp"
 #include "io/case_file.hpp"
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "host/case_size.hpp"
-#include "host/engine_presets.hpp"
+#include "host/case/engine.hpp"
 #include "host/exit_code.hpp"
 #include "host/interrupt.hpp"
 #include "host/ranks.hpp"

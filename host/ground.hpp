@@ -6,7 +6,7 @@
 #include "fem/material_batch.hpp"
 #include "fem/mesh.hpp"
 #include "fem/mesh_state.hpp"
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "fem/invariants.hpp"
 #include "io/checkpoint.hpp"
 #include "io/result_file.hpp"

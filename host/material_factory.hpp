@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "fem/material_batch.hpp"
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "host/packing.hpp"
 
 namespace voussoir::host {

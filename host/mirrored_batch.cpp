@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "host/microstructure_fields.hpp"
+#include "host/case/result_fields.hpp"
 
 namespace voussoir::host {
 namespace {

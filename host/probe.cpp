@@ -8,7 +8,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "host/engine_presets.hpp"
+#include "host/case/engine.hpp"
 #include "host/exit_code.hpp"
 #include "host/packing.hpp"
 #include "host/rve_answers.hpp"

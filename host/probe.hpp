@@ -1,7 +1,7 @@
 #pragma once
 /// `kind = "probe"`: the material law alone. A packing is taken along a path of increments and probed at its end.
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "host/run_folder.hpp"
 
 namespace voussoir::host {

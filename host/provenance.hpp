@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "host/run_folder.hpp"
 #include "io/result_file.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "kernels/advance_rves.hpp"
 
 namespace voussoir::host {

@@ -10,7 +10,7 @@
 #include "host/biaxial_bvp.hpp"
 #include "host/calibrate_tests.hpp"
 #include "host/case_size.hpp"
-#include "host/engine_presets.hpp"
+#include "host/case/engine.hpp"
 #include "host/exit_code.hpp"
 #include "host/packing.hpp"
 #include "host/probe.hpp"

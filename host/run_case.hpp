@@ -1,7 +1,7 @@
 #pragma once
 /// From a case to its results: the choice by kind, and the answer to whoever waits.
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "host/run_folder.hpp"
 
 namespace voussoir::host {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 
 namespace voussoir::host {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/newton.hpp"
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "host/run_folder.hpp"
 #include "host/run_log.hpp"
 #include "host/run_totals.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/microstructure_fields.hpp"
+#include "host/case/result_fields.hpp"
 #include "host/ranks.hpp"
 #include "host/rve_answers.hpp"
 #include "kernels/committed_contacts.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "host/rve_pool.hpp"
 
 namespace voussoir::host {

@@ -2,7 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include "host/engine_presets.hpp"
+#include "host/case/engine.hpp"
 #include "host/material_factory.hpp"
 
 namespace voussoir::host {

@@ -1,12 +1,12 @@
 // Presets of the engine: their values, single keys over them, what is said of their error.
-#include "host/engine_presets.hpp"
+#include "host/case/engine.hpp"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {

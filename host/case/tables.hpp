@@ -1,7 +1,7 @@
 #pragma once
 /// The tables of a case file, one function each. The defaults are those of the structs' members.
 
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {

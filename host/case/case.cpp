@@ -1,4 +1,4 @@
-#include "host/case.hpp"
+#include "host/case/case.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "host/case_tables.hpp"
+#include "host/case/tables.hpp"
 #include "io/case_file.hpp"
 #include "io/hash.hpp"
 

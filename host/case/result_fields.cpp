@@ -1,4 +1,4 @@
-#include "host/microstructure_fields.hpp"
+#include "host/case/result_fields.hpp"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-#include "host/engine_presets.hpp"
+#include "host/case/engine.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "host/case_tables.hpp"
-#include "host/engine_presets.hpp"
+#include "host/case/tables.hpp"
+#include "host/case/engine.hpp"
 #include "io/packing_file.hpp"
 #include "io/units.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "host/case_tables.hpp"
+#include "host/case/tables.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::host {

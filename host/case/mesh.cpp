@@ -5,9 +5,9 @@
 #include <set>
 #include <string>
 
-#include "host/case_tables.hpp"
+#include "host/case/tables.hpp"
 #include "host/case_size.hpp"
-#include "host/microstructure_fields.hpp"
+#include "host/case/result_fields.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::host {
