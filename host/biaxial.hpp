@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fem/invariants.hpp"
-#include "host/packing.hpp"
+#include "host/packing/packings.hpp"
 
 namespace voussoir::host {
 

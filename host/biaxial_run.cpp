@@ -10,10 +10,10 @@
 #include <optional>
 
 #include "host/biaxial.hpp"
-#include "host/exit_code.hpp"
+#include "host/process/exit_code.hpp"
 #include "host/case/result_fields.hpp"
-#include "host/provenance.hpp"
-#include "host/rve_pool.hpp"
+#include "host/record/provenance.hpp"
+#include "host/material/rve_pool.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "host/calibrate_tests.hpp"
-#include "host/exit_code.hpp"
-#include "host/provenance.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/record/provenance.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {

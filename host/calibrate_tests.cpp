@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/rve_pool.hpp"
+#include "host/material/rve_pool.hpp"
 
 namespace voussoir::host {
 

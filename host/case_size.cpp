@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "host/calibration.hpp"
-#include "host/packing.hpp"
+#include "host/packing/packings.hpp"
 #include "host/stages.hpp"
 #include "host/tunnel.hpp"
 

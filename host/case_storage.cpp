@@ -6,7 +6,7 @@
 
 #include "host/case_size.hpp"
 #include "host/case/result_fields.hpp"
-#include "host/packing.hpp"
+#include "host/packing/packings.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {

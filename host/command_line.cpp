@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "host/build_info.hpp"
+#include "host/process/build_info.hpp"
 #include "host/commands.hpp"
-#include "host/exit_code.hpp"
-#include "host/ranks.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {

@@ -8,9 +8,9 @@
 
 #include "host/case_size.hpp"
 #include "host/case/engine.hpp"
-#include "host/exit_code.hpp"
-#include "host/interrupt.hpp"
-#include "host/ranks.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/process/interrupt.hpp"
+#include "host/ranks/session.hpp"
 #include "host/run_case.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/run_folder.hpp"
+#include "host/record/folder.hpp"
 
 namespace voussoir::host {
 

@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "host/exit_code.hpp"
-#include "host/packing.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/packing/packings.hpp"
 
 namespace voussoir::host {
 

@@ -1,5 +1,5 @@
 #include "host/command_line.hpp"
-#include "host/ranks.hpp"
+#include "host/ranks/session.hpp"
 
 int main(int argc, char** argv) {
   const voussoir::host::RankSession session;

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "fem/linear_elastic.hpp"
-#include "host/mirrored_batch.hpp"
-#include "host/rve_pool.hpp"
+#include "host/material/mirrored_batch.hpp"
+#include "host/material/rve_pool.hpp"
 
 namespace voussoir::host {
 

@@ -6,7 +6,7 @@
 
 #include "fem/material_batch.hpp"
 #include "host/case/case.hpp"
-#include "host/packing.hpp"
+#include "host/packing/packings.hpp"
 
 namespace voussoir::host {
 

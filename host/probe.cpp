@@ -9,11 +9,11 @@
 #include <stdexcept>
 
 #include "host/case/engine.hpp"
-#include "host/exit_code.hpp"
-#include "host/packing.hpp"
-#include "host/rve_answers.hpp"
-#include "host/rve_pool.hpp"
-#include "host/stored_packing.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/packing/packings.hpp"
+#include "host/material/answers.hpp"
+#include "host/material/rve_pool.hpp"
+#include "host/packing/stored_packing.hpp"
 #include "host/strain_path.hpp"
 #include "io/atomic_file.hpp"
 

@@ -2,7 +2,7 @@
 /// `kind = "probe"`: the material law alone. A packing is taken along a path of increments and probed at its end.
 
 #include "host/case/case.hpp"
-#include "host/run_folder.hpp"
+#include "host/record/folder.hpp"
 
 namespace voussoir::host {
 

@@ -2,7 +2,7 @@
 /// From a case to its results: the choice by kind, and the answer to whoever waits.
 
 #include "host/case/case.hpp"
-#include "host/run_folder.hpp"
+#include "host/record/folder.hpp"
 
 namespace voussoir::host {
 

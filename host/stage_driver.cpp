@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "host/interrupt.hpp"
-#include "host/resources.hpp"
-#include "host/snapshot_source.hpp"
+#include "host/process/interrupt.hpp"
+#include "host/process/resources.hpp"
+#include "host/material/snapshot_source.hpp"
 
 namespace voussoir::host {
 namespace {

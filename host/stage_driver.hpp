@@ -7,7 +7,7 @@
 
 #include "fem/load_stepper.hpp"
 #include "host/ground.hpp"
-#include "host/run_recorder.hpp"
+#include "host/record/recorder.hpp"
 
 namespace voussoir::host {
 

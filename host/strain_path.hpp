@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host/case/case.hpp"
-#include "host/rve_pool.hpp"
+#include "host/material/rve_pool.hpp"
 
 namespace voussoir::host {
 

@@ -18,9 +18,9 @@
 #include <vector>
 
 #include "host/commands.hpp"
-#include "host/exit_code.hpp"
-#include "host/interrupt.hpp"
-#include "host/ranks.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/process/interrupt.hpp"
+#include "host/ranks/session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"

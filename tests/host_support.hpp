@@ -1,7 +1,7 @@
 #pragma once
 /// Helpers of the host's tests.
 
-#include "host/recipe.hpp"
+#include "host/packing/recipe.hpp"
 
 namespace voussoir::host {
 

@@ -33,7 +33,7 @@ CONFINED = {
     "Gmsh": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
     # to give back the thread number that Gmsh changes
     "OpenMP": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
-    "MPI": re.compile(r"host/rank_channel\.cpp"),
+    "MPI": re.compile(r"host/ranks/channel\.cpp"),
 }
 
 LIBRARIES = {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "host/packing.hpp"
+#include "host/packing/packings.hpp"
 #include "kernels/lane.hpp"
 
 namespace voussoir::kernels {

@@ -1,5 +1,5 @@
 // RVEs that answer by their tangent: closed forms of the extrapolation, what is deferred and when, nothing lost.
-#include "host/deferral.hpp"
+#include "host/material/deferral.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "host/rve_answers.hpp"
-#include "host/rve_pool.hpp"
+#include "host/material/answers.hpp"
+#include "host/material/rve_pool.hpp"
 #include "tests/host_support.hpp"
 
 namespace voussoir::host {

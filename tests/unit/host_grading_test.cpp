@@ -9,7 +9,7 @@
 #include <fstream>
 #include <numeric>
 
-#include "host/recipe.hpp"
+#include "host/packing/recipe.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "fem/linear_elastic.hpp"
-#include "host/mirrored_batch.hpp"
-#include "host/rve_pool.hpp"
+#include "host/material/mirrored_batch.hpp"
+#include "host/material/rve_pool.hpp"
 #include "tests/host_support.hpp"
 
 namespace voussoir::host {

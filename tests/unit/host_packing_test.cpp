@@ -1,6 +1,6 @@
 // Packings: the recipe's targets, the same bits whoever is made beside them, the cache and its damage.
 
-#include "host/packing.hpp"
+#include "host/packing/packings.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "host/rve_pool.hpp"
+#include "host/material/rve_pool.hpp"
 
 namespace voussoir::host {
 namespace {

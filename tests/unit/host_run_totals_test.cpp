@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/run_totals.hpp"
+#include "host/record/totals.hpp"
 
 namespace voussoir::host {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "host/stored_packing.hpp"
+#include "host/packing/stored_packing.hpp"
 #include "tests/host_support.hpp"
 
 namespace voussoir::host {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host/rve_answers.hpp"
+#include "host/material/answers.hpp"
 #include "kernels/loading_tangent.hpp"
 #include "tests/engine_support.hpp"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "host/rve_answers.hpp"
+#include "host/material/answers.hpp"
 #include "kernels/committed_contacts.hpp"
 #include "tests/engine_support.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "host/rve_answers.hpp"
+#include "host/material/answers.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/recipe.hpp"
+#include "host/packing/recipe.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {

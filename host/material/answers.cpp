@@ -1,0 +1,73 @@
+#include "host/material/answers.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace voussoir::host {
+
+namespace {
+
+/// Share of unbalanced ratio x pressure that shows as an error of the stress: the moment sum of random residual forces at
+/// positions uniform in the cell, 1/sqrt(12). Of grains at rest: what one that ended at the step limit still has to go is not in its
+/// unbalanced ratio (docs/trade.md), so those are counted.
+constexpr double noise_share = 0.29;
+
+}  // namespace
+
+fem::Stress stress_of(const kernels::RveReport& r) { return {r.stress[0], r.stress[3], 0.5 * (r.stress[1] + r.stress[2])}; }
+
+fem::Tangent tangent_of(const kernels::RveReport& r) {
+  const double* d = r.tangent;
+  fem::Tangent out;
+  out << d[0], d[1], d[2], d[1], d[3], d[4], d[2], d[4], d[5];
+  return out;
+}
+
+fem::Tangent whole_tangent_of(const kernels::RveReport& r) {
+  const double* w = r.tangent_skew;
+  fem::Tangent skew;
+  skew << 0, w[0], w[1], -w[0], 0, w[2], -w[1], -w[2], 0;
+  return tangent_of(r) + skew;
+}
+
+void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
+                  std::span<fem::Tangent> tangent) {
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    stress[k] = stress_of(reports[k]);
+    if (!tangent.empty()) tangent[k] = tangent_of(reports[k]);
+  }
+}
+
+fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor) {
+  fem::BatchReport out;
+  double noise = 0;
+  double unsettled = 0;
+  std::size_t failures = 0;
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    const kernels::RveReport& r = reports[k];
+    if (kernels::is_failure(r.status) && failures++ == 0) {
+      out.message = fmt::format("RVE {}: {} (overlap {:.3f})", k, kernels::name_of(r.status), r.largest_overlap);
+    }
+    if (r.steps > out.slowest_steps) {
+      out.slowest = k;
+      out.slowest_steps = r.steps;
+    }
+    if (r.steps == 0) ++out.deferred;
+    if (r.status == kernels::RveStatus::open) ++out.open;
+    if (r.status == kernels::RveStatus::step_limit) {
+      ++out.step_limit;
+      unsettled += r.pressure() * r.pressure();
+    }
+    const double s = noise_share * r.unbalanced * std::max(r.pressure(), pressure_floor);
+    noise += s * s;
+  }
+  if (failures > 1) out.message += fmt::format(" and {} more", failures - 1);
+  out.usable = failures == 0;
+  out.stress_noise = std::sqrt(noise / static_cast<double>(reports.size()));
+  out.unsettled_stress = std::sqrt(unsettled / static_cast<double>(reports.size()));
+  return out;
+}
+
+}  // namespace voussoir::host

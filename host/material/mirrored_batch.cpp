@@ -1,0 +1,80 @@
+#include "host/material/mirrored_batch.hpp"
+
+#include <numbers>
+
+#include "host/case/result_fields.hpp"
+
+namespace voussoir::host {
+namespace {
+
+void mirror(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) {
+  for (std::size_t p = 0; p < stress.size(); ++p) {
+    if (!MirroredBatch::is_mirrored(p)) continue;
+    stress[p][2] = -stress[p][2];
+    if (tangent.empty()) continue;
+    for (const int k : {0, 1}) {
+      tangent[p](k, 2) = -tangent[p](k, 2);
+      tangent[p](2, k) = -tangent[p](2, k);
+    }
+  }
+}
+
+/// x to -x, moved back into the mirrored cell: its first vector is the mirror image's, reversed.
+void mirror(io::RveSnapshot& rve) {
+  const double a_x = rve.cell[0];
+  const double a_y = -rve.cell[2];
+  rve.cell = {a_x, -rve.cell[1], a_y, rve.cell[3]};
+  for (double& x : rve.x) x = a_x - x;
+  for (double& y : rve.y) y += a_y;
+  for (double& angle : rve.rotation) angle = -angle;
+  for (std::size_t k = 0; k < rve.branch.size(); k += 2) {
+    rve.branch[k] = -rve.branch[k];
+    rve.force[k] = -rve.force[k];
+  }
+}
+
+}  // namespace
+
+fem::BatchReport MirroredBatch::evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
+                                         std::span<fem::Tangent> tangent) {
+  std::vector<fem::Gradient> mirrored(gradients.begin(), gradients.end());
+  for (std::size_t p = 0; p < mirrored.size(); ++p) {
+    if (!is_mirrored(p)) continue;
+    mirrored[p](0, 1) = -mirrored[p](0, 1);
+    mirrored[p](1, 0) = -mirrored[p](1, 0);
+  }
+  fem::BatchReport report = batch_->evaluate(mirrored, stress, tangent);
+  mirror(stress, tangent);
+  return report;
+}
+
+void MirroredBatch::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const {
+  batch_->committed(stress, tangent);
+  mirror(stress, tangent);
+}
+
+std::vector<fem::PointField> MirroredBatch::fields() const {
+  std::vector<fem::PointField> fields = batch_->fields();
+  for (fem::PointField& field : fields) {
+    const bool is_direction = field.name == fabric_direction;
+    if (field.name != "grain_rotation" && !is_direction) continue;
+    for (std::size_t p = 0; p < field.values.size(); ++p) {
+      if (!is_mirrored(p)) continue;
+      // A direction is half a circle's: its vertical, pi/2, is its own mirror image.
+      if (!is_direction || field.values[p] < 0.5 * std::numbers::pi) field.values[p] = -field.values[p];
+    }
+  }
+  return fields;
+}
+
+std::vector<io::RveSnapshot> MirroredBatch::snapshots(std::span<const std::int64_t> points) const {
+  const auto* source = dynamic_cast<const SnapshotSource*>(batch_.get());
+  if (source == nullptr) return {};
+  std::vector<io::RveSnapshot> snapshots = source->snapshots(points);
+  for (std::size_t k = 0; k < snapshots.size(); ++k) {
+    if (is_mirrored(static_cast<std::size_t>(points[k]))) mirror(snapshots[k]);
+  }
+  return snapshots;
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,37 @@
+#pragma once
+/// Mirror images of one packing. A packing cloned everywhere biases tau_xy everywhere, and where the bias grows with depth,
+/// equilibrium tilts sigma_xx across the whole ground. Every second Gauss point of an element answers as the mirror image
+/// (x to -x) of its RVE, so that the bias cancels within each element. No RVE is changed: gradients go in mirrored, answers
+/// come out mirrored, exactly.
+
+#include <memory>
+
+#include "fem/material_batch.hpp"
+#include "host/material/snapshot_source.hpp"
+
+namespace voussoir::host {
+
+class MirroredBatch final : public fem::MaterialBatch, public SnapshotSource {
+ public:
+  explicit MirroredBatch(std::unique_ptr<fem::MaterialBatch> batch) : batch_(std::move(batch)) {}
+
+  /// Gauss points 1 and 3 of each element: one of each row, one of each column.
+  [[nodiscard]] static bool is_mirrored(std::size_t point) { return point % 2 == 1; }
+
+  [[nodiscard]] std::size_t size() const override { return batch_->size(); }
+  void begin_increment() override { batch_->begin_increment(); }
+  fem::BatchReport evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
+                            std::span<fem::Tangent> tangent) override;
+  void commit() override { batch_->commit(); }
+  void committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const override;
+  [[nodiscard]] std::vector<fem::PointField> fields() const override;
+  [[nodiscard]] std::vector<std::byte> state() const override { return batch_->state(); }
+  void set_state(std::span<const std::byte> bytes) override { batch_->set_state(bytes); }
+  /// Empty where the batch behind has no grains.
+  [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
+
+ private:
+  std::unique_ptr<fem::MaterialBatch> batch_;
+};
+
+}  // namespace voussoir::host

@@ -1,0 +1,256 @@
+#include "host/material/rve_pool.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "host/case/result_fields.hpp"
+#include "host/ranks/session.hpp"
+#include "host/material/answers.hpp"
+#include "kernels/committed_contacts.hpp"
+
+namespace voussoir::host {
+
+namespace {
+
+/// An evaluation asking for this many times the frozen steps gets more after all: the predictor was far off.
+constexpr int step_regret = 2;
+
+/// Of the static tangents that steer the mesh's iterates: some 32 iterations. Run out, they need no fewer evaluations (fem/README.md).
+constexpr double newton_tangent_tolerance = 0.1;
+
+kernels::TangentKind kernel_tangent(TangentChoice choice, kernels::Backend backend) {
+  switch (choice) {
+    case TangentChoice::automatic:
+      return kernels::takes_teams(backend) ? kernels::TangentKind::contact : kernels::TangentKind::elastic;
+    case TangentChoice::elastic: return kernels::TangentKind::elastic;
+    case TangentChoice::static_: return kernels::TangentKind::static_;
+    case TangentChoice::loading: return kernels::TangentKind::loading;
+    case TangentChoice::contact: break;
+  }
+  return kernels::TangentKind::contact;
+}
+
+kernels::Mat2 relative_gradient(const fem::Gradient& h) { return {1.0 + h(0, 0), h(0, 1), h(1, 0), 1.0 + h(1, 1)}; }
+
+/// Next number of the series 1.25^k: counts on a coarse grid, so that a predictor's rounding does not change them.
+int round_up(double steps) {
+  return static_cast<int>(std::ceil(std::pow(1.25, std::ceil(std::log(steps) / std::log(1.25) - 1e-9))));
+}
+
+}  // namespace
+
+kernels::Backend engine_backend(const EngineCase& engine) {
+  switch (engine.backend) {
+    case EngineBackend::lanes: return kernels::Backend::lanes;
+    case EngineBackend::teams: return kernels::Backend::teams;
+    case EngineBackend::automatic: break;
+  }
+  return kernels::Backend::automatic;
+}
+
+kernels::Precision engine_precision(const EngineCase& engine) {
+  return engine.precision == Precision::single_precision ? kernels::Precision::float32 : kernels::Precision::float64;
+}
+
+RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n)
+    : engine_(options.engine),
+      settings_{.precision = engine_precision(engine_),
+                .skin = engine_.skin,
+                .hold_tolerance = engine_.hold_tolerance,
+                .backend = engine_backend(engine_),
+                .tangent = kernel_tangent(options.tangent, engine_backend(engine_)),
+                .tangent_tolerance = options.tangent_tolerance,
+                .tangent_strain = options.tangent_strain},
+      microstructure_(options.microstructure),
+      batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
+      requests_(n),
+      trial_reports_(n),
+      committed_reports_(n),
+      deferral_(engine_.defer, settings_.pressure_floor) {
+  for (std::size_t k = 0; k < n; ++k) store_rve(rve, batch_, k);
+  kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
+  for (auto& report : committed_reports_) {
+    if (kernels::is_failure(report.status)) {
+      throw std::invalid_argument(fmt::format("the packing of seed {} cannot start: {}", rve.seed, kernels::name_of(report.status)));
+    }
+    if (report.status == kernels::RveStatus::step_limit) report.status = kernels::RveStatus::converged;  // no motion was asked
+  }
+  deferral_.start(committed_reports_);
+}
+
+void RvePool::begin_increment() {
+  steps_are_fixed_ = false;
+  deferral_.begin_increment();
+}
+
+/// Steps that keep the target inertial number at the RVE's committed pressure. A rotation costs none, the path is rigid all the
+/// way.
+int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
+  const double strain = kernels::symmetric_norm(kernels::log_of(f_rel));
+  const double p = std::max(committed_reports_[rve].pressure(), settings_.pressure_floor);
+  const double steps = strain / engine_.inertial_number * batch_.packing(rve).inertial_time(p);
+  if (!std::isfinite(steps)) return engine_.minimum_steps;
+  const double most = engine_.maximum_steps;
+  return std::clamp(round_up(std::clamp(steps, 1.0, most)), engine_.minimum_steps, engine_.maximum_steps);
+}
+
+/// @param anew whatever the steps were before
+void RvePool::choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew) {
+  kernels::StrainRequest& request = requests_[rve];
+  request.f_rel = relative_gradient(gradient);
+  const int steps = steps_for(rve, request.f_rel);
+  if (anew || steps > step_regret * request.strain_steps) request.strain_steps = steps;
+  request.hold_cap = engine_.hold_cap;
+}
+
+/// Grains run where they must, with all that was deferred.
+kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings) {
+  running_.clear();
+  increment_.assign(gradients.begin(), gradients.end());
+  for (std::size_t k = 0; k < size(); ++k) {
+    const bool ran = steps_are_fixed_ && deferral_.runs(k);
+    if (deferral_.answer(k, gradients[k], trial_reports_[k])) continue;
+    choose_steps(k, deferral_.whole(k, gradients[k]), !ran);
+    running_.push_back(static_cast<int>(k));
+  }
+  steps_are_fixed_ = true;
+  const kernels::Work work =
+      kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings, trial_reports_, running_);
+  for (const int rve : running_) {
+    const auto k = static_cast<std::size_t>(rve);
+    deferral_.check(k, gradients[k], trial_reports_[k]);
+  }
+  return work;
+}
+
+/// Without tangents the reports have eq. (4), which comes with the stress.
+kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients, bool with_tangents) {
+  kernels::EngineSettings settings = settings_;
+  if (!with_tangents) settings.tangent = kernels::TangentKind::contact;
+  if (deferral_.on()) return advance_some(gradients, settings);
+  for (std::size_t k = 0; k < size(); ++k) choose_steps(k, gradients[k], !steps_are_fixed_);
+  steps_are_fixed_ = true;
+  return kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings, trial_reports_);
+}
+
+fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
+                                   std::span<fem::Tangent> tangent) {
+  const kernels::Work work = advance(gradients, !tangent.empty());
+  copy_answers(trial_reports_, stress, tangent);
+  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor);
+  report.work = work.particle_steps;
+  report.deferral_error = deferral_.error();
+  return report;
+}
+
+void RvePool::commit() {
+  kernels::commit(batch_);
+  committed_reports_ = trial_reports_;
+  if (!deferral_.on()) return;
+  for (std::size_t k = 0; k < size(); ++k) {
+    if (!deferral_.commit(k, increment_[k], trial_reports_[k])) continue;
+    kernels::copy_state(batch_.trial, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
+  }
+}
+
+void RvePool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const {
+  copy_answers(committed_reports_, stress, tangent);
+}
+
+std::vector<fem::PointField> RvePool::fields() const {
+  std::vector<fem::PointField> out;
+  const auto add = [&](const char* name, const char* unit, auto&& value) {
+    fem::PointField field{name, unit, 1, std::vector<double>(size())};
+    for (std::size_t k = 0; k < size(); ++k) field.values[k] = value(k);
+    out.push_back(std::move(field));
+  };
+  const auto& reports = committed_reports_;
+  const kernels::RveStates& s = batch_.committed;
+  add("void_ratio", "-", [&](std::size_t k) { return void_ratio_of(k); });
+  add("grain_rotation", "rad", [&](std::size_t k) {
+    double sum = 0;
+    for (int i = 0; i < batch_.packing(k).size(); ++i) sum += s.rotation(k, static_cast<std::size_t>(i));
+    return sum / batch_.packing(k).size();
+  });
+  add("coordination", "-", [&](std::size_t k) { return 2.0 * reports[k].contacts / batch_.packing(k).size(); });
+  add("rve_status", "-", [&](std::size_t k) { return static_cast<double>(reports[k].status); });
+  add("unbalanced_ratio", "-", [&](std::size_t k) { return reports[k].unbalanced; });
+  add("inertial_number", "-", [&](std::size_t k) { return reports[k].inertial_number; });
+  add("steps", "-", [&](std::size_t k) { return static_cast<double>(reports[k].steps); });
+  if (!microstructure_.any()) return out;
+  std::vector<kernels::Microstructure> all(size());
+  kernels::describe_committed(batch_, microstructure_, all);
+  for (const MicrostructureField& field : microstructure_fields(microstructure_)) {
+    add(field.name, field.unit, [&](std::size_t k) { return field.value(all[k]); });
+  }
+  return out;
+}
+
+double RvePool::void_ratio_of(std::size_t rve) const {
+  const kernels::RveStates& s = batch_.committed;
+  return void_ratio(s.cell(rve, 0) * s.cell(rve, 3) - s.cell(rve, 1) * s.cell(rve, 2), batch_.packing(rve).solid_area());
+}
+
+PackedRve RvePool::packed(std::size_t rve) const {
+  const kernels::RveReport& report = deferral_.on() ? deferral_.committed(rve).grains : committed_reports_[rve];
+  PackedRve out;
+  out.packing = batch_.packing(rve);
+  load_rve(batch_.committed, rve, out);
+  out.void_ratio = void_ratio_of(rve);
+  out.pressure = report.pressure();
+  out.coordination = 2.0 * report.contacts / out.packing.size();
+  out.unbalanced = report.unbalanced;
+  return out;
+}
+
+io::RveSnapshot RvePool::snapshot(std::size_t rve) const {
+  const kernels::Packing& packing = batch_.packing(rve);
+  const PackedRve grains = packed(rve);
+  io::RveSnapshot out;
+  out.name = point_name(rve);
+  out.cell = {grains.cell.xx, grains.cell.xy, grains.cell.yx, grains.cell.yy};
+  out.thickness = packing.thickness;
+  out.radius = packing.radii;
+  out.rotation = grains.rotation;
+  for (std::size_t i = 0; i < packing.radii.size(); ++i) {
+    out.x.push_back(grains.position[2 * i]);
+    out.y.push_back(grains.position[2 * i + 1]);
+  }
+  std::vector<kernels::CommittedContact> contacts;
+  kernels::committed_contacts(batch_, rve, contacts);
+  for (const kernels::CommittedContact& c : contacts) {
+    out.contact_i.push_back(c.i);
+    out.contact_j.push_back(c.j);
+    out.branch.insert(out.branch.end(), {c.branch_x, c.branch_y});
+    out.force.insert(out.force.end(), {c.force_x(), c.force_y()});
+  }
+  return out;
+}
+
+std::string point_name(std::size_t point) { return fmt::format("point_{:05d}", point); }
+
+std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> points) const {
+  std::vector<io::RveSnapshot> out;
+  for (const std::int64_t point : points) {
+    if (point < 0 || point >= static_cast<std::int64_t>(size())) throw std::out_of_range("no such Gauss point");
+    out.push_back(snapshot(static_cast<std::size_t>(point)));
+  }
+  return out;
+}
+
+std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points, const PackingNote& note) {
+  PackedRve rve = choose_packing(input, note);
+  PoolOptions options{.engine = input.engine,
+                      .tangent = input.newton.tangent,
+                      .tangent_strain = input.newton.tangent_strain,
+                      .microstructure = input.output.microstructure};
+  // To a tenth, a loading tangent would be little else than the elastic one that it starts from.
+  if (options.tangent != TangentChoice::loading) options.tangent_tolerance = newton_tangent_tolerance;
+  if (rank_count() > 1) return make_rank_pool(std::move(rve), options, n_points, note);
+  return std::make_unique<RvePool>(rve, options, n_points);
+}
+
+}  // namespace voussoir::host

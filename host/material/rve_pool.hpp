@@ -1,0 +1,85 @@
+#pragma once
+/// One RVE per Gauss point behind fem's one door: chooses step counts, runs the engine, answers with stress and tangent.
+
+#include <memory>
+
+#include "fem/material_batch.hpp"
+#include "host/material/deferral.hpp"
+#include "host/packing/packings.hpp"
+#include "host/material/rve_pool_state.hpp"
+#include "host/material/snapshot_source.hpp"
+
+namespace voussoir::host {
+
+/// The case's value type as the engine names it.
+[[nodiscard]] kernels::Precision engine_precision(const EngineCase& engine);
+
+/// The case's backend as the engine names it.
+[[nodiscard]] kernels::Backend engine_backend(const EngineCase& engine);
+
+/// What a pool is told besides its packing and its size.
+struct PoolOptions {
+  EngineCase engine;
+  TangentChoice tangent = TangentChoice::contact;
+  double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< of a static one [-]
+  double tangent_strain = 1.0e-6;  ///< of a loading tangent [-]
+  kernels::MicrostructureRequest microstructure = {};  ///< what fields() shall hold besides; computed there, at each call
+};
+
+class RvePool final : public fem::MaterialBatch, public SnapshotSource {
+ public:
+  /// `n` clones of `rve`.
+  RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n);
+
+  [[nodiscard]] std::size_t size() const override { return batch_.size(); }
+  void begin_increment() override;
+  fem::BatchReport evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
+                            std::span<fem::Tangent> tangent) override;
+  void commit() override;
+  void committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const override;
+  [[nodiscard]] std::vector<fem::PointField> fields() const override;
+  [[nodiscard]] std::vector<std::byte> state() const override;
+  void set_state(std::span<const std::byte> bytes) override;
+  [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
+
+  [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
+  [[nodiscard]] PackedRve packed(std::size_t rve) const;      ///< where its grains last ran, for another pool to start from
+
+  /// For a pool that is one rank's part of a larger one: the engine's own reports, and states one by one.
+  /// `advance` is `evaluate`; what the RVEs answered is in trial_reports(), eq. (4) instead of a dearer tangent where none is wanted.
+  kernels::Work advance(std::span<const fem::Gradient> gradients, bool with_tangents);
+  [[nodiscard]] const std::vector<kernels::RveReport>& trial_reports() const { return trial_reports_; }
+  [[nodiscard]] const std::vector<kernels::RveReport>& committed_reports() const { return committed_reports_; }
+  [[nodiscard]] double deferral_error() const { return deferral_.error(); }  ///< of the last evaluation [-]
+  [[nodiscard]] double pressure_floor() const { return settings_.pressure_floor; }  ///< of the reports' ratios [Pa]
+  [[nodiscard]] std::uint64_t identity() const;
+  [[nodiscard]] std::vector<std::byte> state_of(std::size_t rve) const;
+  void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
+
+ private:
+  EngineCase engine_;
+  kernels::EngineSettings settings_;
+  kernels::MicrostructureRequest microstructure_;
+  kernels::RveBatch batch_;
+  std::vector<kernels::StrainRequest> requests_;
+  std::vector<kernels::RveReport> trial_reports_;
+  std::vector<kernels::RveReport> committed_reports_;
+  Deferral deferral_;
+  std::vector<int> running_;               ///< RVEs whose grains the evaluation needs; only where some may be deferred
+  std::vector<fem::Gradient> increment_;   ///< of the last evaluation; likewise
+  bool steps_are_fixed_ = false;
+
+  [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
+  void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);
+  kernels::Work advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings);
+  [[nodiscard]] io::RveSnapshot snapshot(std::size_t rve) const;
+};
+
+/// Name of a point's snapshot.
+[[nodiscard]] std::string point_name(std::size_t point);
+
+/// The case's chosen packing at `n_points` Gauss points.
+[[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points,
+                                                                const PackingNote& note = {});
+
+}  // namespace voussoir::host

@@ -1,0 +1,73 @@
+#include "host/packing/stored_packing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace voussoir::host {
+
+io::Packing stored_packing(const PackedRve& rve, const std::string& recipe, const std::string& fingerprint) {
+  io::Packing file;
+  file.radius = rve.packing.radii;
+  for (std::size_t i = 0; i < rve.packing.radii.size(); ++i) {
+    file.x.push_back(rve.position[2 * i]);
+    file.y.push_back(rve.position[2 * i + 1]);
+  }
+  file.rotation = rve.rotation;
+  file.cell = {rve.cell.xx, rve.cell.xy, rve.cell.yx, rve.cell.yy};
+  file.thickness = rve.packing.thickness;
+  for (const std::uint32_t key : rve.contact_key) {
+    file.contact_i.push_back(kernels::first_of(key));
+    file.contact_j.push_back(kernels::second_of(key));
+  }
+  file.history_names = {"tangential_force", "rolling_moment"};
+  file.history = rve.contact_history;
+  file.numbers = {{"void_ratio", rve.void_ratio},     {"pressure", rve.pressure}, {"coordination", rve.coordination},
+                  {"unbalanced_ratio", rve.unbalanced}, {"consolidation_friction", rve.consolidation_friction}, {"bias", rve.bias},         {"seed", static_cast<double>(rve.seed)}};
+  file.labels = {{"recipe", recipe}, {"recipe_fingerprint", fingerprint}};
+  return file;
+}
+
+PackedRve grains_from(const io::Packing& file, const SoilCase& soil) {
+  PackedRve rve;
+  rve.packing = packing_of(soil, file.radius, file.thickness);
+  for (std::size_t i = 0; i < file.grains(); ++i) {
+    rve.position.push_back(file.x[i]);
+    rve.position.push_back(file.y[i]);
+  }
+  rve.rotation = file.rotation;
+  rve.cell = {file.cell[0], file.cell[1], file.cell[2], file.cell[3]};
+  return rve;
+}
+
+std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCase& soil) {
+  const std::vector<std::string> histories{"tangential_force", "rolling_moment"};
+  const auto number = [&](const char* name) {
+    const auto found = file.numbers.find(name);
+    return found == file.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
+  };
+  PackedRve rve = grains_from(file, soil);
+  rve.contact_history = file.history;
+  for (std::size_t c = 0; c < file.contacts(); ++c) {
+    if (file.contact_i[c] >= file.contact_j[c]) return {};
+    rve.contact_key.push_back(kernels::pair_key(static_cast<int>(file.contact_i[c]), static_cast<int>(file.contact_j[c])));
+  }
+  const bool ascending = std::adjacent_find(rve.contact_key.begin(), rve.contact_key.end(), std::greater_equal<>()) == rve.contact_key.end();
+  const bool finite = std::all_of(file.history.begin(), file.history.end(), [](double h) { return std::isfinite(h); });
+  rve.void_ratio = number("void_ratio");
+  rve.pressure = number("pressure");
+  rve.coordination = number("coordination");
+  rve.unbalanced = number("unbalanced_ratio");
+  rve.bias = number("bias");
+  rve.consolidation_friction = number("consolidation_friction");
+  const double seed = number("seed");
+  if (!ascending || !finite || file.history_names != histories ||
+      !(rve.cell.det() > 0) || !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {
+    return {};
+  }
+  rve.seed = static_cast<std::int64_t>(seed);
+  return rve;
+}
+
+}  // namespace voussoir::host

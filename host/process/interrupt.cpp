@@ -1,0 +1,25 @@
+#include "host/process/interrupt.hpp"
+
+#include <csignal>
+
+namespace voussoir::host {
+namespace {
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+extern "C" void voussoir_on_signal(int signal) {
+  stop_requested = 1;
+  std::signal(signal, SIG_DFL);  // whoever insists is obeyed
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  std::signal(SIGINT, voussoir_on_signal);
+  std::signal(SIGTERM, voussoir_on_signal);
+  std::signal(SIGUSR1, voussoir_on_signal);  // what mpirun passes on without ending the run itself
+}
+
+bool interrupted() { return stop_requested != 0; }
+
+}  // namespace voussoir::host

@@ -1,0 +1,85 @@
+#pragma once
+/// What the first rank asks and the others answer. A message is a Command and its values; a reply is a `true` and its values, or
+/// a `false` and a sentence.
+
+#include <cstdint>
+
+#include "io/byte_stream.hpp"
+#include "host/packing/packings.hpp"
+#include "host/ranks/channel.hpp"
+#include "host/material/rve_pool.hpp"
+
+namespace voussoir::host {
+
+enum class Command : std::uint8_t {
+  start,            ///< build's revision, threads -> host's name, threads
+  make,             ///< recipe of the pool -> committed reports
+  begin_increment,  ///< ->
+  evaluate,         ///< whether with tangents, gradients -> seconds, particle-steps, error of what was deferred, trial reports
+  commit,           ///< ->
+  fields,           ///< -> number of fields, then each
+  states,           ///< first, number of RVEs -> their records
+  set_states,       ///< first, records -> committed reports of all
+  forget,           ///< the pool is no longer needed -> peak memory
+  quit              ///< no reply
+};
+
+inline Message message_of(Command command) { return {static_cast<std::byte>(command)}; }
+
+template <class... Values>
+Message message_of(Command command, const Values&... values) {
+  Message message = message_of(command);
+  ByteWriter write(message);
+  (write.value(values), ...);
+  return message;
+}
+
+/// As far as a pool needs it: the packing and its state, not how it was made.
+inline void write_rve(ByteWriter& write, const PackedRve& rve) {
+  write.list(rve.packing.radii);
+  write.list(rve.packing.materials);
+  write.list(rve.packing.class_of);
+  write.value(rve.packing.thickness);
+  write.value(rve.packing.local_damping);
+  write.list(rve.position);
+  write.list(rve.rotation);
+  write.value(rve.cell);
+  write.list(rve.contact_key);
+  write.list(rve.contact_history);
+  write.value(rve.seed);
+}
+
+inline PackedRve read_rve(ByteReader& read) {
+  PackedRve rve;
+  rve.packing.radii = read.list<double>();
+  rve.packing.materials = read.list<kernels::GrainMaterial>();
+  rve.packing.class_of = read.list<std::uint8_t>();
+  rve.packing.thickness = read.value<double>();
+  rve.packing.local_damping = read.value<double>();
+  rve.position = read.list<double>();
+  rve.rotation = read.list<double>();
+  rve.cell = read.value<kernels::Mat2>();
+  rve.contact_key = read.list<std::uint32_t>();
+  rve.contact_history = read.list<double>();
+  rve.seed = read.value<std::int64_t>();
+  return rve;
+}
+
+/// Both directions. The names are bound one by one so that a new option does not compile before it is sent; a preset has done its
+/// work where the case was read.
+template <class Transfer, class Options>
+void transfer_options(Transfer& transfer, Options& options) {
+  auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure] = options;
+  auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps, defer] = engine;
+  static_cast<void>(preset);
+  transfer(&precision, 1);
+  transfer(&backend, 1);
+  for (auto* number : {&inertial_number, &hold_tolerance, &skin, &defer}) transfer(number, 1);
+  for (auto* count : {&hold_cap, &minimum_steps, &maximum_steps}) transfer(count, 1);
+  transfer(&tangent, 1);
+  transfer(&tangent_tolerance, 1);
+  transfer(&tangent_strain, 1);
+  transfer(&microstructure, 1);
+}
+
+}  // namespace voussoir::host

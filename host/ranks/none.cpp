@@ -1,0 +1,22 @@
+// Ranks in a build without MPI.
+#include <stdexcept>
+
+#include "fem/material_batch.hpp"
+#include "host/ranks/session.hpp"
+
+namespace voussoir::host {
+
+RankSession::RankSession() = default;
+RankSession::~RankSession() = default;
+bool RankSession::serves() const { return false; }
+int RankSession::serve() const { return 0; }
+
+int rank_count() { return 1; }
+std::string rank_library() { return "no MPI"; }
+void start_ranks(int) {}
+
+std::unique_ptr<fem::MaterialBatch> make_rank_pool(PackedRve, const PoolOptions&, std::size_t, PackingNote) {
+  throw std::logic_error("a pool of ranks in a build without MPI");
+}
+
+}  // namespace voussoir::host

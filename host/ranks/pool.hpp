@@ -1,0 +1,63 @@
+#pragma once
+/// One pool of RVEs over all ranks: the first rank's part of it, and the conversation with the others. Gauss points are dealt
+/// out one by one rather than in blocks, so that the costly ones near the opening spread.
+
+#include <optional>
+
+#include "host/ranks/channel.hpp"
+#include "host/ranks/session.hpp"
+#include "host/material/rve_pool.hpp"
+
+namespace voussoir::host {
+
+/// A rank as `start_ranks` found it.
+struct RankInfo {
+  std::string host;
+  int threads = 1;
+};
+
+/// Of `n` points those of each rank, ascending; in turn, in proportion to the ranks' threads.
+[[nodiscard]] std::vector<std::vector<std::size_t>> deal_points(std::size_t n, std::span<const RankInfo> ranks);
+
+class RankPool final : public fem::MaterialBatch, public SnapshotSource {
+ public:
+  RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std::span<const RankInfo> ranks, PackingNote note);
+  ~RankPool() override;
+
+  [[nodiscard]] std::size_t size() const override { return committed_.size(); }
+  void begin_increment() override;
+  fem::BatchReport evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
+                            std::span<fem::Tangent> tangent) override;
+  void commit() override;
+  void committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const override;
+  [[nodiscard]] std::vector<fem::PointField> fields() const override;
+  [[nodiscard]] std::vector<std::byte> state() const override;
+  void set_state(std::span<const std::byte> bytes) override;
+  [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
+
+ private:
+  /// What spreading the pool costs, for the log.
+  struct Ledger {
+    std::size_t evaluations = 0;
+    double bytes = 0;        ///< of the evaluations' messages
+    double evaluating = 0;   ///< [s]
+    double slowest = 0;      ///< sum over the evaluations of the rank that took longest [s]
+    double waiting = 0;      ///< of the first rank, for the others [s]
+  };
+
+  [[nodiscard]] std::size_t others() const { return points_.size() - 1; }
+  [[nodiscard]] Message make_message(std::size_t rank) const;
+  [[nodiscard]] Message gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients, bool with_tangents) const;
+  [[nodiscard]] std::vector<std::vector<std::byte>> records_of(std::size_t rank, std::size_t first, std::size_t n) const;
+  void describe_costs();
+
+  PackedRve rve_;
+  PoolOptions options_;
+  PackingNote note_;
+  std::vector<std::vector<std::size_t>> points_;  ///< by rank
+  std::optional<RvePool> own_;
+  std::vector<kernels::RveReport> trial_, committed_;  ///< of all points
+  Ledger ledger_;
+};
+
+}  // namespace voussoir::host

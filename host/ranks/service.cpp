@@ -1,0 +1,149 @@
+// What a rank does that is not the first: it owns a part of the pool and answers.
+#include <Kokkos_Core.hpp>
+#include <chrono>
+#include <csignal>
+#include <exception>
+#include <new>
+#include <optional>
+#include <stdexcept>
+
+#include "host/process/build_info.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/ranks/messages.hpp"
+#include "host/ranks/session.hpp"
+#include "host/process/resources.hpp"
+#include "host/material/rve_pool.hpp"
+
+namespace voussoir::host {
+namespace {
+
+class Service {
+ public:
+  /// Adds the answer to `reply`. Throws what keeps it from answering.
+  void obey(Command command, ByteReader& read, ByteWriter& reply) {
+    switch (command) {
+      case Command::start: return start(read, reply);
+      case Command::make: return make(read, reply);
+      case Command::begin_increment: return pool().begin_increment();
+      case Command::evaluate: return evaluate(read, reply);
+      case Command::commit: return pool().commit();
+      case Command::fields: return fields(reply);
+      case Command::states: return states(read, reply);
+      case Command::set_states: return set_states(read, reply);
+      case Command::forget: pool_.reset(); return reply.value(peak_memory());
+      case Command::quit: return;
+    }
+    throw std::logic_error("a command that this rank does not know");
+  }
+
+ private:
+  RvePool& pool() {
+    if (!pool_) throw std::logic_error("a command to a pool that does not exist");
+    return *pool_;
+  }
+
+  void start(ByteReader& read, ByteWriter& reply) {
+    const std::string theirs = read.text();
+    if (theirs != build_revision) {
+      throw std::runtime_error("has another build of the program (" + std::string(build_revision) + " instead of " + theirs + ")");
+    }
+    const int threads = read.value<int>();
+    if (!kokkos_) {
+      Kokkos::InitializationSettings settings;
+      settings.set_disable_warnings(true);
+      if (threads > 0) settings.set_num_threads(threads);
+      kokkos_.emplace(settings);
+    }
+    reply.list(host_name());
+    reply.value(Kokkos::DefaultHostExecutionSpace().concurrency());
+  }
+
+  void make(ByteReader& read, ByteWriter& reply) {
+    pool_.reset();
+    const PackedRve rve = read_rve(read);
+    PoolOptions options;
+    transfer_options(read, options);
+    pool_.emplace(rve, options, read.value<std::uint64_t>());
+    reply.list(pool().committed_reports());
+  }
+
+  void evaluate(ByteReader& read, ByteWriter& reply) {
+    const auto since = std::chrono::steady_clock::now();
+    const bool with_tangents = read.value<bool>();
+    const auto flat = read.list<double>();
+    std::vector<fem::Gradient> gradients(flat.size() / 4);
+    for (std::size_t k = 0; k < gradients.size(); ++k) gradients[k] = Eigen::Map<const fem::Gradient>(flat.data() + 4 * k);
+    const kernels::Work work = pool().advance(gradients, with_tangents);
+    reply.value(std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
+    reply.value(work);
+    reply.value(pool().deferral_error());
+    reply.list(pool().trial_reports());
+  }
+
+  void fields(ByteWriter& reply) {
+    const std::vector<fem::PointField> all = pool().fields();
+    reply.value(static_cast<std::uint64_t>(all.size()));
+    for (const fem::PointField& field : all) {
+      reply.list(field.name);
+      reply.list(field.unit);
+      reply.value(field.components);
+      reply.list(field.values);
+    }
+  }
+
+  void states(ByteReader& read, ByteWriter& reply) {
+    const auto first = read.value<std::uint64_t>();
+    const auto n = read.value<std::uint64_t>();
+    for (std::size_t k = first; k < first + n; ++k) reply.list(pool().state_of(k));
+  }
+
+  void set_states(ByteReader& read, ByteWriter& reply) {
+    std::vector<std::size_t> rves;
+    std::vector<StateRecord> records;
+    for (auto k = read.value<std::uint64_t>(); !read.at_end(); ++k) {
+      rves.push_back(k);
+      records.push_back(read.take(read.value<std::uint64_t>()));
+    }
+    pool().set_states(rves, records);
+    reply.list(pool().committed_reports());
+  }
+
+  std::optional<Kokkos::ScopeGuard> kokkos_;
+  std::optional<RvePool> pool_;
+};
+
+Message answer(Service& service, const Message& message) {
+  ByteReader read(message);
+  Message reply{std::byte{1}};
+  std::string complaint;
+  try {
+    ByteWriter write(reply);
+    service.obey(read.value<Command>(), read, write);
+    return reply;
+  } catch (const std::bad_alloc&) {
+    complaint = "out of memory";
+  } catch (const std::exception& error) {
+    complaint = error.what();
+  }
+  Message refusal{std::byte{0}};
+  ByteWriter(refusal).list("rank " + std::to_string(this_rank()) + " on " + host_name() + ": " + complaint);
+  return refusal;
+}
+
+}  // namespace
+
+int RankSession::serve() const {
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
+  try {
+    Service service;
+    for (;;) {
+      const Message message = receive_message(0);
+      if (message.front() == static_cast<std::byte>(Command::quit)) return exit_ok;
+      send_message(0, answer(service, message));
+    }
+  } catch (const std::exception& error) {
+    abort_ranks(exit_machine, error.what());
+  }
+}
+
+}  // namespace voussoir::host

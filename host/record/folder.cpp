@@ -1,0 +1,86 @@
+#include "host/record/folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "io/atomic_file.hpp"
+#include "io/case_file.hpp"
+#include "io/result_file.hpp"
+
+namespace voussoir::host {
+namespace {
+
+/// What a run leaves before it has a run.h5.
+constexpr std::array<std::string_view, 4> first_names{"run.log", "increments", "checkpoints", "column"};
+/// What it leaves besides. run.h5 is last: as long as it is there, the folder is known for one of results.
+constexpr std::array<std::string_view, 5> further_names{"result.xdmf", "k0.csv", "path.csv", "probe.csv", "run.h5"};
+
+/// A run killed in its first moment has left this.
+bool is_left_by_a_start(const std::filesystem::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  return entry.path().extension() == ".tmp" || std::find(first_names.begin(), first_names.end(), name) != first_names.end();
+}
+
+bool is_left_by_a_probe(const std::filesystem::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  const bool is_end = name.starts_with("end_") && entry.path().extension() == ".h5";
+  return name == "probe.csv" || name == "path.csv" || is_end || is_left_by_a_start(entry);
+}
+
+/// Fingerprint of the case that made the results; throws io::InputError where run.h5 is no result of this program.
+std::string fingerprint_of_results(const RunOptions& options) {
+  try {
+    return io::read_provenance(options.folder / "run.h5").fingerprint;
+  } catch (const std::runtime_error& error) {
+    throw io::InputError("--output", options.folder.string(), std::string("its run.h5 cannot be used: ") + error.what());
+  }
+}
+
+}  // namespace
+
+void check_folder(const RunOptions& options, const Case& input) {
+  namespace fs = std::filesystem;
+  const std::string folder = options.folder.string();
+  if (!fs::exists(options.folder)) return;
+  if (!fs::is_directory(options.folder)) throw io::InputError("--output", folder, "is not a folder");
+  const bool has_probe = fs::exists(options.folder / "probe.csv");
+  if (!fs::exists(options.folder / "run.h5")) {
+    const bool ours = std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_probe);
+    if (has_probe && ours && options.replace) return;
+    if (has_probe && ours) {
+      throw io::InputError("--output", folder, "holds a probe, which has nothing to resume: add --replace to remove it");
+    }
+    if (std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_start)) return;
+    throw io::InputError("--output", folder, "holds files that are no results of this program; choose another folder");
+  }
+  const std::string theirs = fingerprint_of_results(options);
+  if (options.resume) {
+    if (theirs == input.fingerprint) return;
+    throw io::InputError("--resume", folder,
+                         "was made by another case (fingerprint " + theirs + ", this case has " + input.fingerprint +
+                             "): resume needs the same case file and --set values");
+  }
+  if (!options.replace) {
+    throw io::InputError("--output", folder, "holds results already: add --resume to go on or --replace to remove them");
+  }
+}
+
+void remove_earlier_run(const RunOptions& options) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(options.folder / "run.h5") && !fs::exists(options.folder / "probe.csv")) return;  // what a start left is overwritten by the next one
+  for (const std::string_view name : first_names) fs::remove_all(options.folder / name);
+  if (fs::exists(options.folder / "probe.csv")) {
+    std::vector<fs::path> ends;
+    for (const auto& entry : fs::directory_iterator(options.folder)) {
+      if (is_left_by_a_probe(entry) && entry.path().extension() == ".h5") ends.push_back(entry.path());
+    }
+    for (const fs::path& end : ends) fs::remove(end);
+  }
+  for (const std::string_view name : further_names) fs::remove(options.folder / name);
+  io::remove_leftovers(options.folder);
+}
+
+}  // namespace voussoir::host

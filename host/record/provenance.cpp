@@ -1,0 +1,46 @@
+#include "host/record/provenance.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Kokkos_Core.hpp>
+#include <array>
+#include <ctime>
+
+#include "host/process/build_info.hpp"
+#include "host/ranks/session.hpp"
+
+namespace voussoir::host {
+namespace {
+
+std::string kokkos_description() {
+  return fmt::format("Kokkos {}.{}.{}, {}", KOKKOS_VERSION / 10000, KOKKOS_VERSION / 100 % 100, KOKKOS_VERSION % 100,
+                     Kokkos::DefaultExecutionSpace::name());
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text.data();
+}
+
+}  // namespace
+
+io::Provenance provenance_of(const RunOptions& options, const Case& input, const std::string& kind) {
+  io::Provenance p;
+  p.case_kind = kind;
+  p.input = input.resolved;
+  p.fingerprint = input.fingerprint;
+  p.version = build_version;
+  p.git_hash = build_revision;
+  p.kokkos = kokkos_description();
+  p.command = options.command;
+  p.date = utc_now();
+  p.threads = options.threads;
+  p.ranks = rank_count();
+  return p;
+}
+
+}  // namespace voussoir::host

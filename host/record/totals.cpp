@@ -1,0 +1,112 @@
+#include "host/record/totals.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace voussoir::host {
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
+StageTotals sum_of(const std::vector<StageTotals>& totals) {
+  StageTotals sum;
+  sum.stage = "all";
+  for (const StageTotals& stage : totals) {
+    sum.evaluations.insert(sum.evaluations.end(), stage.evaluations.begin(), stage.evaluations.end());
+    sum.cuts += stage.cuts;
+    sum.particle_steps += stage.particle_steps;
+    sum.parts += stage.parts;
+    sum.output += stage.output;
+    sum.wall += stage.wall;
+  }
+  return sum;
+}
+
+std::string row(const StageTotals& t) {
+  const double named = t.parts.material + t.parts.assembly + t.parts.solve + t.output;
+  const double most = t.evaluations.empty() ? 0 : *std::max_element(t.evaluations.begin(), t.evaluations.end());
+  return fmt::format("{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>9.1f}", t.stage,
+                     t.evaluations.size(), t.wall, t.parts.material, t.parts.assembly, t.parts.solve, t.output, t.wall - named,
+                     median(t.evaluations), most, t.cuts, t.particle_steps,
+                     t.parts.material > 0 ? 1e-6 * t.particle_steps / t.parts.material : 0.0);
+}
+
+}  // namespace
+
+void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
+  std::string names;
+  for (std::size_t k = 0; k < totals.size(); ++k) {
+    const StageTotals& t = totals[k];
+    names += t.stage + "\n";
+    const std::vector<double> numbers{static_cast<double>(t.cuts), t.particle_steps, t.parts.material, t.parts.assembly,
+                                      t.parts.solve, t.output, t.wall};
+    checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
+    checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
+    checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.unsettled);
+    checkpoint.put_doubles(fmt::format("totals_unsettled_share_{}", k), t.unsettled_share);
+    if (!t.deferral_error.empty()) checkpoint.put_doubles(fmt::format("totals_deferral_{}", k), t.deferral_error);
+  }
+  checkpoint.put_text("totals", names);
+}
+
+std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
+  std::vector<StageTotals> totals;
+  if (!checkpoint.has("totals")) return totals;
+  const std::string names = checkpoint.get_text("totals");
+  for (std::size_t begin = 0, end = 0; (end = names.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::vector<double> numbers = checkpoint.get_doubles(fmt::format("totals_{}", totals.size()));
+    StageTotals t;
+    t.stage = names.substr(begin, end - begin);
+    t.evaluations = checkpoint.get_doubles(fmt::format("totals_evaluations_{}", totals.size()));
+    t.unsettled = checkpoint.get_doubles(fmt::format("totals_unsettled_{}", totals.size()));
+    t.unsettled_share = checkpoint.get_doubles(fmt::format("totals_unsettled_share_{}", totals.size()));
+    const std::string deferral = fmt::format("totals_deferral_{}", totals.size());
+    if (checkpoint.has(deferral)) t.deferral_error = checkpoint.get_doubles(deferral);
+    t.cuts = static_cast<int>(numbers.at(0));
+    t.particle_steps = numbers.at(1);
+    t.parts = {numbers.at(2), numbers.at(3), numbers.at(4)};
+    t.output = numbers.at(5);
+    t.wall = numbers.at(6);
+    totals.push_back(t);
+  }
+  return totals;
+}
+
+std::string unsettled_line(const StageTotals& stage, std::size_t points) {
+  const auto increments = std::count_if(stage.unsettled.begin(), stage.unsettled.end(), [](double n) { return n > 0; });
+  if (increments == 0) return {};
+  return fmt::format("{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest. Were "
+                     "their stress off by as much as their pressure, the residual would be off by {:.2g} of its tolerance at the most",
+                     stage.stage, increments, stage.unsettled.size(),
+                     *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points,
+                     *std::max_element(stage.unsettled_share.begin(), stage.unsettled_share.end()));
+}
+
+std::string deferral_line(const StageTotals& stage, double bound) {
+  if (stage.deferral_error.empty()) return {};
+  const double largest = *std::max_element(stage.deferral_error.begin(), stage.deferral_error.end());
+  const auto beyond = std::count_if(stage.deferral_error.begin(), stage.deferral_error.end(), [=](double e) { return e > bound; });
+  return fmt::format("{}: RVEs that answered by their tangent were off by up to {:.1e} of their pressure where their grains have run since; "
+                     "in {} of {} increments one was off by more than engine.defer = {:g}",
+                     stage.stage, largest, beyond, stage.deferral_error.size(), bound);
+}
+
+std::vector<std::string> totals_table(const std::vector<StageTotals>& totals) {
+  std::vector<std::string> lines;
+  if (totals.empty()) return lines;
+  lines.emplace_back("wall time [s] by stage and part; evaluations an increment (median, largest); particle-steps, and 10^6 of them a second of grains");
+  lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}", "stage", "incr.", "wall",
+                              "grains", "assembly", "solve", "output", "other", "eval.", "most", "cuts", "steps", "M/s"));
+  for (const StageTotals& stage : totals) lines.push_back(row(stage));
+  if (totals.size() > 1) lines.push_back(row(sum_of(totals)));
+  return lines;
+}
+
+}  // namespace voussoir::host
