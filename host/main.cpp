@@ -1,4 +1,4 @@
-#include "host/command_line.hpp"
+#include "host/program/command_line.hpp"
 #include "host/ranks/session.hpp"
 
 int main(int argc, char** argv) {

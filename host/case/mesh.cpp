@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host/case/tables.hpp"
-#include "host/case_size.hpp"
+#include "host/estimate/work.hpp"
 #include "host/case/result_fields.hpp"
 #include "io/units.hpp"
 

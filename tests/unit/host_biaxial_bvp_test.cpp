@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "fem/linear_elastic.hpp"
-#include "host/biaxial_bvp.hpp"
+#include "host/stages/biaxial_bvp.hpp"
 
 namespace voussoir::host {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/biaxial.hpp"
+#include "host/element_tests/biaxial.hpp"
 
 namespace voussoir::host {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/calibrate_tests.hpp"
-#include "host/calibration.hpp"
+#include "host/element_tests/calibrate_tests.hpp"
+#include "host/element_tests/calibration.hpp"
 
 namespace voussoir::host {
 namespace {

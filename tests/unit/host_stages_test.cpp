@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/linear_elastic.hpp"
-#include "host/tunnel.hpp"
+#include "host/stages/tunnel.hpp"
 
 namespace voussoir::host {
 namespace {

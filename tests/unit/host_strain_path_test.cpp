@@ -1,5 +1,5 @@
 // RVEs taken along a path of increments, and the state at its end taken up again.
-#include "host/strain_path.hpp"
+#include "host/element_tests/strain_path.hpp"
 
 #include <gtest/gtest.h>
 

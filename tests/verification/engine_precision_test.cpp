@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "host/biaxial.hpp"
+#include "host/element_tests/biaxial.hpp"
 
 namespace voussoir::host {
 namespace {

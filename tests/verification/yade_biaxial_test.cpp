@@ -9,7 +9,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "host/biaxial.hpp"
+#include "host/element_tests/biaxial.hpp"
 
 namespace voussoir::host {
 namespace {

@@ -1,0 +1,181 @@
+// The case kind "biaxial".
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+
+#include "host/element_tests/biaxial.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/case/result_fields.hpp"
+#include "host/record/provenance.hpp"
+#include "host/material/rve_pool.hpp"
+#include "io/result_file.hpp"
+
+namespace voussoir::host {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+template <class Value>
+io::TableColumn column(const char* name, const char* unit, const std::vector<BiaxialPoint>& points, const Value& value) {
+  io::TableColumn out{name, unit, {}};
+  for (const BiaxialPoint& point : points) out.values.push_back(value(point));
+  return out;
+}
+
+/// What every RVE of a mesh has, and what was asked for besides.
+void add_microstructure(const BiaxialCurve& curve, const kernels::MicrostructureRequest& wanted,
+                        std::vector<io::TableColumn>& table) {
+  if (!wanted.any()) return;
+  const auto& points = curve.points;
+  table.push_back(column("coordination", "-", points, [](const BiaxialPoint& x) { return x.microstructure.coordination; }));
+  table.push_back(column("grain_rotation", "rad", points, [](const BiaxialPoint& x) { return x.microstructure.grain_rotation; }));
+  for (const MicrostructureField& field : microstructure_fields(wanted)) {
+    table.push_back(column(field.name, field.unit, points, [&](const BiaxialPoint& x) { return field.value(x.microstructure); }));
+  }
+}
+
+std::vector<io::TableColumn> curve_table(const BiaxialCurve& curve, const kernels::MicrostructureRequest& wanted) {
+  const auto& points = curve.points;
+  std::vector<io::TableColumn> table{
+          column("axial_strain", "-", points, [](const BiaxialPoint& x) { return x.axial_strain; }),
+          column("lateral_strain", "-", points, [](const BiaxialPoint& x) { return x.lateral_strain; }),
+          column("volumetric_strain", "-", points, [](const BiaxialPoint& x) { return x.volumetric_strain(); }),
+          column("stress_xx", "Pa", points, [](const BiaxialPoint& x) { return x.stress_xx; }),
+          column("stress_yy", "Pa", points, [](const BiaxialPoint& x) { return x.stress_yy; }),
+          column("stress_xy", "Pa", points, [](const BiaxialPoint& x) { return x.stress_xy; }),
+          column("p", "Pa", points, [](const BiaxialPoint& x) { return x.p(); }),
+          column("q", "Pa", points, [](const BiaxialPoint& x) { return x.q(); }),
+          column("void_ratio", "-", points, [&](const BiaxialPoint& x) { return curve.void_ratio_at(x); }),
+          column("unbalanced_ratio", "-", points, [](const BiaxialPoint& x) { return x.unbalanced; })};
+  add_microstructure(curve, wanted, table);
+  return table;
+}
+
+/// All tests of a case: every seed at every pressure, each packing consolidated at its test's pressure.
+std::vector<PackedRve> packings_of(const Case& input, const PackingNote& note) {
+  std::vector<PackedRve> all;
+  for (const double pressure : input.biaxial.pressures) {
+    Case at_pressure = input;
+    at_pressure.packing.pressure = pressure;
+    for (PackedRve& rve : obtain_packings(at_pressure, seeds_of(input.packing), note, Bias::left)) all.push_back(std::move(rve));
+  }
+  return all;
+}
+
+const char* outcome(const BiaxialCurve& curve, const Strength& s) {
+  return curve.status == kernels::RveStatus::converged && !held(curve, s) ? "sigma_xx not held" : kernels::name_of(curve.status);
+}
+
+void print(const BiaxialCurve& curve, const Strength& s) {
+  std::printf("seed %4lld  %7.1f kPa  phi_p %5.1f deg at %4.1f %%  phi_cs %5.1f deg  psi_max %5.1f deg  contraction %.3f %%  "
+              "sigma_xx off by %.2f %%, scatters by %.1f %%  I %.1e  %s\n",
+              static_cast<long long>(curve.seed), curve.pressure * 1e-3, s.peak_angle / degree, s.peak_strain * 100.0,
+              s.critical_angle / degree, s.dilatancy / degree, s.contraction * 100.0, s.lateral_error * 100.0,
+              s.lateral_scatter * 100.0, curve.inertial_number, outcome(curve, s));
+}
+
+struct Summary {
+  std::vector<double> seed, pressure, peak, peak_p, peak_strain, critical, critical_p, dilatancy, contraction;
+  std::vector<double> lateral, scatter, inertial, valid;
+
+  void add(const BiaxialCurve& curve, const Strength& s, bool is_valid) {
+    seed.push_back(static_cast<double>(curve.seed));
+    pressure.push_back(curve.pressure);
+    peak.push_back(s.peak_angle);
+    peak_p.push_back(mean_stress_at(curve.pressure, s.peak_angle));
+    peak_strain.push_back(s.peak_strain);
+    critical.push_back(s.critical_angle);
+    critical_p.push_back(mean_stress_at(curve.pressure, s.critical_angle));
+    dilatancy.push_back(s.dilatancy);
+    contraction.push_back(s.contraction);
+    lateral.push_back(s.lateral_error);
+    scatter.push_back(s.lateral_scatter);
+    valid.push_back(is_valid ? 1.0 : 0.0);
+    inertial.push_back(curve.inertial_number);
+  }
+
+  [[nodiscard]] std::vector<io::TableColumn> table() const {
+    return {{"seed", "-", seed},           {"pressure", "Pa", pressure},       {"peak_angle", "rad", peak},
+            {"peak_strain", "-", peak_strain}, {"critical_angle", "rad", critical}, {"dilatancy_angle", "rad", dilatancy},
+            {"contraction", "-", contraction}, {"lateral_error", "-", lateral},
+            {"lateral_scatter", "-", scatter}, {"inertial_number", "-", inertial},  {"valid", "-", valid}};
+  }
+
+  /// Entries of the tests that were held.
+  [[nodiscard]] std::vector<double> of_valid(const std::vector<double>& values) const {
+    std::vector<double> out;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (valid[k] != 0) out.push_back(values[k]);
+    }
+    return out;
+  }
+};
+
+/// Tests that a case asks for; a packing that does not come to rest leaves some out. A file is one packing a pressure.
+std::size_t wanted_tests(const Case& input) {
+  return (input.packing.file.empty() ? seeds_of(input.packing).size() : 1) * input.biaxial.pressures.size();
+}
+
+/// Exit code of the tests that a finished run has left; nothing where there is none.
+std::optional<int> finished_before(const Case& input, const RunOptions& options) {
+  const std::filesystem::path file = options.folder / "run.h5";
+  if (!options.resume || !std::filesystem::exists(file)) return {};
+  const io::Tables tables = io::read_tables(file);
+  const auto strength = tables.find("strength");  // written last
+  if (strength == tables.end()) return {};
+  for (const io::TableColumn& column : strength->second) {
+    if (column.name != "valid") continue;
+    const auto held = static_cast<std::size_t>(std::count(column.values.begin(), column.values.end(), 1.0));
+    return held < wanted_tests(input) ? exit_numerical : exit_ok;
+  }
+  return {};
+}
+
+}  // namespace
+
+int run_biaxial(const Case& input, const RunOptions& options) {
+  if (const std::optional<int> before = finished_before(input, options)) {
+    std::printf("%s: finished already, nothing to do\n", options.folder.string().c_str());
+    return *before;
+  }
+  if (options.resume) std::printf("biaxial tests run all at once and have no checkpoint: they begin anew\n");
+  const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
+  const std::vector<PackedRve> rves = packings_of(input, note);
+  const kernels::EngineSettings settings{
+      .precision = engine_precision(input.engine), .skin = input.engine.skin, .backend = engine_backend(input.engine)};
+  const BiaxialCase& test = input.biaxial;
+  const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings,
+                                    input.output.microstructure);
+  auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});
+  Summary summary;
+  bool failed = false;
+  for (const BiaxialCurve& curve : curves) {
+    const Strength s = strength_of(curve, test.window);
+    print(curve, s);
+    summary.add(curve, s, held(curve, s));
+    failed = failed || !held(curve, s);
+    writer.set_table(fmt::format("seed_{}_{:.4g}_kPa", curve.seed, curve.pressure * 1e-3), curve_table(curve, input.output.microstructure));
+  }
+  writer.set_table("strength", summary.table());
+  const std::vector<double> psi = summary.of_valid(summary.dilatancy);
+  if (!psi.empty()) {
+    std::printf("all valid tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f deg (smoothed over %.1f %% of axial strain)\n",
+                common_angle(summary.of_valid(summary.peak), summary.of_valid(summary.peak_p)) / degree,
+                common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
+                *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
+  }
+  const std::size_t wanted = wanted_tests(input);
+  if (curves.size() < wanted) {
+    std::fprintf(stderr, "biaxial: %zu of %zu tests have no packing that comes to rest\n", wanted - curves.size(), wanted);
+  }
+  return failed || curves.size() < wanted ? exit_numerical : exit_ok;
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,179 @@
+#include "host/element_tests/probe.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "host/case/engine.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/packing/packings.hpp"
+#include "host/material/answers.hpp"
+#include "host/material/rve_pool.hpp"
+#include "host/packing/stored_packing.hpp"
+#include "host/element_tests/strain_path.hpp"
+#include "io/atomic_file.hpp"
+
+namespace voussoir::host {
+
+namespace {
+
+const PackingNote print = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
+
+/// Far below what matters to the stress, far above what float rounds away.
+constexpr double replica_difference = 1e-6;
+
+struct Probe {
+  const char* name;
+  fem::Gradient gradient;
+};
+
+std::vector<Probe> probes(double strain) {
+  const auto gradient = [](double xx, double xy, double yx, double yy) {
+    fem::Gradient g;
+    g << xx, xy, yx, yy;
+    return g;
+  };
+  return {{"xx", gradient(strain, 0, 0, 0)},
+          {"yy", gradient(0, 0, 0, strain)},
+          {"xy", gradient(0, 0.5 * strain, 0.5 * strain, 0)},
+          {"rotation", gradient(std::cos(strain) - 1.0, -std::sin(strain), std::sin(strain), std::cos(strain) - 1.0)},
+          {"-xx", gradient(-strain, 0, 0, 0)},
+          {"-yy", gradient(0, 0, 0, -strain)}};
+}
+
+std::vector<double> scales(int replicas) {
+  std::vector<double> scale;
+  for (int k = 0; k < replicas; ++k) scale.push_back(1.0 + replica_difference * k);
+  return scale;
+}
+
+/// What the run's tables hold so far.
+struct Tables {
+  std::string path =
+      "seed,replica,increment,evaluations,strain_xx,strain_yy,strain_xy,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,void_ratio,"
+      "steps,unbalanced_ratio,inertial_number,status\n";
+  std::string probe =
+      "seed,replica,probe,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,change_xx_Pa,change_yy_Pa,change_xy_Pa,"
+      "tangent_xxxx_Pa,tangent_xxyy_Pa,tangent_xxxy_Pa,tangent_yyyy_Pa,tangent_yyxy_Pa,tangent_xyxy_Pa,"
+      "tangent_yyxx_Pa,tangent_xyxx_Pa,tangent_xyyy_Pa,tangent,"
+      "tangent_after_xxxx_Pa,tangent_after_xxyy_Pa,tangent_after_xxxy_Pa,tangent_after_yyyy_Pa,tangent_after_yyxy_Pa,"
+      "tangent_after_xyxy_Pa,tangent_after_yyxx_Pa,tangent_after_xyxx_Pa,tangent_after_xyyy_Pa,tangent_after,"
+      "steps,unbalanced_ratio,inertial_number,status\n";
+};
+
+std::string end_of_row(const kernels::RveReport& report) {
+  return fmt::format("{},{:.6g},{:.6g},{}\n", report.steps, report.unbalanced, report.inertial_number, kernels::name_of(report.status));
+}
+
+std::string cells_of(const kernels::RveReport& report) {
+  const fem::Tangent d = whole_tangent_of(report);
+  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},", d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2),
+                     d(2, 2), d(1, 0), d(2, 0), d(2, 1), kernels::name_of(report.tangent_kind));
+}
+
+void print_probe(const Probe& probe, const fem::Stress& change, double strain) {
+  const fem::Stress slope = change / strain * 1e-6;
+  std::printf("%-9s %12.4f %12.4f %12.4f\n", probe.name, slope(0), slope(1), slope(2));
+}
+
+/// By the answer's own name: where what was asked for was not found, it is another one.
+void print_tangent(const kernels::RveReport& report) {
+  const fem::Tangent d = whole_tangent_of(report) * 1e-6;
+  std::printf("tangent (%s) [MPa]: xxxx %.4f xxyy %.4f xxxy %.4f yyyy %.4f yyxy %.4f xyxy %.4f", kernels::name_of(report.tangent_kind), d(0, 0),
+              d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2));
+  if (report.tangent_kind == kernels::TangentKind::loading) std::printf(" yyxx %.4f xyxx %.4f xyyy %.4f", d(1, 0), d(2, 0), d(2, 1));
+  std::printf("%s\n", report.tangent_capped ? "; not found within its iterations" : "");
+}
+
+/// The path; its end into `rve`. Returns what failed.
+std::string take_path(const Case& input, PackedRve& rve, Tables& tables) {
+  const std::vector<double> scale = scales(input.probe.replicas);
+  RvePool pool(rve, {input.engine}, scale.size());
+  const PathEnd end = walk_path(pool, input.probe.path, scale, [&](const PathPoint& at) {
+    tables.path += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, at.rve, at.increment,
+                               at.evaluations, at.strain.xx, at.strain.yy, 0.5 * (at.strain.xy + at.strain.yx), at.stress(0),
+                               at.stress(1), at.stress(2), at.void_ratio) +
+                   end_of_row(*at.report);
+  });
+  if (end.missed > 0) {
+    const std::string said = fmt::format("seed {}: sigma_xx is missed by up to {:.2g} % after {} of the path's increments; take smaller ones",
+                                         rve.seed, end.largest_miss * 100, end.missed);
+    std::fprintf(stderr, "probe: %s\n", said.c_str());
+  }
+  if (!end.usable) return fmt::format("seed {}, {}", rve.seed, end.message);
+  PackedRve last = pool.packed(0);
+  last.seed = rve.seed;
+  last.consolidation_friction = rve.consolidation_friction;
+  rve = std::move(last);
+  return {};
+}
+
+/// All probes of all replicas from the state `rve`. Returns what failed.
+std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables, bool show) {
+  const std::vector<Probe> all = probes(input.probe.strain);
+  const std::vector<double> scale = scales(input.probe.replicas);
+  const std::size_t n = all.size() * scale.size();
+  RvePool pool(rve, {.engine = input.engine, .tangent = input.probe.tangent, .tangent_strain = input.probe.strain}, n);
+  std::vector<fem::Gradient> gradients;
+  for (const double factor : scale) {
+    for (const Probe& probe : all) gradients.emplace_back(factor * probe.gradient);
+  }
+  std::vector<fem::Stress> before(n), after(n);
+  std::vector<fem::Tangent> unused(n);
+  pool.committed(before, unused);
+  const kernels::RveReport start = pool.committed_reports().front();
+  const fem::BatchReport report = pool.evaluate(gradients, after, unused);
+  pool.commit();
+  if (show) std::printf("%-9s %12s %12s %12s   change of stress over strain [MPa], tension positive\n", "probe", "xx", "yy", "xy");
+  for (std::size_t k = 0; k < n; ++k) {
+    const Probe& probe = all[k % all.size()];
+    const fem::Stress change = after[k] - before[k];
+    if (show && k < all.size()) print_probe(probe, change, input.probe.strain);
+    tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, k / all.size(), probe.name, after[k](0),
+                                after[k](1), after[k](2), change(0), change(1), change(2)) +
+                    cells_of(start) + cells_of(pool.committed_reports()[k]) + end_of_row(pool.committed_reports()[k]);
+  }
+  if (show) print_tangent(start);
+  return report.usable ? "" : fmt::format("seed {}, {}", rve.seed, report.message);
+}
+
+/// The packings that are probed; several are not compared with each other, so their bias is not measured.
+std::vector<PackedRve> packings_to_probe(const Case& input) {
+  Case at_pressure = input;
+  at_pressure.packing.pressure = input.probe.pressure;
+  if (input.packing.seeds.empty() || !input.packing.file.empty()) return {choose_packing(at_pressure, print)};
+  std::vector<PackedRve> rves;
+  for (const std::int64_t seed : input.packing.seeds) rves.push_back(obtain_packings(at_pressure, std::span(&seed, 1), print).front());
+  return rves;
+}
+
+}  // namespace
+
+int run_probe(const Case& input, const RunOptions& options) {
+  std::printf("%s\n", engine_note(input.engine).c_str());
+  std::vector<PackedRve> rves = packings_to_probe(input);
+  std::filesystem::create_directories(options.folder);
+  Tables tables;
+  int code = exit_ok;
+  const auto note_failure = [&code](const std::string& failure) {
+    if (!failure.empty()) std::fprintf(stderr, "probe: %s\n", failure.c_str());
+    if (!failure.empty()) code = exit_numerical;
+    return !failure.empty();
+  };
+  for (PackedRve& rve : rves) {
+    if (!input.probe.path.empty()) {
+      if (note_failure(take_path(input, rve, tables))) continue;
+      io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed), stored_packing(rve, "path of " + input.name, input.fingerprint));
+    }
+    note_failure(take_probes(input, rve, tables, &rve == &rves.front()));
+  }
+  if (!input.probe.path.empty()) io::write_text(options.folder / "path.csv", tables.path);
+  io::write_text(options.folder / "probe.csv", tables.probe);
+  return code;
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,149 @@
+#include "host/estimate/work.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "host/element_tests/calibration.hpp"
+#include "host/packing/packings.hpp"
+#include "host/stages/stages.hpp"
+#include "host/stages/tunnel.hpp"
+
+namespace voussoir::host {
+namespace {
+
+// Calibrated on the column `particle_steps` of run.h5 (evaluations an increment, steps an evaluation):
+//   cases/tunnel_quick, I = 3e-4      column 1.7, 132; gravity 1.8, 131; volume loss 4.9, 146
+//   the same, coarser, 1e-4, V_l 5 %  column 1.7, 218; gravity 1.9, 206; volume loss 3.0, 160
+//   cases/column, I = 2e-4            column 1.7, 144
+// With the constants below these runs are estimated at 1.1, 1.4 and 0.95 of what they took, and tunnel_quick with two other
+// packings (packing.seed = 20, 40), which were harder to bring to equilibrium, at 0.76 and 0.67.
+// Since increments are relaxed (fem/README.md) the later evaluations have few steps: the constants count whole ones.
+// tunnel_quick to V_l = 20 %, 80 increments: evaluations 2.0 (gravity), 3.5 to 10 %, 4.8 beyond.
+constexpr double gravity_evaluations = 1.2;
+constexpr double loss_evaluations = 4.5;
+constexpr double gravity_strain = 0.014;  ///< mean strain of an RVE over the load factor's step
+constexpr double loss_strain = 0.2;       ///< mean strain of an RVE over the volume loss of an increment
+constexpr double hold_steps = 30;
+constexpr double specimen_evaluations = 5.0;  ///< cases/biaxial_bvp: 7, most of them of few steps
+constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the top's, without change of volume
+
+/// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)) with the scaled mass m of
+/// kernels/README.md (one stable step for all sizes), six neighbours.
+double inertial_steps(const SoilCase& soil, double strain, double pressure, double inertial_number) {
+  const double k_n = soil.modulus * 0.25 * (soil.size_minimum + soil.size_maximum);
+  const double mass = (6.0 + 12.0 * soil.stiffness_ratio) * k_n / (4.0 * 0.9 * 0.9);
+  return strain / inertial_number * std::sqrt(mass / (pressure * soil.thickness));
+}
+
+/// Steps of one evaluation of one RVE.
+double steps_per_evaluation(const Case& input, double strain, double pressure) {
+  const double steps = inertial_steps(input.soil, strain, pressure, input.engine.inertial_number);
+  return std::clamp(steps, static_cast<double>(input.engine.minimum_steps),
+                    static_cast<double>(input.engine.maximum_steps)) +
+         std::min(hold_steps, static_cast<double>(input.engine.hold_cap));
+}
+
+/// Packings of one pressure.
+std::size_t packings(const Case& input) {
+  return input.packing.file.empty() ? seeds_of(input.packing).size() : std::size_t{1};
+}
+
+/// `biaxial` and `probe`: tests of packings, no mesh.
+CaseSize test_size(const Case& input) {
+  CaseSize size;
+  if (input.kind == CaseKind::probe) {
+    const ProbeCase& probe = input.probe;
+    double steps = 6.0 * steps_per_evaluation(input, probe.strain, probe.pressure);
+    for (const PathSegment& segment : probe.path) {
+      const auto& g = segment.gradient;
+      const double strain = std::sqrt(g[0] * g[0] + g[3] * g[3] + 0.5 * (g[1] + g[2]) * (g[1] + g[2]));
+      steps += segment.increments * steps_per_evaluation(input, strain, probe.pressure);
+    }
+    const std::size_t copies = packings(input) * static_cast<std::size_t>(probe.replicas);
+    size.tests = 6 * copies;
+    size.particle_steps = static_cast<double>(copies) * input.packing.grains * steps;
+    return size;
+  }
+  const BiaxialCase& test = input.biaxial;
+  for (const double pressure : test.pressures) {
+    const double steps = inertial_steps(input.soil, test.strain, pressure, test.inertial_number);
+    size.particle_steps += static_cast<double>(packings(input)) * input.packing.grains * steps;
+  }
+  size.tests = packings(input) * test.pressures.size();
+  return size;
+}
+
+CaseSize specimen_size(const Case& input) {
+  const BiaxialBvpCase& test = input.biaxial_bvp;
+  CaseSize size;
+  size.points = static_cast<std::size_t>(4 * test.columns * test.rows);
+  size.increments = static_cast<std::size_t>(test.increments());
+  if (input.material != MaterialKind::grains) return size;
+  size.grains = static_cast<double>(size.points) * input.packing.grains;
+  size.particle_steps = size.grains * specimen_evaluations * test.increments() *
+                        steps_per_evaluation(input, specimen_strain * test.strain_step, 2 * test.pressure);
+  return size;
+}
+
+/// Grid, refinements and confirmation of a search.
+CaseSize search_size(const Case& input) {
+  const CalibrateCase& search = input.calibrate;
+  const SearchBox box(search, input.soil);
+  const std::vector<ParameterSet> grid = box.grid();
+  const std::size_t stars = static_cast<std::size_t>(search.rounds) * (2 * box.dimensions() + 1);
+  const std::size_t seeds = seeds_of(input.packing).size();
+  CaseSize size;
+  size.tests = ((grid.size() + stars) * seeds + 2 * search.confirm_seeds.size()) * input.biaxial.pressures.size();
+  const double thickness_of_grid =
+      std::accumulate(grid.begin(), grid.end(), 0.0, [](double sum, const ParameterSet& set) { return sum + set[Parameter::thickness]; }) /
+      static_cast<double>(grid.size());
+  SoilCase soil = input.soil;
+  soil.thickness = thickness_of_grid;
+  for (const double pressure : input.biaxial.pressures) {
+    const double steps = inertial_steps(soil, input.biaxial.strain, pressure, 1.0);
+    size.particle_steps += steps / input.biaxial.inertial_number * input.packing.grains * static_cast<double>((grid.size() + stars) * seeds);
+    size.particle_steps += steps / search.confirm_inertial_number * search.confirm_grains * 2.0 * static_cast<double>(search.confirm_seeds.size());
+  }
+  return size;
+}
+
+CaseSize ground_size(const Case& input) {
+  CaseSize size;
+  const bool with_tunnel = input.kind == CaseKind::tunnel;
+  const std::size_t gravity = gravity_targets(input).size();
+  const auto loss = with_tunnel ? static_cast<std::size_t>(input.volume_loss.increments) : std::size_t{0};
+  size.column_points = static_cast<std::size_t>(4 * input.column.elements);
+  size.points = with_tunnel ? static_cast<std::size_t>(tunnel_mesh(input.ground).n_points()) : size.column_points;
+  size.increments = with_tunnel ? 2 * gravity + loss : gravity;
+  if (input.material != MaterialKind::grains) return size;
+
+  const auto points = static_cast<double>(size.points);
+  const double pressure = 0.5 * input.ground.unit_weight * input.ground.height;  // at half the depth
+  const double under_gravity = gravity_evaluations * static_cast<double>(gravity) *
+                               steps_per_evaluation(input, gravity_strain * input.gravity.uniform_step, pressure);
+  size.grains = points * input.packing.grains;
+  size.particle_steps = size.grains * under_gravity;
+  if (with_tunnel) {
+    const double step = input.volume_loss.total / static_cast<double>(loss);
+    size.particle_steps += static_cast<double>(size.column_points) * input.packing.grains * under_gravity;
+    size.particle_steps += size.grains * loss_evaluations * static_cast<double>(loss) *
+                           steps_per_evaluation(input, loss_strain * step, pressure);
+  }
+  return size;
+}
+
+}  // namespace
+
+CaseSize case_size(const Case& input) {
+  CaseSize size;
+  if (input.kind == CaseKind::biaxial || input.kind == CaseKind::probe) size = test_size(input);
+  if (input.kind == CaseKind::biaxial_bvp) size = specimen_size(input);
+  if (input.kind == CaseKind::calibrate) size = search_size(input);
+  if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) size = ground_size(input);
+  if (size.points > 0) add_storage(input, size);
+  size.packings = packings(input) * (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
+  return size;
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,183 @@
+// The command `voussoir sweep`: one process a run, so that a run behaves as it does alone.
+#include <spdlog/fmt/fmt.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "host/program/commands.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/process/interrupt.hpp"
+#include "host/ranks/session.hpp"
+#include "io/atomic_file.hpp"
+#include "io/case_file.hpp"
+#include "io/result_file.hpp"
+
+namespace voussoir::host {
+namespace {
+
+struct SweepRun {
+  std::string name;
+  std::vector<std::string> overrides;
+  std::filesystem::path folder;
+  int exit_code = -1;  ///< -1: not run
+};
+
+struct Sweep {
+  std::filesystem::path base;
+  std::vector<SweepRun> runs;
+};
+
+/// Whether a name can be a folder's, and a field of summary.csv as it stands.
+bool is_plain(const std::string& name) {
+  constexpr const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
+  return !name.empty() && name.front() != '.' && name.find_first_not_of(allowed) == std::string::npos;
+}
+
+/// Reads the sweep and validates the case of every run, before anything is written.
+Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options) {
+  const io::CaseFile text = io::CaseFile::load(file);
+  Sweep sweep;
+  sweep.base = text.root().path("base");
+  std::set<std::string> names;
+  for (const io::Table& table : text.root().tables("run")) {
+    SweepRun run{table.text("name"), table.texts("set", std::vector<std::string>{}), {}};
+    if (!is_plain(run.name)) throw table.error("name", "must be of letters, digits and _ . - and not begin with a dot");
+    if (!names.insert(run.name).second) throw table.error("name", "names two runs");
+    run.folder = options.folder / run.name;
+    check_folder({.folder = run.folder, .resume = options.resume, .command = {}}, load_case(sweep.base, run.overrides));
+    sweep.runs.push_back(std::move(run));
+  }
+  if (sweep.runs.empty()) throw text.root().error("run", "there is no [[run]] in this sweep");
+  text.finish();
+  return sweep;
+}
+
+pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepOptions& options) {
+  std::vector<std::string> words{options.program.string(), "run", base.string(), "-o", run.folder.string()};
+  for (const std::string& value : run.overrides) words.insert(words.end(), {"--set", value});
+  if (options.threads > 0) words.insert(words.end(), {"--threads", std::to_string(options.threads)});
+  if (options.resume) words.emplace_back("--resume");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);  // run.log has it all
+  pid_t process = 0;
+  const int failure = posix_spawn(&process, words.front().c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure != 0) throw std::system_error(failure, std::generic_category(), "cannot start " + words.front());
+  return process;
+}
+
+const char* status_name(int exit_code) {
+  switch (exit_code) {
+    case exit_ok: return "finished";
+    case exit_input: return "wrong input";
+    case exit_numerical: return "no equilibrium";
+    case exit_interrupted: return "interrupted";
+    case -1: return "not run";
+    default: return "machine failure";
+  }
+}
+
+/// Waits until one of the processes has ended and notes its exit code. A request to stop is passed on, once: as SIGUSR1, since
+/// a run that a terminal's Ctrl-C has reached already takes a second SIGINT or SIGTERM for insistence.
+void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
+  int status = 0;
+  pid_t process = 0;
+  while ((process = waitpid(-1, &status, WNOHANG)) == 0) {
+    if (interrupted() && !passed_on) {
+      for (const auto& [child, run] : running) kill(child, SIGUSR1);
+      passed_on = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  if (process < 0) throw std::system_error(errno, std::generic_category(), "waiting for a run");
+  const auto found = running.find(process);
+  if (found == running.end()) return;
+  SweepRun& run = *found->second;
+  // A kind that cannot end between increments is ended by the signal.
+  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : passed_on ? exit_interrupted : exit_machine;
+  fmt::print("{}: {}\n", run.name, status_name(run.exit_code));
+  std::fflush(stdout);
+  running.erase(found);
+}
+
+void run_all(Sweep& sweep, const SweepOptions& options) {
+  std::map<pid_t, SweepRun*> running;
+  bool passed_on = false;
+  for (SweepRun& run : sweep.runs) {
+    while (static_cast<int>(running.size()) >= options.processes) wait_for_one(running, passed_on);
+    if (interrupted()) break;
+    running.emplace(start(run, sweep.base, options), &run);
+  }
+  while (!running.empty()) wait_for_one(running, passed_on);
+}
+
+/// One row a run: its end, and the further columns of its last increment.
+void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
+  std::vector<std::vector<io::IncrementInfo>> tables;
+  std::set<std::string> columns;
+  for (const SweepRun& run : sweep.runs) {
+    const bool has_results = std::filesystem::exists(run.folder / "run.h5");
+    tables.push_back(has_results ? io::read_increments(run.folder / "run.h5") : std::vector<io::IncrementInfo>{});
+    if (tables.back().empty()) continue;
+    for (const auto& [name, value] : tables.back().back().extra) columns.insert(name);
+  }
+  std::string text = "name,status,exit_code,stage,load_parameter,iterations,particle_steps,wall_s";
+  for (const std::string& column : columns) text += "," + column;
+  text += "\n";
+  for (std::size_t k = 0; k < sweep.runs.size(); ++k) {
+    const SweepRun& run = sweep.runs[k];
+    const io::IncrementInfo last = tables[k].empty() ? io::IncrementInfo{} : tables[k].back();
+    int iterations = 0;
+    double steps = 0;
+    double wall = 0;
+    for (const io::IncrementInfo& info : tables[k]) {
+      iterations += info.iterations;
+      steps += info.particle_steps;
+      wall += info.wall_s;
+    }
+    text += fmt::format("{},{},{},{},{:.9g},{},{:.9g},{:.2f}", run.name, status_name(run.exit_code), run.exit_code,
+                        last.stage, last.load_parameter, iterations, steps, wall);
+    for (const std::string& column : columns) {
+      text += last.extra.contains(column) ? fmt::format(",{:.9g}", last.extra.at(column).value) : ",";
+    }
+    text += "\n";
+  }
+  io::write_text(file, text);
+}
+
+}  // namespace
+
+int command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& given) {
+  if (rank_count() > 1) throw std::invalid_argument("sweep starts processes of its own: run it without mpirun");
+  SweepOptions options = given;
+  if (options.folder.empty()) options.folder = std::filesystem::path("out") / sweep_file.stem();
+  Sweep sweep = load_sweep(sweep_file, options);
+  catch_interrupts();
+  std::filesystem::create_directories(options.folder);
+  run_all(sweep, options);
+  write_summary(sweep, options.folder / "summary.csv");
+  fmt::print("summary: {}\n", (options.folder / "summary.csv").string());
+  int worst = exit_ok;
+  for (const SweepRun& run : sweep.runs) worst = std::max(worst, run.exit_code < 0 ? exit_interrupted : run.exit_code);
+  return worst;
+}
+
+}  // namespace voussoir::host

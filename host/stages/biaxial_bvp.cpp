@@ -1,0 +1,182 @@
+#include "host/stages/biaxial_bvp.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "fem/boundary.hpp"
+#include "host/case/engine.hpp"
+#include "host/stages/make_material.hpp"
+#include "io/result_file.hpp"
+
+namespace voussoir::host {
+namespace {
+
+Eigen::VectorXd side_forces(const fem::Mesh& mesh, const fem::Coordinates& coordinates, double pressure) {
+  return fem::pressure_force(coordinates, mesh.edge_set("side"), pressure) +
+         fem::pressure_force(coordinates, mesh.edge_set("axis"), pressure);
+}
+
+/// A mesh's data without the numbers of a tunnel's ground.
+io::MeshData specimen_data(const fem::Mesh& mesh, const Case& input) {
+  io::MeshData data = mesh_data(mesh, input);
+  data.geometry = {{"width", input.biaxial_bvp.width}, {"height", input.biaxial_bvp.height}};
+  return data;
+}
+
+void add_specimen_columns(const SpecimenState& specimen, io::IncrementInfo& info) {
+  info.extra["axial_strain"] = {specimen.axial_strain, "-"};
+  info.extra["volumetric_strain"] = {specimen.volumetric_strain, "-"};
+  info.extra["axial_force"] = {specimen.axial_force, "N/m"};
+  info.extra["axial_stress"] = {specimen.axial_stress, "Pa"};
+  info.extra["p"] = {specimen.p, "Pa"};
+  info.extra["q"] = {specimen.q, "Pa"};
+  info.extra["q_over_p"] = {specimen.p != 0 ? specimen.q / specimen.p : 0.0, "-"};
+}
+
+/// Table `gauss_histories` of io/FORMAT.md, gathered from the increments' own files: a resumed run has them all. A run may be
+/// resumed with other `output.fields`: what an increment's file lacks is not a number.
+std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder) {
+  struct Source {
+    const char* field;
+    std::array<const char*, 3> columns;
+  };
+  static constexpr std::array<Source, 7> sources{{{"strain", {"strain_xx", "strain_yy", "strain_xy"}},
+                                                  {"stress", {"stress_xx", "stress_yy", "stress_xy"}},
+                                                  {"mean_stress", {"p"}},
+                                                  {"deviatoric_stress", {"q"}},
+                                                  {"volumetric_strain", {"volumetric_strain"}},
+                                                  {"deviatoric_strain", {"deviatoric_strain"}},
+                                                  {"void_ratio", {"void_ratio"}}}};
+  constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+  std::vector<io::TableColumn> table{{"load_parameter", "-", {}}, {"point", "-", {}}};
+  std::map<std::string, std::size_t> column_of;
+  for (const io::IncrementInfo& info : io::read_increments(folder / "run.h5")) {
+    std::size_t points = 0;
+    for (const io::Field& field : io::read_fields(io::increment_path(folder, info.index))) {
+      if (field.location != io::FieldLocation::gauss) continue;
+      const auto components = static_cast<std::size_t>(field.components);
+      points = field.values.size() / components;
+      for (const Source& source : sources) {
+        if (field.name != source.field) continue;
+        for (std::size_t k = 0; k < components; ++k) {
+          const auto [at, is_new] = column_of.try_emplace(source.columns[k], table.size());
+          if (is_new) table.push_back({source.columns[k], field.unit, std::vector<double>(table[0].values.size(), missing)});
+          for (std::size_t p = 0; p < points; ++p) table[at->second].values.push_back(field.values[p * components + k]);
+        }
+      }
+    }
+    for (std::size_t p = 0; p < points; ++p) {
+      table[0].values.push_back(info.load_parameter);
+      table[1].values.push_back(static_cast<double>(p));
+    }
+    for (io::TableColumn& column : table) column.values.resize(table[0].values.size(), missing);
+  }
+  return table;
+}
+
+/// Means of what the increments cost, by the record itself.
+std::string cost_line(const std::filesystem::path& folder) {
+  const std::vector<io::IncrementInfo> all = io::read_increments(folder / "run.h5");
+  double evaluations = 0, work = 0, wall = 0;
+  for (const io::IncrementInfo& info : all) {
+    evaluations += info.evaluations;
+    work += info.particle_steps;
+    wall += info.wall_s;
+  }
+  const auto n = static_cast<double>(all.size());
+  return fmt::format("{} increments: {:.1f} evaluations, {:.3g} particle-steps and {:.3g} s each", all.size(), evaluations / n,
+                     work / n, wall / n);
+}
+
+Stage specimen_stage(const Ground& ground, SpecimenState& specimen) {
+  const BiaxialBvpCase& test = ground.input.biaxial_bvp;
+  const fem::Mesh& mesh = ground.mesh;
+  Stage stage;
+  stage.name = "biaxial_bvp";
+  stage.kinematics = fem::Kinematics::updated_lagrangian;
+  stage.path.external_force = [&ground, &mesh, &test](double) {
+    return side_forces(mesh, ground.state.coordinates, test.pressure);
+  };
+  stage.path.prescribed_increment = [&mesh, &test](double from, double to) {
+    return platen_constraints(mesh, -(to - from) * test.height);
+  };
+  const int n = test.increments();
+  for (int k = 1; k <= n; ++k) stage.targets.push_back(test.strain * k / n);
+  stage.last = true;
+  stage.on_step = [&mesh, &specimen](const fem::ConvergedStep& step) {
+    specimen = specimen_state(mesh, step.increment, step.state);
+  };
+  stage.on_record = [&specimen](io::IncrementInfo& info) { add_specimen_columns(specimen, info); };
+  return stage;
+}
+
+}  // namespace
+
+fem::Constraints platen_constraints(const fem::Mesh& mesh, double top_increment) {
+  fem::Constraints constraints;
+  fem::constrain(constraints, mesh.node_set("base"), 1, 0.0);
+  fem::constrain(constraints, {mesh.node_set("base").front()}, 0, 0.0);
+  fem::constrain(constraints, mesh.node_set("top"), 1, top_increment);
+  return constraints;
+}
+
+SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increment, const fem::MeshState& state) {
+  SpecimenState specimen;
+  const std::vector<int>& top = mesh.node_set("top");
+  for (const int node : top) specimen.axial_force -= increment.reactions[2 * node + 1];
+  const auto x_before = [&](int node) { return state.coordinates(0, node) - increment.last_part[2 * node]; };
+  specimen.axial_stress = specimen.axial_force / std::abs(x_before(top.front()) - x_before(top.back()));
+  const double base = mesh.coordinates(1, mesh.node_set("base").front());
+  specimen.axial_strain =
+      -std::log((state.coordinates(1, top.front()) - base) / (mesh.coordinates(1, top.front()) - base));
+  const std::vector<double> now = fem::gauss_points(mesh, state.coordinates).volumes;
+  const std::vector<double> first = fem::gauss_points(mesh, mesh.coordinates).volumes;
+  double area = 0, first_area = 0;
+  PlaneTensor stress = PlaneTensor::Zero();
+  for (std::size_t p = 0; p < now.size(); ++p) {
+    area += now[p];
+    first_area += first[p];
+    stress += now[p] * increment.stress[p];
+  }
+  specimen.volumetric_strain = -std::log(area / first_area);
+  stress /= area;
+  specimen.p = mean_stress(stress);
+  specimen.q = deviatoric_stress(stress);
+  return specimen;
+}
+
+RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
+  const BiaxialBvpCase& test = input.biaxial_bvp;
+  const fem::Mesh mesh = fem::make_rectangle(test.width, test.height, test.columns, test.rows);
+  std::filesystem::create_directories(options.folder);
+  RunLog log(options.folder / "run.log", options.resume);
+  RunRecorder recorder(options, input, "biaxial_bvp", specimen_data(mesh, input), log);
+  if (recorder.finished()) {
+    log.line(fmt::format("{}: finished already, nothing to do", options.folder.string()));
+    return RunStatus::finished;
+  }
+  if (uses_engine(input)) log.line(engine_note(input.engine));
+  Case at_pressure = input;
+  at_pressure.packing.pressure = test.pressure;
+  const auto material = make_material(at_pressure, static_cast<std::size_t>(mesh.n_points()),
+                                      [&log](const std::string& text) { log.line(text); });
+  Ground ground{input, mesh, *material, {}, {}};
+  if (const io::Checkpoint* checkpoint = recorder.resumed()) {
+    restore(ground, *checkpoint);
+    log.line(fmt::format("resumed behind increment {}", recorder.resumed_stage_index()));
+  } else {
+    begin_stage(ground);
+  }
+  SpecimenState specimen;
+  const RunStatus status = advance_stage(ground, specimen_stage(ground, specimen), recorder);
+  if (status == RunStatus::interrupted || ground.state.parameter == 0) return status;
+  recorder.set_table("gauss_histories", gauss_histories(options.folder));
+  log.line(cost_line(options.folder));
+  return status;
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,86 @@
+// Ground to checkpoint and back.
+#include <array>
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include "host/stages/ground.hpp"
+
+namespace voussoir::host {
+namespace {
+
+template <class Matrix>
+void put_list(io::Checkpoint& checkpoint, const std::string& name, const std::vector<Matrix>& list) {
+  static_assert(sizeof(Matrix) == Matrix::SizeAtCompileTime * sizeof(double));
+  const double* first = list.empty() ? nullptr : list.front().data();
+  checkpoint.put_doubles(name, {first, list.size() * Matrix::SizeAtCompileTime});
+}
+
+std::vector<double> get_sized(const io::Checkpoint& checkpoint, const std::string& name, std::size_t size) {
+  std::vector<double> values = checkpoint.get_doubles(name);
+  if (values.size() != size) {
+    throw std::runtime_error("the checkpoint's " + name + " has " + std::to_string(values.size()) + " numbers, " +
+                             std::to_string(size) + " are needed");
+  }
+  return values;
+}
+
+template <class Matrix>
+std::vector<Matrix> get_list(const io::Checkpoint& checkpoint, const std::string& name, std::size_t count) {
+  constexpr std::size_t width = Matrix::SizeAtCompileTime;
+  const std::vector<double> values = get_sized(checkpoint, name, count * width);
+  std::vector<Matrix> list(count);
+  for (std::size_t k = 0; k < count; ++k) list[k] = Eigen::Map<const Matrix>(values.data() + k * width);
+  return list;
+}
+
+Eigen::VectorXd get_vector(const io::Checkpoint& checkpoint, const std::string& name, std::size_t size) {
+  const std::vector<double> values = get_sized(checkpoint, name, size);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(size));
+}
+
+std::span<const double> numbers(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
+
+}  // namespace
+
+void save(const Ground& ground, io::Checkpoint& checkpoint) {
+  const fem::MeshState& state = ground.state;
+  checkpoint.put_doubles("displacement", numbers(state.displacement));
+  checkpoint.put_doubles("coordinates",
+                         {state.coordinates.data(), static_cast<std::size_t>(state.coordinates.size())});
+  put_list(checkpoint, "deformation", state.deformation);
+  put_list(checkpoint, "initial_tangent", state.initial_tangent);
+  put_list(checkpoint, "tangent", state.tangent);
+  checkpoint.put_doubles("last_increment", numbers(state.last_increment));
+  const std::array<double, 5> scalars{state.last_step, state.start, state.parameter, state.step_limit,
+                                      state.relaxation_factor};
+  checkpoint.put_doubles("load", scalars);
+  put_list(checkpoint, "strain", ground.strain);
+  checkpoint.put("material", ground.material.state());
+}
+
+void restore(Ground& ground, const io::Checkpoint& checkpoint) {
+  const auto dofs = static_cast<std::size_t>(ground.mesh.n_dofs());
+  const auto points = static_cast<std::size_t>(ground.mesh.n_points());
+  fem::MeshState state;
+  state.displacement = get_vector(checkpoint, "displacement", dofs);
+  const std::vector<double> coordinates = get_sized(checkpoint, "coordinates", dofs);
+  state.coordinates = Eigen::Map<const fem::Coordinates>(coordinates.data(), 2, ground.mesh.n_nodes());
+  state.deformation = get_list<fem::Gradient>(checkpoint, "deformation", points);
+  state.initial_tangent = get_list<fem::Tangent>(checkpoint, "initial_tangent", points);
+  state.tangent = get_list<fem::Tangent>(checkpoint, "tangent", points);
+  const bool moved = !checkpoint.get_doubles("last_increment").empty();
+  state.last_increment = get_vector(checkpoint, "last_increment", moved ? dofs : 0);
+  const std::vector<double> scalars = get_sized(checkpoint, "load", 5);
+  state.last_step = scalars[0];
+  state.start = scalars[1];
+  state.parameter = scalars[2];
+  state.step_limit = scalars[3];
+  state.relaxation_factor = scalars[4];
+  ground.state = std::move(state);
+  ground.strain = get_list<PlaneTensor>(checkpoint, "strain", points);
+  ground.material.set_state(checkpoint.get("material"));
+}
+
+}  // namespace voussoir::host
