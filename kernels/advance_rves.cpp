@@ -11,7 +11,7 @@
 #include "kernels/advance_group.hpp"
 #include "kernels/advance_teams.hpp"
 #include "kernels/flush_subnormals.hpp"
-#include "kernels/schedule.hpp"
+#include "kernels/state/schedule.hpp"
 
 namespace voussoir::kernels {
 

@@ -6,8 +6,8 @@
 
 #include <span>
 
-#include "kernels/rve_batch.hpp"
-#include "kernels/settings.hpp"
+#include "kernels/state/rve_batch.hpp"
+#include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
 

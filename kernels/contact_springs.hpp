@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "kernels/pair_sweep.hpp"
-#include "kernels/settings.hpp"
+#include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
 

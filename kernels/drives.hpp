@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/rve_batch.hpp"
-#include "kernels/settings.hpp"
+#include "kernels/state/rve_batch.hpp"
+#include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
 

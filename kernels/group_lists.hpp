@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "kernels/group_state.hpp"
+#include "kernels/contact/pair_state.hpp"
 #include "kernels/neighbours.hpp"
-#include "kernels/pair_reference.hpp"
-#include "kernels/rve_batch.hpp"
+#include "kernels/contact/pair_reference.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "kernels/group_run.hpp"
-#include "kernels/microstructure.hpp"
+#include "kernels/state/network.hpp"
 
 namespace voussoir::kernels {
 

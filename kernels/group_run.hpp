@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "kernels/group_lists.hpp"
-#include "kernels/homogenise.hpp"
+#include "kernels/contact/resting_pair.hpp"
 #include "kernels/loading_tangent.hpp"
 #include "kernels/rve_course.hpp"
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "kernels/lane.hpp"
-#include "kernels/rve_batch.hpp"
+#include "kernels/contact/lane.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "kernels/cell.hpp"
+#include "kernels/contact/cell.hpp"
 
 namespace voussoir::kernels {
 

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-#include "kernels/group_state.hpp"
+#include "kernels/contact/pair_state.hpp"
 
 namespace voussoir::kernels {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "kernels/drives.hpp"
-#include "kernels/group_state.hpp"
+#include "kernels/contact/pair_state.hpp"
 
 namespace voussoir::kernels {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "kernels/homogenise.hpp"
+#include "kernels/contact/resting_pair.hpp"
 #include "kernels/rve_course.hpp"
 
 namespace voussoir::kernels {

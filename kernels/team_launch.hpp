@@ -7,7 +7,7 @@
 
 #include "kernels/advance_rves.hpp"
 #include "kernels/flush_subnormals.hpp"
-#include "kernels/schedule.hpp"
+#include "kernels/state/schedule.hpp"
 #include "kernels/team_finish.hpp"
 
 namespace voussoir::kernels {

@@ -2,7 +2,7 @@
 /// A team lists the pairs of its RVE: all pairs are tried, N (N - 1) / 2 distances shared by its threads. Rows come out in
 /// ascending order without a sort.
 
-#include "kernels/pair_reference.hpp"
+#include "kernels/contact/pair_reference.hpp"
 #include "kernels/team_run.hpp"
 
 namespace voussoir::kernels {

@@ -4,7 +4,7 @@
 
 #include <Kokkos_Core.hpp>
 
-#include "kernels/homogenise.hpp"
+#include "kernels/contact/resting_pair.hpp"
 #include "kernels/rve_course.hpp"
 
 namespace voussoir::kernels {

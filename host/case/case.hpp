@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "kernels/microstructure.hpp"
+#include "kernels/state/network.hpp"
 
 namespace voussoir::host {
 

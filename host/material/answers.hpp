@@ -4,7 +4,7 @@
 #include <span>
 
 #include "fem/material_batch.hpp"
-#include "kernels/rve_batch.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::host {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "host/material/answers.hpp"
-#include "kernels/kinematics.hpp"
+#include "kernels/contact/kinematics.hpp"
 
 namespace voussoir::host {
 

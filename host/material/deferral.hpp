@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "fem/material_batch.hpp"
-#include "kernels/rve_batch.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::host {
 

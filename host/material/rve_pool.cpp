@@ -9,7 +9,7 @@
 #include "host/case/result_fields.hpp"
 #include "host/ranks/session.hpp"
 #include "host/material/answers.hpp"
-#include "kernels/committed_contacts.hpp"
+#include "kernels/state/committed_contacts.hpp"
 
 namespace voussoir::host {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "host/packing/packings.hpp"
-#include "kernels/lane.hpp"
+#include "kernels/contact/lane.hpp"
 
 namespace voussoir::kernels {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "kernels/lane.hpp"
+#include "kernels/contact/lane.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "kernels/contact_law.hpp"
+#include "kernels/contact/contact_law.hpp"
 #include "kernels/pair_sweep.hpp"
 
 namespace {

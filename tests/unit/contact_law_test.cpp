@@ -1,5 +1,5 @@
 // The contact law along paths with a closed form, before any packing exists; and the same numbers in every lane type.
-#include "kernels/contact_law.hpp"
+#include "kernels/contact/contact_law.hpp"
 
 #include <gtest/gtest.h>
 

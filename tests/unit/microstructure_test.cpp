@@ -1,5 +1,5 @@
 // Contact networks with known fabric and connectivity; forces against the oracle and against the engine's own stress.
-#include "kernels/microstructure.hpp"
+#include "kernels/state/network.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "kernels/committed_contacts.hpp"
+#include "kernels/state/committed_contacts.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "kernels/rve_batch.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernels/pair_reference.hpp"
+#include "kernels/contact/pair_reference.hpp"
 #include "kernels/pair_sweep.hpp"
 
 namespace voussoir::kernels {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "host/material/answers.hpp"
-#include "kernels/committed_contacts.hpp"
+#include "kernels/state/committed_contacts.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {

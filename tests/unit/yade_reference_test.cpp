@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "kernels/committed_contacts.hpp"
+#include "kernels/state/committed_contacts.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::reference {

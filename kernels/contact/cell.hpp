@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "kernels/kinematics.hpp"
+#include "kernels/contact/kinematics.hpp"
 
 namespace voussoir::kernels {
 

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "kernels/contact_law.hpp"
-#include "kernels/kinematics.hpp"
-#include "kernels/settings.hpp"
+#include "kernels/contact/contact_law.hpp"
+#include "kernels/contact/kinematics.hpp"
+#include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
 

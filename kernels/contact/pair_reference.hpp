@@ -1,8 +1,8 @@
 #pragma once
 /// A listed pair where its RVE's positions are known in double: the displacement form's reference, and the pair's constants.
 
-#include "kernels/cell.hpp"
-#include "kernels/group_state.hpp"
+#include "kernels/contact/cell.hpp"
+#include "kernels/contact/pair_state.hpp"
 
 namespace voussoir::kernels {
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "kernels/contact_law.hpp"
-#include "kernels/kinematics.hpp"
+#include "kernels/contact/contact_law.hpp"
+#include "kernels/contact/kinematics.hpp"
 
 namespace voussoir::kernels {
 

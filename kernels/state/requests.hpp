@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "kernels/kinematics.hpp"
-#include "kernels/microstructure.hpp"
+#include "kernels/contact/kinematics.hpp"
+#include "kernels/state/network.hpp"
 
 namespace voussoir::kernels {
 

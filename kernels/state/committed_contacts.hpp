@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "kernels/rve_batch.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 

@@ -1,4 +1,4 @@
-#include "kernels/microstructure.hpp"
+#include "kernels/state/network.hpp"
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <exception>
 #include <numbers>
 
-#include "kernels/committed_contacts.hpp"
+#include "kernels/state/committed_contacts.hpp"
 
 namespace voussoir::kernels {
 

@@ -4,7 +4,7 @@
 ///
 /// A new law is a struct with this shape: `History` (what it remembers), `has_rolling`, constants, and `operator()`.
 
-#include "kernels/lane.hpp"
+#include "kernels/contact/lane.hpp"
 
 namespace voussoir::kernels {
 

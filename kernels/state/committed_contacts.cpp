@@ -1,8 +1,8 @@
-#include "kernels/committed_contacts.hpp"
+#include "kernels/state/committed_contacts.hpp"
 
 #include <cmath>
 
-#include "kernels/contact_law.hpp"
+#include "kernels/contact/contact_law.hpp"
 #include "kernels/neighbours.hpp"
 
 namespace voussoir::kernels {

@@ -1,4 +1,4 @@
-#include "kernels/rve_batch.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "kernels/schedule.hpp"
+#include "kernels/state/schedule.hpp"
 
 namespace voussoir::kernels {
 
