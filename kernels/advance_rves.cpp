@@ -10,7 +10,7 @@
 
 #include "kernels/advance_group.hpp"
 #include "kernels/advance_teams.hpp"
-#include "kernels/flush_subnormals.hpp"
+#include "kernels/course/flush_subnormals.hpp"
 #include "kernels/state/schedule.hpp"
 
 namespace voussoir::kernels {

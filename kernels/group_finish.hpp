@@ -5,7 +5,7 @@
 #include <span>
 
 #include "kernels/group_tangent.hpp"
-#include "kernels/rve_report.hpp"
+#include "kernels/course/rve_report.hpp"
 
 namespace voussoir::kernels {
 

@@ -6,8 +6,8 @@
 
 #include "kernels/group_lists.hpp"
 #include "kernels/contact/resting_pair.hpp"
-#include "kernels/loading_tangent.hpp"
-#include "kernels/rve_course.hpp"
+#include "kernels/tangents/loading_tangent.hpp"
+#include "kernels/course/rve_course.hpp"
 
 namespace voussoir::kernels {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "kernels/rve_course.hpp"
+#include "kernels/course/rve_course.hpp"
 
 namespace voussoir::kernels {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The end of a team's RVE: stress, tangent, report, and its trial state.
 
-#include "kernels/rve_report.hpp"
+#include "kernels/course/rve_report.hpp"
 #include "kernels/team_rebase.hpp"
 #include "kernels/team_step.hpp"
 

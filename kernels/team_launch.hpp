@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernels/advance_rves.hpp"
-#include "kernels/flush_subnormals.hpp"
+#include "kernels/course/flush_subnormals.hpp"
 #include "kernels/state/schedule.hpp"
 #include "kernels/team_finish.hpp"
 

@@ -5,7 +5,7 @@
 #include <Kokkos_Core.hpp>
 
 #include "kernels/contact/resting_pair.hpp"
-#include "kernels/rve_course.hpp"
+#include "kernels/course/rve_course.hpp"
 
 namespace voussoir::kernels {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kernels/drives.hpp"
+#include "kernels/course/drives.hpp"
 
 namespace voussoir::host {
 

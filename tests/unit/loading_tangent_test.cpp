@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/material/answers.hpp"
-#include "kernels/loading_tangent.hpp"
+#include "kernels/tangents/loading_tangent.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {

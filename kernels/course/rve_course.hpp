@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "kernels/drives.hpp"
+#include "kernels/course/drives.hpp"
 #include "kernels/contact/pair_state.hpp"
 
 namespace voussoir::kernels {

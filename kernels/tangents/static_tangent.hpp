@@ -15,7 +15,7 @@
 #include <array>
 #include <limits>
 
-#include "kernels/contact_springs.hpp"
+#include "kernels/tangents/contact_springs.hpp"
 
 namespace voussoir::kernels {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kernels/contact/resting_pair.hpp"
-#include "kernels/rve_course.hpp"
+#include "kernels/course/rve_course.hpp"
 
 namespace voussoir::kernels {
 

@@ -5,7 +5,7 @@
 /// one loses its forces (LinearContactLaw::step). Forces that are carried already turn with their contacts. All motions and forces
 /// are per strain of the step, so that they have the size of static_tangent.hpp's.
 
-#include "kernels/contact_springs.hpp"
+#include "kernels/tangents/contact_springs.hpp"
 
 namespace voussoir::kernels {
 

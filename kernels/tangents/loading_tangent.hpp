@@ -10,8 +10,8 @@
 /// A packing may have no equilibrium within the step (a limit state), and contacts may alternate for ever: a lane with a column that
 /// has not converged at the limit of iterations, or whose residual grows, keeps its elastic tangent and says so.
 
-#include "kernels/loading_step.hpp"
-#include "kernels/static_tangent.hpp"
+#include "kernels/tangents/loading_step.hpp"
+#include "kernels/tangents/static_tangent.hpp"
 
 namespace voussoir::kernels {
 
