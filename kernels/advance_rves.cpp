@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "kernels/advance_group.hpp"
-#include "kernels/advance_teams.hpp"
+#include "kernels/lanes/advance_group.hpp"
+#include "kernels/teams/advance_teams.hpp"
 #include "kernels/course/flush_subnormals.hpp"
 #include "kernels/state/schedule.hpp"
 

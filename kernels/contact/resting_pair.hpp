@@ -4,7 +4,7 @@
 /// Love-Weber stress, eq. (3): sigma = (1/V) sum P (x) b. Contact tangent, eq. (4): D = (1/V) sum k_n n b n b + k_t t b t b,
 /// symmetrised for the FEM; it is affine (too stiff by 1.2 to 3) and neglects spins.
 
-#include "kernels/pair_sweep.hpp"
+#include "kernels/lanes/sweep.hpp"
 
 namespace voussoir::kernels {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "kernels/contact/contact_law.hpp"
-#include "kernels/neighbours.hpp"
+#include "kernels/lanes/neighbours.hpp"
 
 namespace voussoir::kernels {
 

@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "kernels/pair_sweep.hpp"
+#include "kernels/lanes/sweep.hpp"
 #include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {

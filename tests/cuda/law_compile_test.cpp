@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "kernels/contact/contact_law.hpp"
-#include "kernels/pair_sweep.hpp"
+#include "kernels/lanes/sweep.hpp"
 
 namespace {
 

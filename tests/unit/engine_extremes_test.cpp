@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "kernels/neighbours.hpp"
+#include "kernels/lanes/neighbours.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {

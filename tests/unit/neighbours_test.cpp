@@ -1,6 +1,6 @@
 // Candidate contacts against all pairs, for gradings from one size to a ratio of 20, in straight and sheared cells.
 
-#include "kernels/neighbours.hpp"
+#include "kernels/lanes/neighbours.hpp"
 
 #include <gtest/gtest.h>
 

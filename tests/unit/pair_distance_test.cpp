@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "kernels/contact/pair_reference.hpp"
-#include "kernels/pair_sweep.hpp"
+#include "kernels/lanes/sweep.hpp"
 
 namespace voussoir::kernels {
 namespace {

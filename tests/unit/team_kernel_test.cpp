@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "kernels/advance_teams.hpp"
+#include "kernels/teams/advance_teams.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {

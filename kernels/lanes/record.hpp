@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "kernels/group_run.hpp"
+#include "kernels/lanes/group_run.hpp"
 #include "kernels/state/network.hpp"
 
 namespace voussoir::kernels {

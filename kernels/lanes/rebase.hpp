@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "kernels/group_run.hpp"
+#include "kernels/lanes/group_run.hpp"
 
 namespace voussoir::kernels {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "kernels/contact/pair_state.hpp"
-#include "kernels/neighbours.hpp"
+#include "kernels/lanes/neighbours.hpp"
 #include "kernels/contact/pair_reference.hpp"
 #include "kernels/state/rve_batch.hpp"
 

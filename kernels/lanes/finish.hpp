@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <span>
 
-#include "kernels/group_tangent.hpp"
+#include "kernels/lanes/tangent.hpp"
 #include "kernels/course/rve_report.hpp"
 
 namespace voussoir::kernels {

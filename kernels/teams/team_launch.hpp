@@ -8,7 +8,7 @@
 #include "kernels/advance_rves.hpp"
 #include "kernels/course/flush_subnormals.hpp"
 #include "kernels/state/schedule.hpp"
-#include "kernels/team_finish.hpp"
+#include "kernels/teams/team_finish.hpp"
 
 namespace voussoir::kernels {
 

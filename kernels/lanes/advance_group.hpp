@@ -1,10 +1,10 @@
 #pragma once
 /// One group from its committed states to its trial states: restore, time loop with masked retirement, finish.
 
-#include "kernels/group_finish.hpp"
-#include "kernels/group_rebase.hpp"
-#include "kernels/group_record.hpp"
-#include "kernels/group_restore.hpp"
+#include "kernels/lanes/finish.hpp"
+#include "kernels/lanes/rebase.hpp"
+#include "kernels/lanes/record.hpp"
+#include "kernels/lanes/restore.hpp"
 
 namespace voussoir::kernels {
 

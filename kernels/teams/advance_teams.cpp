@@ -1,6 +1,6 @@
-#include "kernels/advance_teams.hpp"
+#include "kernels/teams/advance_teams.hpp"
 
-#include "kernels/team_launch.hpp"
+#include "kernels/teams/team_launch.hpp"
 
 namespace voussoir::kernels {
 

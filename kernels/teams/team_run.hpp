@@ -4,8 +4,8 @@
 /// Results do not depend on the number of threads: a loop's body writes only what is its own, maxima and counts have no order,
 /// and sums of real numbers are taken by one thread each, in the order of the list.
 
-#include "kernels/team_batch.hpp"
-#include "kernels/team_scratch.hpp"
+#include "kernels/teams/team_batch.hpp"
+#include "kernels/teams/team_scratch.hpp"
 
 namespace voussoir::kernels {
 

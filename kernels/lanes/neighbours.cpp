@@ -1,4 +1,4 @@
-#include "kernels/neighbours.hpp"
+#include "kernels/lanes/neighbours.hpp"
 
 #include <algorithm>
 #include <bit>

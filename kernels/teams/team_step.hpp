@@ -4,7 +4,7 @@
 /// A pair is computed once, in the lanes' orientation i < j, and keeps what it does to both grains; a grain then gathers its
 /// pairs, those with smaller neighbours first. That is the order of the lanes' sweep: same bits, and no atomics.
 
-#include "kernels/team_run.hpp"
+#include "kernels/teams/team_run.hpp"
 
 namespace voussoir::kernels {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <span>
 
-#include "kernels/group_run.hpp"
+#include "kernels/lanes/group_run.hpp"
 
 namespace voussoir::kernels {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "kernels/group_lists.hpp"
+#include "kernels/lanes/lists.hpp"
 #include "kernels/contact/resting_pair.hpp"
 #include "kernels/tangents/loading_tangent.hpp"
 #include "kernels/course/rve_course.hpp"

@@ -3,7 +3,7 @@
 /// ascending order without a sort.
 
 #include "kernels/contact/pair_reference.hpp"
-#include "kernels/team_run.hpp"
+#include "kernels/teams/team_run.hpp"
 
 namespace voussoir::kernels {
 

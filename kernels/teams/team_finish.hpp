@@ -2,8 +2,8 @@
 /// The end of a team's RVE: stress, tangent, report, and its trial state.
 
 #include "kernels/course/rve_report.hpp"
-#include "kernels/team_rebase.hpp"
-#include "kernels/team_step.hpp"
+#include "kernels/teams/team_rebase.hpp"
+#include "kernels/teams/team_step.hpp"
 
 namespace voussoir::kernels {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Restoring a team's RVE, and keeping its list valid while it moves.
 
-#include "kernels/team_lists.hpp"
+#include "kernels/teams/team_lists.hpp"
 
 namespace voussoir::kernels {
 
