@@ -7,9 +7,7 @@ namespace voussoir::fem {
 
 namespace {
 
-int element_dof(const ElementNodes& nodes, int i) {
-  return 2 * nodes[i / 2] + i % 2;
-}
+int element_dof(const ElementNodes& nodes, int i) { return 2 * nodes[i / 2] + i % 2; }
 
 using ElementStiffness = Eigen::Matrix<double, 16, 16>;
 

@@ -1,6 +1,6 @@
 #pragma once
-/// Stiffness and internal force of a mesh. The pattern holds every degree of freedom; constrained ones keep their rows as
-/// a scaled identity, so that one symbolic factorisation serves every stage of a mesh.
+/// Stiffness and internal force of a mesh. The pattern holds every degree of freedom; constrained ones keep their rows
+/// as a scaled identity, so that one symbolic factorisation serves every stage of a mesh.
 
 #include "fem/gauss_points.hpp"
 #include "fem/sparse_solver.hpp"
@@ -14,8 +14,8 @@ class StiffnessAssembler {
 
   [[nodiscard]] const SparsePattern& pattern() const { return pattern_; }
 
-  /// Entries of K for the tangents D [Pa] (n_points); `constrained[dof]` marks rows and columns replaced by the identity
-  /// times the mean diagonal.
+  /// Entries of K for the tangents D [Pa] (n_points); `constrained[dof]` marks rows and columns replaced by the
+  /// identity times the mean diagonal.
   [[nodiscard]] std::vector<double> assemble(const GaussPoints& points, const std::vector<Tangent>& tangents,
                                              const std::vector<char>& constrained) const;
 
@@ -26,9 +26,9 @@ class StiffnessAssembler {
 };
 
 struct InternalForce {
-  Eigen::VectorXd force;  ///< integral B^T sigma, n_dofs [N/m]
-  Eigen::VectorXd
-      magnitude;  ///< sum over elements of |element force| by node, n_nodes [N/m]: the local scale of a residual
+  Eigen::VectorXd force;      ///< integral B^T sigma, n_dofs [N/m]
+  Eigen::VectorXd magnitude;  ///< sum over elements of |element force| by node, n_nodes [N/m]: the local scale of a
+                              ///< residual
 };
 
 /// Internal force, eq. (6), of the stresses [Pa] (n_points).

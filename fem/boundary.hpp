@@ -15,8 +15,8 @@ using Constraints = std::map<int, double>;
 /// Adds `value` on one axis (0: x, 1: y) of the nodes. Throws std::invalid_argument where a different value stands.
 void constrain(Constraints& constraints, const std::vector<int>& nodes, int axis, double value);
 
-/// Eccentric volume loss, eqs. (17)-(19) as a homothety about the invert: u = (sqrt(1 - V_l) - 1)(x - x_invert) [m], x on
-/// the original coordinates and V_l the total loss. Increments are differences of two calls. 0 <= V_l < 1.
+/// Eccentric volume loss, eqs. (17)-(19) as a homothety about the invert: u = (sqrt(1 - V_l) - 1)(x - x_invert) [m], x
+/// on the original coordinates and V_l the total loss. Increments are differences of two calls. 0 <= V_l < 1.
 [[nodiscard]] Point volume_loss_displacement(const Point& x, const Point& invert, double volume_loss);
 
 /// The increment of volume loss from V_l = from to V_l = to on the nodes of "opening"; both axes.
@@ -34,8 +34,8 @@ using StressField = std::function<Stress(const Point&)>;  ///< Cauchy stress at 
 [[nodiscard]] Eigen::VectorXd traction_force(const Coordinates& coordinates, const std::vector<Edge>& edges,
                                              const StressField& field);
 
-/// Ground at rest at load factor lambda: s_yy = -(lambda * unit_weight * (height - y) + surcharge), s_xx = K0(s_yy) s_yy,
-/// s_xy = 0. `k0` takes s_yy (negative) [Pa].
+/// Ground at rest at load factor lambda: s_yy = -(lambda * unit_weight * (height - y) + surcharge), s_xx = K0(s_yy)
+/// s_yy, s_xy = 0. `k0` takes s_yy (negative) [Pa].
 struct GeostaticStress {
   double unit_weight;  ///< [N/m3]
   double height;       ///< y of the surface [m]

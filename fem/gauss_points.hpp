@@ -23,8 +23,6 @@ void displacement_gradients(const Mesh& mesh, const GaussPoints& points, const E
                             std::vector<Gradient>& gradients);
 
 /// Engineering strain (xx, yy, gamma_xy) of a gradient [-].
-[[nodiscard]] inline Eigen::Vector3d strain_of(const Gradient& h) {
-  return {h(0, 0), h(1, 1), h(0, 1) + h(1, 0)};
-}
+[[nodiscard]] inline Eigen::Vector3d strain_of(const Gradient& h) { return {h(0, 0), h(1, 1), h(0, 1) + h(1, 0)}; }
 
 }  // namespace voussoir::fem

@@ -51,7 +51,8 @@ std::string describe(const NewtonReport& newton, double from, double to) {
   text << to_string(newton.status) << " in the increment from " << from << " to " << to << " (residual "
        << newton.residual << " N/m, allowed " << newton.residual_bound << " N/m, " << newton.iterations
        << " iterations";
-  if (newton.relaxations > 0) text << ", " << newton.relaxations << " of them substeps of a relaxation that did not calm";
+  if (newton.relaxations > 0)
+    text << ", " << newton.relaxations << " of them substeps of a relaxation that did not calm";
   text << ")";
   if (!newton.material.message.empty()) text << ": " << newton.material.message;
   return text.str();
@@ -70,7 +71,8 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
     const double from = state.parameter;
     const double to = attempt_end(state, target);
     IncrementLoad load = load_between(path, state, to, options.use_predictor);
-    const bool may_relax = options.relaxation.max_substeps > 0 && to - from <= options.relax_below * nominal * (1 + 1e-9);
+    const bool may_relax = options.relaxation.max_substeps > 0 &&
+                           to - from <= options.relax_below * nominal * (1 + 1e-9);
     if (may_relax) {
       load.leave_best = true;
       load.settle = true;

@@ -1,5 +1,6 @@
 #pragma once
-/// Walks a load parameter (load factor, volume loss, ...) in increments; cuts and rolls back where one does not converge.
+/// Walks a load parameter (load factor, volume loss, ...) in increments; cuts and rolls back where one does not
+/// converge.
 
 #include <functional>
 #include <string>
@@ -23,7 +24,7 @@ struct StepOptions {
   double smallest = 1.0 / 64;  ///< of the nominal step; below it the stepper gives up
   double relax_below = 0;      ///< of the nominal step: a step up to this that did not converge is relaxed, not cut
   RelaxationOptions relaxation = {};
-  bool use_predictor = true;   ///< start from the last converged increment, scaled by the steps' ratio
+  bool use_predictor = true;  ///< start from the last converged increment, scaled by the steps' ratio
 };
 
 enum class StepStatus {
@@ -65,16 +66,16 @@ struct StepCallbacks {
 };
 
 /// Walks from state.parameter through the stage's `targets` (strictly increasing, the first beyond state.start); those
-/// already reached are skipped. Nothing that did not converge is committed. A stage resumed from a copy of the state and
-/// of the material's state, at any converged increment, with the same targets gives the same bits. Throws
+/// already reached are skipped. Nothing that did not converge is committed. A stage resumed from a copy of the state
+/// and of the material's state, at any converged increment, with the same targets gives the same bits. Throws
 /// std::invalid_argument on targets or options out of range.
 [[nodiscard]] StepReport advance_load(NewtonSolver& solver, MeshState& state, const LoadPath& path,
                                       const std::vector<double>& targets, const StepOptions& options,
                                       const StepCallbacks& callbacks = {});
 
 /// Load factors from 0 to 1 whose carried stress start + lambda grows by `ratio` from one to the next until the step
-/// reaches `largest_step`, evenly after. Gravity: start = surcharge / (unit weight * height), ratio 1.5, largest_step 0.05.
-/// Throws std::invalid_argument.
+/// reaches `largest_step`, evenly after. Gravity: start = surcharge / (unit weight * height), ratio 1.5, largest_step
+/// 0.05. Throws std::invalid_argument.
 [[nodiscard]] std::vector<double> geometric_targets(double start, double ratio, double largest_step);
 
 }  // namespace voussoir::fem

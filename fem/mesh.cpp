@@ -38,12 +38,8 @@ void add_chain(Mesh& mesh, const std::string& name, std::vector<PlacedEdge>& pla
 
 }  // namespace
 
-const std::vector<Edge>& Mesh::edge_set(const std::string& name) const {
-  return find_set(edges, name);
-}
-const std::vector<int>& Mesh::node_set(const std::string& name) const {
-  return find_set(nodes, name);
-}
+const std::vector<Edge>& Mesh::edge_set(const std::string& name) const { return find_set(edges, name); }
+const std::vector<int>& Mesh::node_set(const std::string& name) const { return find_set(nodes, name); }
 
 Mesh complete_q8(const Coordinates& corners, const std::vector<Quad>& quads, const BoundaryClassifier& classify) {
   struct Side {

@@ -49,9 +49,9 @@ struct HalfTunnelOptions {
   double size_far = 2.5;   ///< largest element edge [m]
 };
 
-/// Half of the ground around a circular opening, x = 0 the symmetry axis. Corner and midside nodes of the opening lie on
-/// the circle. All elements are quadrilaterals with a positive Jacobian at every Gauss point, the same bits for the same
-/// options. Throws std::invalid_argument on options that make no mesh, std::runtime_error if Gmsh fails.
+/// Half of the ground around a circular opening, x = 0 the symmetry axis. Corner and midside nodes of the opening lie
+/// on the circle. All elements are quadrilaterals with a positive Jacobian at every Gauss point, the same bits for the
+/// same options. Throws std::invalid_argument on options that make no mesh, std::runtime_error if Gmsh fails.
 [[nodiscard]] Mesh make_half_tunnel(const HalfTunnelOptions& options);
 
 /// A rectangle of nx * ny elements with the boundaries "base", "side", "top", "axis". Throws std::invalid_argument.

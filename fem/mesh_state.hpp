@@ -1,6 +1,6 @@
 #pragma once
-/// What the finite-element side remembers between increments: plain data, all of it needed (and enough) for a checkpoint
-/// that resumes with the same bits. The material's own memory is `MaterialBatch::state()`.
+/// What the finite-element side remembers between increments: plain data, all of it needed (and enough) for a
+/// checkpoint that resumes with the same bits. The material's own memory is `MaterialBatch::state()`.
 
 #include <vector>
 
@@ -26,11 +26,11 @@ struct MeshState {
   double start = 0;                      ///< load parameter when the stage began
   double parameter = 0;                  ///< load parameter reached
   double step_limit = 0;                 ///< largest step after cuts; 0: not limited
-  double relaxation_factor = 1;          ///< of the last relaxation's end: the next one begins with it (relaxation.hpp) [-]
+  double relaxation_factor = 1;  ///< of the last relaxation's end: the next one begins with it (relaxation.hpp) [-]
 };
 
-/// A stage begins: displacement and deformation are zero, coordinates those of `coordinates` (usually mesh.coordinates),
-/// the initial tangent is the material's committed one.
+/// A stage begins: displacement and deformation are zero, coordinates those of `coordinates` (usually
+/// mesh.coordinates), the initial tangent is the material's committed one.
 [[nodiscard]] MeshState begin_stage(const Mesh& mesh, const Coordinates& coordinates, const MaterialBatch& material,
                                     double parameter = 0);
 

@@ -49,8 +49,8 @@ double target_size(const HalfTunnelOptions& o, const Circle& opening, double x, 
   return std::min({o.size_near + growth * from_opening, 1.5 * o.size_near + growth * from_column, o.size_far});
 }
 
-/// Owns the library's global state for one mesh. Gmsh sets the process's OpenMP thread number to its own; that is undone,
-/// or everything after a mesh would run on one thread.
+/// Owns the library's global state for one mesh. Gmsh sets the process's OpenMP thread number to its own; that is
+/// undone, or everything after a mesh would run on one thread.
 class GmshSession {
  public:
   GmshSession() {

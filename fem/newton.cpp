@@ -225,8 +225,8 @@ void NewtonSolver::Workspace::form_residual() {
   report.reaction_norm = increment.reactions.norm();
   report.reference_force = load.reference_force;
   const double allowed = options.tolerance * report.reference();
-  const double noise =
-      options.noise_factor * noise_force(mesh, increment.points, constrained, report.material.stress_noise);
+  const double noise = options.noise_factor *
+                       noise_force(mesh, increment.points, constrained, report.material.stress_noise);
   report.noise_floor = std::min(noise, options.noise_limit * allowed);
   report.residual_bound = allowed + report.noise_floor;
   report.unsettled_force = noise_force(mesh, increment.points, constrained, report.material.unsettled_stress);
@@ -289,11 +289,10 @@ bool NewtonSolver::Workspace::converged() const {
          (correction <= report.correction_bound || correction <= solver.options_.length_tolerance);
 }
 
-bool NewtonSolver::Workspace::near() const {
-  return report.residual <= load.near_residual * report.reference();
-}
+bool NewtonSolver::Workspace::near() const { return report.residual <= load.near_residual * report.reference(); }
 
-/// Where the iterates ended without converging: back to the best, so that the material's last evaluation is the one there.
+/// Where the iterates ended without converging: back to the best, so that the material's last evaluation is the one
+/// there.
 void NewtonSolver::Workspace::return_to_best() {
   if (best.size() == 0 || increment.displacement == best) return;
   increment.displacement = best;

@@ -23,9 +23,10 @@ struct NewtonOptions {
   double displacement_tolerance = 1e-2;  ///< on the correction [-]
   double length_tolerance = 1e-9;        ///< a correction below it counts as none (2-norm over all dofs) [m]
   int max_iterations = 40;
-  double initial_tangent_share =
-      0.02;                ///< times the stage's initial tangent is added to the tangent; > 0 where it may vanish
-  int refactor_every = 1;  ///< iterates between new tangents; the first iterate has a new one unless the load keeps the matrix
+  double initial_tangent_share = 0.02;  ///< times the stage's initial tangent is added to the tangent; > 0 where it may
+                                        ///< vanish
+  int refactor_every = 1;  ///< iterates between new tangents; the first iterate has a new one unless the load keeps the
+                           ///< matrix
   int anderson_depth = 5;  ///< 0: plain Newton
   double anderson_condition = 1e6;  ///< limit on the condition of the least squares; older pairs are dropped beyond
   double growth_limit = 3.0;        ///< a residual grown by more than this halves the step and restarts Anderson
@@ -74,17 +75,18 @@ struct NewtonReport {
 
 /// What an increment is asked for.
 struct IncrementLoad {
-  Eigen::VectorXd external_force;  ///< at the end of the increment, n_dofs [N/m]
-  Constraints prescribed;          ///< displacement increments [m]
-  double predictor_ratio = 0;      ///< first iterate: ratio * last increment; 0: elastic from the committed state
-  double reference_force = 0;      ///< see the convergence definition, e.g. the norm of a stage's final load [N/m]
-  Eigen::VectorXd first_step = {}; ///< the first iterate, n_dofs [m]; empty: as predictor_ratio says
-  double moved = 0;                ///< norm of a displacement that Du is a further part of (relaxation.hpp) [m]
-  int max_iterations = 0;          ///< 0: NewtonOptions::max_iterations
-  bool keep_matrix = false;        ///< K stays that of the last call: no tangents are asked for
-  double near_residual = 0;        ///< over the reference of the tolerance: ends the iterates as `near` [-]; 0: never
-  bool settle = false;             ///< points at their step limit must not matter: unsettled_force within the tolerance, or not converged
-  bool leave_best = false;         ///< max_iterations, near: the material's last evaluation is at the best iterate
+  Eigen::VectorXd external_force;   ///< at the end of the increment, n_dofs [N/m]
+  Constraints prescribed;           ///< displacement increments [m]
+  double predictor_ratio = 0;       ///< first iterate: ratio * last increment; 0: elastic from the committed state
+  double reference_force = 0;       ///< see the convergence definition, e.g. the norm of a stage's final load [N/m]
+  Eigen::VectorXd first_step = {};  ///< the first iterate, n_dofs [m]; empty: as predictor_ratio says
+  double moved = 0;                 ///< norm of a displacement that Du is a further part of (relaxation.hpp) [m]
+  int max_iterations = 0;           ///< 0: NewtonOptions::max_iterations
+  bool keep_matrix = false;         ///< K stays that of the last call: no tangents are asked for
+  double near_residual = 0;         ///< over the reference of the tolerance: ends the iterates as `near` [-]; 0: never
+  bool settle = false;  ///< points at their step limit must not matter: unsettled_force within the tolerance, or not
+                        ///< converged
+  bool leave_best = false;  ///< max_iterations, near: the material's last evaluation is at the best iterate
 };
 
 /// The last iterate, or with IncrementLoad::leave_best the best one.
@@ -117,8 +119,8 @@ class NewtonSolver {
   /// Finds the equilibrium; neither `state` nor the material's committed state changes.
   [[nodiscard]] NewtonReport solve_increment(const MeshState& state, const IncrementLoad& load, Increment& increment);
 
-  /// Takes the increment over into the state and commits the material, whose last evaluation it must be: a converged one,
-  /// or a substep of relaxation.hpp.
+  /// Takes the increment over into the state and commits the material, whose last evaluation it must be: a converged
+  /// one, or a substep of relaxation.hpp.
   void commit(MeshState& state, Increment& increment);
 
   std::function<void(const Iterate&)> on_iterate;  ///< may be empty
@@ -142,8 +144,8 @@ class NewtonSolver {
 [[nodiscard]] double noise_force(const Mesh& mesh, const GaussPoints& points, const std::vector<char>& constrained,
                                  double stress_noise);
 
-/// Nodal forces of one fixed draw of such errors, +-1 Pa each (zero at constrained dofs) [N/m]: |K^-1 f| estimates what the
-/// noise does to a correction, which its expectation would cost one solution for every point to know.
+/// Nodal forces of one fixed draw of such errors, +-1 Pa each (zero at constrained dofs) [N/m]: |K^-1 f| estimates what
+/// the noise does to a correction, which its expectation would cost one solution for every point to know.
 [[nodiscard]] Eigen::VectorXd unit_noise_sample(const Mesh& mesh, const GaussPoints& points,
                                                 const std::vector<char>& constrained);
 

@@ -1,5 +1,6 @@
 #pragma once
-/// The eight-node serendipity quadrilateral: shape functions, their gradients, 2x2 Gauss points, and the three-node edge.
+/// The eight-node serendipity quadrilateral: shape functions, their gradients, 2x2 Gauss points, and the three-node
+/// edge.
 ///
 /// 2x2 points integrate the forces of a constant stress exactly even in curved elements (dN/dxi * dx/deta is at most
 /// cubic in each variable), so the patch test and the equilibrium of a constant stress with its edge tractions hold to
@@ -60,11 +61,7 @@ inline constexpr std::array<double, 3> edge_points{-0.77459666924148337704, 0.0,
 inline constexpr std::array<double, 3> edge_weights{5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
 
 /// Shape functions of the edge nodes in the order corner, mid, corner.
-inline Eigen::Vector3d edge_shape(double s) {
-  return {0.5 * s * (s - 1), 1 - s * s, 0.5 * s * (s + 1)};
-}
-inline Eigen::Vector3d edge_shape_derivative(double s) {
-  return {s - 0.5, -2 * s, s + 0.5};
-}
+inline Eigen::Vector3d edge_shape(double s) { return {0.5 * s * (s - 1), 1 - s * s, 0.5 * s * (s + 1)}; }
+inline Eigen::Vector3d edge_shape_derivative(double s) { return {s - 0.5, -2 * s, s + 0.5}; }
 
 }  // namespace voussoir::fem::q8

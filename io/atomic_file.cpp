@@ -35,8 +35,8 @@ bool is_being_written(const std::filesystem::path& temporary) {
   const std::string number = temporary.stem().extension().string();  // ".PID"
   pid_t process = 0;
   const char* const end = number.data() + number.size();
-  const bool named =
-      number.size() > 1 && std::from_chars(number.data() + 1, end, process) == std::from_chars_result{end, std::errc{}};
+  const bool named = number.size() > 1 &&
+                     std::from_chars(number.data() + 1, end, process) == std::from_chars_result{end, std::errc{}};
   if (!named || process <= 0 || process == ::getpid()) {
     return false;
   }

@@ -1,5 +1,6 @@
 #pragma once
-/// Numbers to bytes and back, bit for bit and without padding: checkpoints of RVEs, messages between processes of one build.
+/// Numbers to bytes and back, bit for bit and without padding: checkpoints of RVEs, messages between processes of one
+/// build.
 
 #include <cstddef>
 #include <cstdint>

@@ -161,9 +161,7 @@ CaseNode& Table::take(std::string_view key, bool has_fallback) const {
   return *node;
 }
 
-bool Table::has(std::string_view key) const {
-  return find(key) != nullptr;
-}
+bool Table::has(std::string_view key) const { return find(key) != nullptr; }
 
 double Table::quantity(std::string_view key, Dimension dimension, const QuantityRule& rule) const {
   return read_quantity(take(key, rule.fallback.has_value()), dimension, rule, rule.fallback);
@@ -266,12 +264,8 @@ CaseFile CaseFile::load(const std::filesystem::path& path, const std::vector<std
   return CaseFile(parse_case(path, overrides));
 }
 
-Table CaseFile::root() const {
-  return {state_, state_->root};
-}
+Table CaseFile::root() const { return {state_, state_->root}; }
 
-const std::filesystem::path& CaseFile::path() const {
-  return state_->path;
-}
+const std::filesystem::path& CaseFile::path() const { return state_->path; }
 
 }  // namespace voussoir::io

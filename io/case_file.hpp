@@ -95,8 +95,8 @@ class CaseFile {
  public:
   /// Reads a TOML file; each override is "table.key=value" ("stage[0].steps=4" inside an array of tables). The value is
   /// TOML, or else taken as text, so that quotes may be left out: "mesh.size=0.5 m".
-  /// `extends = "other.toml"` (or an array of such names, relative to the file) takes over the keys of other files: later
-  /// ones go before earlier ones, the file's own keys before all; an array is taken over or replaced as a whole.
+  /// `extends = "other.toml"` (or an array of such names, relative to the file) takes over the keys of other files:
+  /// later ones go before earlier ones, the file's own keys before all; an array is taken over or replaced as a whole.
   /// Throws InputError: no such file, bad TOML (with its line), bad override.
   [[nodiscard]] static CaseFile load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 
@@ -109,8 +109,8 @@ class CaseFile {
   /// All values read so far, as TOML in the units that a user writes; origins ("default", "--set") as comments.
   [[nodiscard]] std::string resolved() const;
 
-  /// Hash (16 hex digits) of the values read so far, in SI to 12 digits, however they were written; without the tables or
-  /// keys named in `without` (those that cannot change a result, such as the number of threads).
+  /// Hash (16 hex digits) of the values read so far, in SI to 12 digits, however they were written; without the tables
+  /// or keys named in `without` (those that cannot change a result, such as the number of threads).
   [[nodiscard]] std::string fingerprint(std::span<const std::string> without = {}) const;
 
  private:

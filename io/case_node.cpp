@@ -37,8 +37,8 @@ std::vector<std::pair<std::string, const toml::node*>> in_file_order(const toml:
   return entries;
 }
 
-/// Copies a TOML value into a node. What the node held before is replaced, but for tables of a file: there the keys that
-/// the new one has not stay, as those of the files that it extends.
+/// Copies a TOML value into a node. What the node held before is replaced, but for tables of a file: there the keys
+/// that the new one has not stay, as those of the files that it extends.
 void fill(CaseNode& node, const toml::node& from, const Origin& origin) {
   const bool joins = node.kind == CaseNode::Kind::table && from.is_table() && !origin.file.empty();
   node.written = true;

@@ -14,9 +14,9 @@ namespace voussoir::io {
 struct CaseNode {
   enum class Kind { absent, boolean, integer, number, text, array, table, other };
 
-  std::string name;   ///< last part of the key; "[2]" in an array
-  std::string key;    ///< full key, e.g. "stage[2].steps"
-  std::string place;  ///< "case.toml:12", "--set", or the place of the table that lacks the key
+  std::string name;                   ///< last part of the key; "[2]" in an array
+  std::string key;                    ///< full key, e.g. "stage[2].steps"
+  std::string place;                  ///< "case.toml:12", "--set", or the place of the table that lacks the key
   std::filesystem::path folder = {};  ///< where a path written here begins
   Kind kind = Kind::absent;
   std::variant<std::monostate, bool, std::int64_t, double, std::string> value = {};

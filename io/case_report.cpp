@@ -41,7 +41,8 @@ void collect_known(const CaseNode& node, std::vector<const CaseNode*>& known) {
   }
 }
 
-/// A known key with nearly this name in the same table, or with this very name in another one; empty when there is none.
+/// A known key with nearly this name in the same table, or with this very name in another one; empty when there is
+/// none.
 std::string hint(const CaseNode& root, const CaseNode& parent, const CaseNode& unknown) {
   std::size_t best = unknown.name.size() / 3 + 1;
   std::string name;
@@ -55,8 +56,8 @@ std::string hint(const CaseNode& root, const CaseNode& parent, const CaseNode& u
   if (name.empty()) {
     std::vector<const CaseNode*> known;
     collect_known(root, known);
-    const auto same =
-        std::find_if(known.begin(), known.end(), [&](const CaseNode* node) { return node->name == unknown.name; });
+    const auto same = std::find_if(known.begin(), known.end(),
+                                   [&](const CaseNode* node) { return node->name == unknown.name; });
     name = same == known.end() ? "" : (*same)->key;
   }
   return name.empty() ? "" : fmt::format("; did you mean \"{}\"?", name);
@@ -86,8 +87,8 @@ std::string_view origin_comment(const CaseNode& node) {
 
 /// Bare where TOML allows it.
 std::string toml_key(const std::string& name) {
-  const bool bare =
-      std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+  const bool bare = std::all_of(name.begin(), name.end(),
+                                [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
   return bare && !name.empty() ? name : toml_text(name);
 }
 
@@ -130,9 +131,7 @@ void collect_meanings(const CaseNode& node, std::span<const std::string> without
 
 }  // namespace
 
-void CaseFile::finish() const {
-  refuse_unknown(state_->root, state_->root);
-}
+void CaseFile::finish() const { refuse_unknown(state_->root, state_->root); }
 
 std::string CaseFile::resolved() const {
   std::string out;

@@ -148,13 +148,9 @@ std::map<int, fs::path> list(const fs::path& folder) {
 
 }  // namespace
 
-void Checkpoint::put(const std::string& name, std::vector<std::byte> bytes) {
-  blobs_[name] = std::move(bytes);
-}
+void Checkpoint::put(const std::string& name, std::vector<std::byte> bytes) { blobs_[name] = std::move(bytes); }
 
-void Checkpoint::put_doubles(const std::string& name, std::span<const double> values) {
-  put(name, bytes_of(values));
-}
+void Checkpoint::put_doubles(const std::string& name, std::span<const double> values) { put(name, bytes_of(values)); }
 
 void Checkpoint::put_integers(const std::string& name, std::span<const std::int64_t> values) {
   put(name, bytes_of(values));

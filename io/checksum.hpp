@@ -1,6 +1,7 @@
 #pragma once
-/// Checksum of a checkpoint: FNV-1a's recurrence on words of eight bytes instead of bytes, with the upper half folded into the
-/// lower one, whose bits a product alone would never reach. Eight times as fast as by bytes: hundreds of megabytes an increment.
+/// Checksum of a checkpoint: FNV-1a's recurrence on words of eight bytes instead of bytes, with the upper half folded
+/// into the lower one, whose bits a product alone would never reach. Eight times as fast as by bytes: hundreds of
+/// megabytes an increment.
 
 #include <cstddef>
 #include <cstdint>

@@ -32,9 +32,7 @@ class Handle {
 };
 
 /// HDF5 prints its error stack by default; here the innermost entry becomes part of an exception instead.
-void be_quiet() {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-}
+void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 std::string innermost_reason() {
   std::string reason;

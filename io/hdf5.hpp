@@ -1,6 +1,7 @@
 #pragma once
-/// HDF5 through its C interface, reduced to what this program writes: n-dimensional float64/int64 arrays with a unit, text,
-/// attributes, external links. Every failure is a std::runtime_error naming the file, the object and HDF5's own reason.
+/// HDF5 through its C interface, reduced to what this program writes: n-dimensional float64/int64 arrays with a unit,
+/// text, attributes, external links. Every failure is a std::runtime_error naming the file, the object and HDF5's own
+/// reason.
 
 #include <cstdint>
 #include <filesystem>

@@ -35,9 +35,9 @@ void save_packing(const std::filesystem::path& path, const Packing& packing);
 /// Reads a file of save_packing. Throws std::runtime_error: missing, damaged, no packing, sizes disagree.
 [[nodiscard]] Packing load_packing(const std::filesystem::path& path);
 
-/// Reads NAME_particles.csv (id,x_m,y_m,r_m,theta_z_rad) and NAME_meta.json beside it (hSize: cell vectors as columns, Lz
-/// or hSize[2][2]: thickness); `path` is either file. Other numbers of the JSON file go to `numbers`, texts to `labels`.
-/// No contact histories. Throws std::runtime_error naming file and line.
+/// Reads NAME_particles.csv (id,x_m,y_m,r_m,theta_z_rad) and NAME_meta.json beside it (hSize: cell vectors as columns,
+/// Lz or hSize[2][2]: thickness); `path` is either file. Other numbers of the JSON file go to `numbers`, texts to
+/// `labels`. No contact histories. Throws std::runtime_error naming file and line.
 [[nodiscard]] Packing load_packing_csv(const std::filesystem::path& path);
 
 /// Name of the cached packing of a recipe: FOLDER/packing_FINGERPRINT.h5.

@@ -13,8 +13,8 @@
 
 namespace voussoir::io {
 
-/// A mesh of 8-node quadrilaterals: corners 0-3 counter-clockwise, then midsides 4 (0-1), 5 (1-2), 6 (2-3), 7 (3-0), the
-/// order of Gmsh, VTK and XDMF.
+/// A mesh of 8-node quadrilaterals: corners 0-3 counter-clockwise, then midsides 4 (0-1), 5 (1-2), 6 (2-3), 7 (3-0),
+/// the order of Gmsh, VTK and XDMF.
 struct MeshData {
   std::vector<double> coordinates = {};                                            ///< (node, 2) [m]
   std::vector<std::int64_t> connectivity = {};                                     ///< (element, 8), counted from 0
@@ -35,8 +35,8 @@ struct Provenance {
   std::string kokkos = "unknown";   ///< Kokkos version, backends, instruction set
   std::string command = "unknown";  ///< command line
   std::string date = "unknown";     ///< start of the run, ISO 8601, UTC
-  int threads = 1;  ///< of the first rank
-  int ranks = 1;    ///< processes
+  int threads = 1;                  ///< of the first rank
+  int ranks = 1;                    ///< processes
 };
 
 enum class FieldLocation {
@@ -73,9 +73,9 @@ struct IncrementInfo {
   int cuts = 0;         ///< times the increment was halved
   double residual = 0;  ///< ||R_free|| relative to its reference [-]
   double particle_steps = 0;
-  double wall_s = 0;                            ///< [s]
-  std::map<std::string, Quantity> extra = {};   ///< further columns
-  std::vector<double> residual_history = {};    ///< relative residual of each iterate [-]
+  double wall_s = 0;                           ///< [s]
+  std::map<std::string, Quantity> extra = {};  ///< further columns
+  std::vector<double> residual_history = {};   ///< relative residual of each iterate [-]
 };
 
 /// One column of a named table of run.h5.
@@ -115,8 +115,8 @@ class ResultWriter {
   void write(const IncrementInfo& info, const std::vector<Field>& fields,
              const std::vector<RveSnapshot>& snapshots = {}, const std::vector<double>& coordinates = {});
 
-  /// Writes a table of run.h5 that belongs to no increment, such as K0 against stress, in place of an earlier one of that
-  /// name. Throws std::invalid_argument for an unusable name, no columns, or columns of different lengths.
+  /// Writes a table of run.h5 that belongs to no increment, such as K0 against stress, in place of an earlier one of
+  /// that name. Throws std::invalid_argument for an unusable name, no columns, or columns of different lengths.
   void set_table(const std::string& name, std::vector<TableColumn> columns);
 
   [[nodiscard]] const std::vector<IncrementInfo>& increments() const { return increments_; }

@@ -84,9 +84,7 @@ std::string joined(const std::string& number, std::string_view symbol) {
 
 }  // namespace
 
-std::span<const Unit> units() {
-  return table;
-}
+std::span<const Unit> units() { return table; }
 
 std::string_view dimension_name(Dimension dimension) {
   switch (dimension) {

@@ -33,8 +33,8 @@ std::string attributes(const Hdf5File& file, const std::string& source, const st
 std::string xdmf_grid(const std::filesystem::path& path, const MeshData& mesh, const IncrementInfo& info) {
   const Hdf5File file = Hdf5File::open(path);
   const std::string source = fmt::format("increments/{}", path.filename().string());
-  const std::string geometry =
-      file.has("/mesh/coordinates") ? source + ":/mesh/coordinates" : "run.h5:/mesh/coordinates";
+  const std::string geometry = file.has("/mesh/coordinates") ? source + ":/mesh/coordinates"
+                                                             : "run.h5:/mesh/coordinates";
   std::string out = fmt::format("      <Grid Name=\"{}_{}\" GridType=\"Uniform\">\n", info.stage, info.stage_index);
   out += fmt::format("        <Time Value=\"{}\"/>\n", info.index);
   out += fmt::format(

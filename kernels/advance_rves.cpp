@@ -8,10 +8,10 @@
 #include <type_traits>
 #include <vector>
 
-#include "kernels/lanes/advance_group.hpp"
-#include "kernels/teams/advance_teams.hpp"
 #include "kernels/course/flush_subnormals.hpp"
+#include "kernels/lanes/advance_group.hpp"
 #include "kernels/state/schedule.hpp"
+#include "kernels/teams/advance_teams.hpp"
 
 namespace voussoir::kernels {
 
@@ -36,12 +36,14 @@ std::vector<GroupMembers<width>> form_groups(const RveBatch& batch, std::span<co
     }
     groups.back()[static_cast<std::size_t>(lane++)] = order[k];
   }
-  std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) { return steps(a[0]) > steps(b[0]); });
+  std::stable_sort(groups.begin(), groups.end(),
+                   [&](const auto& a, const auto& b) { return steps(a[0]) > steps(b[0]); });
   return groups;
 }
 
 template <int width>
-Work count_work(const RveBatch& batch, const std::vector<GroupMembers<width>>& groups, std::span<const RveReport> reports) {
+Work count_work(const RveBatch& batch, const std::vector<GroupMembers<width>>& groups,
+                std::span<const RveReport> reports) {
   Work work;
   for (const auto& group : groups) {
     const auto grains = static_cast<std::size_t>(batch.packing(static_cast<std::size_t>(group[0])).size());

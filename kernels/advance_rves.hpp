@@ -6,8 +6,8 @@
 
 #include <span>
 
-#include "kernels/state/rve_batch.hpp"
 #include "kernels/state/requests.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 
@@ -17,7 +17,8 @@ struct Work {
   std::size_t lane_steps = 0;      ///< the same with frozen and empty lanes counted: what the hardware did
 };
 
-/// Whether teams of threads run what any of them can; a static tangent or a recorded microstructure needs lanes (`automatic`).
+/// Whether teams of threads run what any of them can; a static tangent or a recorded microstructure needs lanes
+/// (`automatic`).
 [[nodiscard]] bool takes_teams(Backend backend);
 
 /// Given motions. `requests` and `reports` have batch.size() entries.
@@ -25,7 +26,8 @@ struct Work {
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports);
 
-/// The same of some RVEs: `rves` are their numbers, each at most once. The states and reports of the others are left as they are.
+/// The same of some RVEs: `rves` are their numbers, each at most once. The states and reports of the others are left as
+/// they are.
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports, std::span<const int> rves);
 

@@ -17,10 +17,10 @@ inline Packing packing_of(const reference::Rve& rve) {
   const reference::Material& m = rve.material;
   return {.radii = rve.radii,
           .materials = {{.modulus = m.modulus,
-                       .stiffness_ratio = m.stiffness_ratio,
-                       .friction = m.friction,
-                       .rolling_stiffness = m.rolling_stiffness,
-                       .rolling_limit = m.rolling_limit}},
+                         .stiffness_ratio = m.stiffness_ratio,
+                         .friction = m.friction,
+                         .rolling_stiffness = m.rolling_stiffness,
+                         .rolling_limit = m.rolling_limit}},
           .class_of = {},
           .thickness = m.thickness,
           .local_damping = m.damping};
@@ -67,8 +67,8 @@ inline RveReport at_rest(RveBatch& batch, const EngineSettings& settings) {
   return run(batch, std::vector(batch.size(), StrainRequest{.hold_cap = 1}), settings).front();
 }
 
-/// One motion of `rve` alone and in a group of 19: number 7 moves alike, the others otherwise; 3 has a position that is not a number, 4 is
-/// pulled open.
+/// One motion of `rve` alone and in a group of 19: number 7 moves alike, the others otherwise; 3 has a position that is
+/// not a number, 4 is pulled open.
 struct AloneAndInAGroup {
   RveReport alone;
   std::vector<RveReport> group;

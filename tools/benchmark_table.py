@@ -28,8 +28,14 @@ def row(scene, runs):
         return "" if value is None else f"{value / 1e6:.0f}"
 
     some = next(iter(runs.values()))
-    cells = [f"`{scene}`", f"{some['coordination']:.1f}", rate("float", "particle_steps/s"), rate("double", "particle_steps/s"),
-             rate("float", "contact_steps/s"), rate("float", "pair_steps/s")]
+    cells = [
+        f"`{scene}`",
+        f"{some['coordination']:.1f}",
+        rate("float", "particle_steps/s"),
+        rate("double", "particle_steps/s"),
+        rate("float", "contact_steps/s"),
+        rate("float", "pair_steps/s"),
+    ]
     return "| " + " | ".join(cells) + " |"
 
 

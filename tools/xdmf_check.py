@@ -35,8 +35,14 @@ def first_grid(data):
 def expected_fields(path):
     """Names and values below /xdmf of an increment's file."""
     with h5py.File(path, "r") as file:
-        return {place: {name: set_[()] for name, set_ in file["xdmf"].get(place, {}).items()} for place in ("node", "cell")} \
-            if "xdmf" in file else {"node": {}, "cell": {}}
+        return (
+            {
+                place: {name: set_[()] for name, set_ in file["xdmf"].get(place, {}).items()}
+                for place in ("node", "cell")
+            }
+            if "xdmf" in file
+            else {"node": {}, "cell": {}}
+        )
 
 
 def expected_mesh(run_file, increment_file):
@@ -87,8 +93,11 @@ def main():
     key = reader.GetExecutive().TIME_STEPS()
     times = [information.Get(key, k) for k in range(information.Length(key))] if information.Has(key) else []
     files = sorted((path.parent / "increments").glob("*.h5"), key=lambda p: int(p.stem))
-    wrong = [] if [int(t) for t in times] == [int(p.stem) for p in files] else \
-        [f"times {times} for increments {[p.stem for p in files]}"]
+    wrong = (
+        []
+        if [int(t) for t in times] == [int(p.stem) for p in files]
+        else [f"times {times} for increments {[p.stem for p in files]}"]
+    )
     for time, file in zip(times, files):
         reader.UpdateTimeStep(time)
         grid = first_grid(reader.GetOutputDataObject(0))

@@ -41,7 +41,8 @@ void read_grain_tables(const io::Table& root, Case& input) {
   input.engine = read_engine(root.table("engine"), runs_on_a_mesh(input.kind));
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
   if (input.kind != CaseKind::probe && input.packing.file.extension() == ".h5") {
-    throw root.table("packing").error("file", "is a stored state, which only kind = \"probe\" starts from: all others need isotropic pressure");
+    throw root.table("packing").error(
+        "file", "is a stored state, which only kind = \"probe\" starts from: all others need isotropic pressure");
   }
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) {
     input.biaxial = read_biaxial(root.table("biaxial"));
@@ -112,14 +113,17 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   }
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
-  const auto of_lanes = [](TangentChoice tangent) { return tangent != TangentChoice::automatic && tangent != TangentChoice::contact; };
+  const auto of_lanes = [](TangentChoice tangent) {
+    return tangent != TangentChoice::automatic && tangent != TangentChoice::contact;
+  };
   if (input.engine.backend == EngineBackend::teams && of_lanes(input.newton.tangent)) {
     throw root.table("newton").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
   }
   if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::probe && of_lanes(input.probe.tangent)) {
     throw root.table("probe").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
   }
-  if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
+  if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial &&
+      input.output.microstructure.any()) {
     throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");
   }
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
@@ -128,7 +132,8 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   // None of them changes a number; a preset does so through the values it gives.
   const std::array<std::string, 4> without{"title", "output", "packing.folder", "engine.preset"};
   input.fingerprint = text.fingerprint(without);
-  if (!input.packing.file.empty()) input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
+  if (!input.packing.file.empty())
+    input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
   return input;
 }
 

@@ -32,67 +32,68 @@ enum class GradingMeasure { number, area };
 
 /// [soil] The grains and their contacts (method.md, section 3).
 struct SoilCase {
-  double size_minimum = 2.0e-3;     ///< smallest grain diameter [m]
-  double size_maximum = 4.75e-3;    ///< largest grain diameter [m]
-  std::vector<double> sizes;        ///< grading curve: diameters, ascending [m]; empty: uniform by number in between
-  std::vector<double> passing;      ///< share of grains below each size, ascending from 0 to 1 [-]
+  double size_minimum = 2.0e-3;   ///< smallest grain diameter [m]
+  double size_maximum = 4.75e-3;  ///< largest grain diameter [m]
+  std::vector<double> sizes;      ///< grading curve: diameters, ascending [m]; empty: uniform by number in between
+  std::vector<double> passing;    ///< share of grains below each size, ascending from 0 to 1 [-]
   GradingMeasure passing_by = GradingMeasure::area;  ///< shares of the grains' area (the mass in 2D) or of their number
   std::vector<GrainClassCase> classes;               ///< by ascending size; empty: one class
-  double modulus = 3.0e9;           ///< contact modulus E [Pa]
-  double stiffness_ratio = 0.5;     ///< k_t / k_n [-]
-  double friction = 0.43633231299858238;  ///< contact friction angle [rad], 25 deg
-  double rolling_stiffness = 1.0;   ///< beta, k_r = beta k_t r1 r2 [-]; 0 with rolling_limit = 0: no rolling resistance
-  double rolling_limit = 0.6;       ///< eta, |M| <= eta r f_n [-]
-  double damping = 0.3;             ///< local damping [-]
-  double density = 2650.0;          ///< grain density [kg/m3]
-  double thickness = 0.1;           ///< out-of-plane thickness t of an RVE [m]
+  double modulus = 3.0e9;                            ///< contact modulus E [Pa]
+  double stiffness_ratio = 0.5;                      ///< k_t / k_n [-]
+  double friction = 0.43633231299858238;             ///< contact friction angle [rad], 25 deg
+  double rolling_stiffness = 1.0;  ///< beta, k_r = beta k_t r1 r2 [-]; 0 with rolling_limit = 0: no rolling resistance
+  double rolling_limit = 0.6;      ///< eta, |M| <= eta r f_n [-]
+  double damping = 0.3;            ///< local damping [-]
+  double density = 2650.0;         ///< grain density [kg/m3]
+  double thickness = 0.1;          ///< out-of-plane thickness t of an RVE [m]
 };
 
 /// [packing] How the RVEs' common packing is made.
 struct PackingCase {
-  int grains = 700;                     ///< grains of one RVE
-  std::int64_t seed = 1;                ///< first seed; the candidates are seed, seed + 1, ...
-  std::vector<std::int64_t> seeds;      ///< the seeds to make (kind = pack); empty: those of seed and candidates
-  int candidates = 1;                   ///< seeds tried; the one with the least |tau_xy|/sigma_yy is taken
-  bool mirrored = true;                 ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
-  std::filesystem::path file;           ///< NAME_particles.csv of another code's packing, or a packing_*.h5; empty: made from
-                                        ///< the recipe. It brings its own grains: `grains`, seeds and density do not count
+  int grains = 700;                 ///< grains of one RVE
+  std::int64_t seed = 1;            ///< first seed; the candidates are seed, seed + 1, ...
+  std::vector<std::int64_t> seeds;  ///< the seeds to make (kind = pack); empty: those of seed and candidates
+  int candidates = 1;               ///< seeds tried; the one with the least |tau_xy|/sigma_yy is taken
+  bool mirrored = true;             ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
+  std::filesystem::path file;  ///< NAME_particles.csv of another code's packing, or a packing_*.h5; empty: made from
+                               ///< the recipe. It brings its own grains: `grains`, seeds and density do not count
   std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
-  double consolidation_friction = 0.0;  ///< friction coefficient mu_t during consolidation [-]
-  double void_ratio = 0.0;              ///< wanted at `pressure` [-]: mu_t is found for it; 0: consolidation_friction holds
-  double pressure = 1.0e3;              ///< isotropic pressure of the finished packing [Pa]
+  double consolidation_friction = 0.0;            ///< friction coefficient mu_t during consolidation [-]
+  double void_ratio = 0.0;  ///< wanted at `pressure` [-]: mu_t is found for it; 0: consolidation_friction holds
+  double pressure = 1.0e3;  ///< isotropic pressure of the finished packing [Pa]
 };
 
-/// [engine] Speed and accuracy of the grain engine: a preset (engine_presets.hpp), whose values single keys override. What each
-/// key costs and buys is measured in docs/trade.md. The defaults are the preset `standard`.
+/// [engine] Speed and accuracy of the grain engine: a preset (engine_presets.hpp), whose values single keys override.
+/// What each key costs and buys is measured in docs/trade.md. The defaults are the preset `standard`.
 struct EngineCase {
   std::string preset = "standard";  ///< fast, standard or reference; counts for the fingerprint through its values only
   Precision precision = Precision::single_precision;  ///< value type of the pair loop
-  double inertial_number = 3.0e-4;  ///< target inertial number of an increment [-]
-  double hold_tolerance = 3.0e-4;   ///< unbalanced force ratio that ends the hold [-]
-  EngineBackend backend = EngineBackend::automatic;  ///< one SIMD lane or one team of threads per RVE; automatic: teams on a GPU
-  int hold_cap = 4000;              ///< most steps of a hold
-  double skin = 0.1;                ///< neighbour skin over the mean grain diameter [-]
-  int minimum_steps = 50;           ///< fewest strain steps of an increment
-  int maximum_steps = 2000;         ///< most strain steps of an increment
-  double defer = 0;                 ///< change of stress over pressure up to which RVEs answer by their tangent [-]; 0: never
+  double inertial_number = 3.0e-4;                    ///< target inertial number of an increment [-]
+  double hold_tolerance = 3.0e-4;                     ///< unbalanced force ratio that ends the hold [-]
+  EngineBackend backend = EngineBackend::automatic;  ///< one SIMD lane or one team of threads per RVE; automatic: teams
+                                                     ///< on a GPU
+  int hold_cap = 4000;                               ///< most steps of a hold
+  double skin = 0.1;                                 ///< neighbour skin over the mean grain diameter [-]
+  int minimum_steps = 50;                            ///< fewest strain steps of an increment
+  int maximum_steps = 2000;                          ///< most strain steps of an increment
+  double defer = 0;  ///< change of stress over pressure up to which RVEs answer by their tangent [-]; 0: never
 };
 
 /// [ground] The half domain: symmetry axis at x = 0, base at y = 0 (method.md, section 4).
 struct GroundCase {
-  double unit_weight = 20.0e3;  ///< gamma [N/m3]
-  double surcharge = 1.0e3;     ///< pressure on the surface [Pa]; equals the RVEs' initial pressure
-  double width = 35.0;          ///< half width [m]
-  double height = 35.0;         ///< [m]
-  double diameter = 5.0;        ///< tunnel diameter D [m]
-  double cover_ratio = 2.0;     ///< C/D [-]
+  double unit_weight = 20.0e3;     ///< gamma [N/m3]
+  double surcharge = 1.0e3;        ///< pressure on the surface [Pa]; equals the RVEs' initial pressure
+  double width = 35.0;             ///< half width [m]
+  double height = 35.0;            ///< [m]
+  double diameter = 5.0;           ///< tunnel diameter D [m]
+  double cover_ratio = 2.0;        ///< C/D [-]
   double mesh_size_opening = 0.6;  ///< element size at the opening [m]
   double mesh_size_far = 4.0;      ///< element size at the far boundary [m]
 
-  [[nodiscard]] double cover() const { return cover_ratio * diameter; }                      ///< C [m]
-  [[nodiscard]] double axis_height() const { return height - cover() - 0.5 * diameter; }     ///< y of the axis [m]
-  [[nodiscard]] double invert_height() const { return axis_height() - 0.5 * diameter; }      ///< y of the invert [m]
-  [[nodiscard]] double crown_height() const { return axis_height() + 0.5 * diameter; }       ///< y of the crown [m]
+  [[nodiscard]] double cover() const { return cover_ratio * diameter; }                   ///< C [m]
+  [[nodiscard]] double axis_height() const { return height - cover() - 0.5 * diameter; }  ///< y of the axis [m]
+  [[nodiscard]] double invert_height() const { return axis_height() - 0.5 * diameter; }   ///< y of the invert [m]
+  [[nodiscard]] double crown_height() const { return axis_height() + 0.5 * diameter; }    ///< y of the crown [m]
 };
 
 /// [column] The oedometric column that measures K0 (sigma_yy).
@@ -119,23 +120,25 @@ struct NewtonCase {
   double tolerance = 1.0e-3;               ///< of the free residual, relative to the external force [-]
   double displacement_tolerance = 1.0e-2;  ///< of the last correction, relative to the increment [-]
   int maximum_iterations = 40;
-  int anderson_depth = 5;                  ///< 0: plain Newton
-  TangentChoice tangent = TangentChoice::automatic;  ///< of the RVEs, once an increment; automatic: elastic, on a GPU contact
-  double tangent_strain = 1.0e-6;          ///< of a loading tangent, the strain it is the secant of [-]
-  double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
-  double relax_below = 1.0;                ///< share of a planned step up to which a failed step is relaxed, not cut [-]
-  int relax_attempts = 3;                  ///< iterates from the committed state before an increment is relaxed
-  double relax_near = 0.4;                 ///< residual below which these end at once, relative as `tolerance` [-]
-  int relax_substeps = 100;                ///< most substeps of a relaxation; 0: none is relaxed
-  double smallest_cut = 1.0 / 64.0;        ///< smallest share of a planned step that cutting tries [-]
+  int anderson_depth = 5;                            ///< 0: plain Newton
+  TangentChoice tangent = TangentChoice::automatic;  ///< of the RVEs, once an increment; automatic: elastic, on a GPU
+                                                     ///< contact
+  double tangent_strain = 1.0e-6;                    ///< of a loading tangent, the strain it is the secant of [-]
+  double initial_tangent_fraction = 0.02;            ///< share of the stage's initial tangent added to the tangent [-]
+  double relax_below = 1.0;          ///< share of a planned step up to which a failed step is relaxed, not cut [-]
+  int relax_attempts = 3;            ///< iterates from the committed state before an increment is relaxed
+  double relax_near = 0.4;           ///< residual below which these end at once, relative as `tolerance` [-]
+  int relax_substeps = 100;          ///< most substeps of a relaxation; 0: none is relaxed
+  double smallest_cut = 1.0 / 64.0;  ///< smallest share of a planned step that cutting tries [-]
 };
 
 /// [output]
 struct OutputCase {
-  int every = 1;          ///< increments of a stage between two result files; a stage's last is always written
-  int checkpoint_every = 1;  ///< increments of a stage between two checkpoints; a stage's last, and where a run stops, has one
-  std::vector<std::string> fields;  ///< names of the fields written (io/FORMAT.md); empty: all
-  std::vector<std::int64_t> rves;  ///< Gauss points whose whole RVE is written with each increment
+  int every = 1;             ///< increments of a stage between two result files; a stage's last is always written
+  int checkpoint_every = 1;  ///< increments of a stage between two checkpoints; a stage's last, and where a run stops,
+                             ///< has one
+  std::vector<std::string> fields;                ///< names of the fields written (io/FORMAT.md); empty: all
+  std::vector<std::int64_t> rves;                 ///< Gauss points whose whole RVE is written with each increment
   kernels::MicrostructureRequest microstructure;  ///< fields of the contact network; nothing unless asked for
 };
 
@@ -147,27 +150,30 @@ struct ElasticCase {
 
 /// [[probe.path]] Increments put on the packing before it is probed, as the mesh would put them.
 struct PathSegment {
-  std::array<double, 4> gradient{};  ///< displacement gradient of each increment, xx xy yx yy [-]; det(1 + gradient) > 0
+  std::array<double, 4> gradient{};  ///< displacement gradient of each increment, xx xy yx yy [-]; det(1 + gradient) >
+                                     ///< 0
   int increments = 1;
-  bool constant_xx = false;          ///< sigma_xx is held at its value: the gradient's xx is found, not given; gradient not 0
+  bool constant_xx = false;  ///< sigma_xx is held at its value: the gradient's xx is found, not given; gradient not 0
 };
 
 /// [probe] Displacement gradients put on the packing at the path's end, each from the same state.
 struct ProbeCase {
-  double pressure = 1.0e5;      ///< isotropic pressure of the packing [Pa]
-  double strain = 1.0e-4;       ///< size of each probe [-]
-  int replicas = 1;             ///< copies of path and probes whose gradients differ by 1e-6 of their size: what chaos makes of them
-  TangentChoice tangent = TangentChoice::contact;  ///< that is reported; kernels/README.md, "Static tangent"; a loading one of `strain`
+  double pressure = 1.0e5;  ///< isotropic pressure of the packing [Pa]
+  double strain = 1.0e-4;   ///< size of each probe [-]
+  int replicas = 1;  ///< copies of path and probes whose gradients differ by 1e-6 of their size: what chaos makes of
+                     ///< them
+  TangentChoice tangent = TangentChoice::contact;  ///< that is reported; kernels/README.md, "Static tangent"; a loading
+                                                   ///< one of `strain`
   std::vector<PathSegment> path;
 };
 
 /// [biaxial] Drained biaxial tests: y is compressed at a constant rate, sigma_xx is held.
 struct BiaxialCase {
   std::vector<double> pressures = {1.0e5, 2.0e5, 4.0e5};  ///< confining pressures [Pa]
-  double strain = 0.20;            ///< logarithmic axial strain at the end [-]
-  double inertial_number = 1.0e-4; ///< of the axial rate at the confining pressure [-]
-  double window = 0.01;            ///< axial strain over which curves are smoothed for strength and dilatancy [-]
-  int samples = 1000;              ///< points of a curve
+  double strain = 0.20;                                   ///< logarithmic axial strain at the end [-]
+  double inertial_number = 1.0e-4;                        ///< of the axial rate at the confining pressure [-]
+  double window = 0.01;  ///< axial strain over which curves are smoothed for strength and dilatancy [-]
+  int samples = 1000;    ///< points of a curve
 };
 
 /// [biaxial_bvp] A biaxial test on a rectangle of elements (biaxial_bvp.hpp).
@@ -188,21 +194,21 @@ struct CalibrationTarget {
   double value = 0, tolerance = 0;
 };
 
-/// [calibrate] Search of the grains' open parameters (method.md §3) for the strength of [biaxial]'s tests. A list of one value, or
-/// none, leaves that parameter as [soil] has it. Classes of grains keep their ratios to [soil].
+/// [calibrate] Search of the grains' open parameters (method.md §3) for the strength of [biaxial]'s tests. A list of
+/// one value, or none, leaves that parameter as [soil] has it. Classes of grains keep their ratios to [soil].
 struct CalibrateCase {
   static constexpr double degree = std::numbers::pi / 180.0;  ///< [rad]
-  std::vector<double> rolling_stiffness;  ///< beta: values of the first grid, ascending [-]
-  std::vector<double> rolling_limit;      ///< eta [-]
-  std::vector<double> thickness;          ///< t [m]
-  int rounds = 2;                         ///< refinements after the grid, each around the optimum of all tests so far
+  std::vector<double> rolling_stiffness;                      ///< beta: values of the first grid, ascending [-]
+  std::vector<double> rolling_limit;                          ///< eta [-]
+  std::vector<double> thickness;                              ///< t [m]
+  int rounds = 2;  ///< refinements after the grid, each around the optimum of all tests so far
   CalibrationTarget peak{39.1 * degree, 1.0 * degree};       ///< phi_p [rad]
   CalibrationTarget critical{33.0 * degree, 1.0 * degree};   ///< phi_cs [rad]
   CalibrationTarget dilatancy{14.0 * degree, 2.0 * degree};  ///< psi_max [rad]
-  double peak_strain_minimum = 0.02;      ///< axial strain at the peak, mean of the pressures: within these limits [-]
+  double peak_strain_minimum = 0.02;  ///< axial strain at the peak, mean of the pressures: within these limits [-]
   double peak_strain_maximum = 0.05;
-  double peak_strain_tolerance = 0.01;    ///< [-]
-  int confirm_grains = 700;               ///< the tests of the optimum and of [soil] as it stands
+  double peak_strain_tolerance = 0.01;  ///< [-]
+  int confirm_grains = 700;             ///< the tests of the optimum and of [soil] as it stands
   std::vector<std::int64_t> confirm_seeds = {1, 2, 3};
   double confirm_inertial_number = 1.0e-4;  ///< [-]
 };
@@ -230,8 +236,8 @@ struct Case {
   std::string fingerprint;  ///< of everything that decides the numbers; in SI to 12 digits, however it was written
 };
 
-/// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) on anything wrong:
-/// unknown keys, wrong units, values outside their limits, values that do not fit together.
+/// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) on anything
+/// wrong: unknown keys, wrong units, values outside their limits, values that do not fit together.
 [[nodiscard]] Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// Kinds that advance in load increments on a mesh: with checkpoints, and interrupted between two of them.

@@ -17,7 +17,8 @@ std::vector<double> read_list(const io::Table& table, const char* key, Dimension
   for (std::size_t k = 1; k < list.size(); ++k) {
     if (list[k] <= list[k - 1]) throw table.error(key, "must ascend");
   }
-  if (!list.empty() && !(of_soil > 0)) throw table.error(key, "is searched, but is 0 in [soil]: its classes have no ratios");
+  if (!list.empty() && !(of_soil > 0))
+    throw table.error(key, "is searched, but is 0 in [soil]: its classes have no ratios");
   return list;
 }
 
@@ -48,7 +49,8 @@ CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil) {
   }
   read_integer(table, "confirm_grains", out.confirm_grains, {.at_least = 30, .at_most = 20000});
   out.confirm_seeds = table.integers("confirm_seeds", {.at_least = 0}, out.confirm_seeds);
-  if (out.confirm_seeds.size() < 2) throw table.error("confirm_seeds", "needs two seeds at least: one shows no scatter");
+  if (out.confirm_seeds.size() < 2)
+    throw table.error("confirm_seeds", "needs two seeds at least: one shows no scatter");
   if (std::set<std::int64_t>(out.confirm_seeds.begin(), out.confirm_seeds.end()).size() != out.confirm_seeds.size()) {
     throw table.error("confirm_seeds", "names a seed twice");
   }

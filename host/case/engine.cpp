@@ -16,13 +16,25 @@ struct Preset {
 
 const std::array<Preset, 3>& presets() {
   static const std::array<Preset, 3> all{{
-      {{.preset = "fast", .inertial_number = 1e-3, .hold_tolerance = 1e-3, .hold_cap = 500, .minimum_steps = 30, .maximum_steps = 1000,
+      {{.preset = "fast",
+        .inertial_number = 1e-3,
+        .hold_tolerance = 1e-3,
+        .hold_cap = 500,
+        .minimum_steps = 30,
+        .maximum_steps = 1000,
         .defer = 1e-3},
        "stress off by 3 % of p at 1 kPa, 0.6 % at 100 kPa, 0.1 % at 800 kPa (rms of 8 packings)"},
-      {{.preset = "standard"}, "stress off by 2 % of p at 1 kPa, 0.3 % at 100 kPa, 0.04 % at 800 kPa (rms of 8 packings)"},
-      {{.preset = "reference", .precision = Precision::double_precision, .inertial_number = 3e-5, .hold_tolerance = 1e-4, .hold_cap = 10000,
-        .minimum_steps = 300, .maximum_steps = 200000},
-       "stress off by 1 % of p at 1 kPa, as repeats are, 0.2 % at 100 kPa (one packing in 8 snaps, the others 0.02 %), 0.001 % at 800 kPa"},
+      {{.preset = "standard"},
+       "stress off by 2 % of p at 1 kPa, 0.3 % at 100 kPa, 0.04 % at 800 kPa (rms of 8 packings)"},
+      {{.preset = "reference",
+        .precision = Precision::double_precision,
+        .inertial_number = 3e-5,
+        .hold_tolerance = 1e-4,
+        .hold_cap = 10000,
+        .minimum_steps = 300,
+        .maximum_steps = 200000},
+       "stress off by 1 % of p at 1 kPa, as repeats are, 0.2 % at 100 kPa (one packing in 8 snaps, the others 0.02 %), "
+       "0.001 % at 800 kPa"},
   }};
   return all;
 }
@@ -64,12 +76,15 @@ std::string engine_note(const EngineCase& engine) {
   const Preset& preset = find(engine.preset);
   const std::string others = overridden(engine, preset.values);
   std::string note = "engine preset " + engine.preset;
-  if (others.empty()) note += fmt::format(": {} (docs/trade.md)", preset.error);
-  else note += fmt::format(", but {} overridden: its measured error need not hold (docs/trade.md)", others);
+  if (others.empty())
+    note += fmt::format(": {} (docs/trade.md)", preset.error);
+  else
+    note += fmt::format(", but {} overridden: its measured error need not hold (docs/trade.md)", others);
   if (engine.defer > 0) {
-    note += fmt::format("; RVEs deferred up to {:g} of p: how far they were off is told at each stage's end, in tunnel_quick 2e-4 of p "
-                        "(defer = 3e-4), 8e-4 (1e-3), 2e-3 and once 2e-2 (3e-3)",
-                        engine.defer);
+    note += fmt::format(
+        "; RVEs deferred up to {:g} of p: how far they were off is told at each stage's end, in tunnel_quick 2e-4 of p "
+        "(defer = 3e-4), 8e-4 (1e-3), 2e-3 and once 2e-2 (3e-3)",
+        engine.defer);
   }
   return note;
 }

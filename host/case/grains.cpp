@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "host/case/tables.hpp"
 #include "host/case/engine.hpp"
+#include "host/case/tables.hpp"
 #include "io/packing_file.hpp"
 #include "io/units.hpp"
 
@@ -30,7 +30,8 @@ namespace {
 /// `sizes` and `passing`: a grading curve, which sets the smallest and the largest size.
 void read_grading(const io::Table& table, SoilCase& soil) {
   soil.sizes = table.quantities("sizes", Dimension::length, {.positive = true}, std::vector<std::string>{});
-  soil.passing = table.quantities("passing", Dimension::none, {.at_least = "0", .at_most = "1"}, std::vector<std::string>{});
+  soil.passing = table.quantities("passing", Dimension::none, {.at_least = "0", .at_most = "1"},
+                                  std::vector<std::string>{});
   soil.passing_by = table.choice("passing_by", {"area", "number"}, "area") == "area" ? GradingMeasure::area
                                                                                      : GradingMeasure::number;
   if (soil.sizes.size() != soil.passing.size()) throw table.error("passing", "has not as many entries as sizes");
@@ -60,7 +61,8 @@ void read_classes(const io::Table& table, SoilCase& soil) {
     read_quantity(entry, "friction", Dimension::angle, grains.friction, {.at_least = "0 deg", .at_most = "80 deg"});
     read_quantity(entry, "rolling_stiffness", Dimension::none, grains.rolling_stiffness, {.at_least = "0"});
     read_quantity(entry, "rolling_limit", Dimension::none, grains.rolling_limit, {.at_least = "0"});
-    if (!soil.classes.empty() && grains.size_to <= soil.classes.back().size_to) throw entry.error("size_to", "must ascend");
+    if (!soil.classes.empty() && grains.size_to <= soil.classes.back().size_to)
+      throw entry.error("size_to", "must ascend");
     soil.classes.push_back(grains);
   }
   if (!soil.classes.empty() && soil.classes.back().size_to < soil.size_maximum * (1 - 1e-12)) {
@@ -113,7 +115,8 @@ PackingCase read_packing(const io::Table& table) {
     packing.file = table.path("file");
     try {
       const bool ours = packing.file.extension() == ".h5";
-      packing.grains = static_cast<int>((ours ? io::load_packing(packing.file) : io::load_packing_csv(packing.file)).grains());
+      packing.grains = static_cast<int>(
+          (ours ? io::load_packing(packing.file) : io::load_packing_csv(packing.file)).grains());
     } catch (const std::runtime_error& error) {
       throw table.error("file", error.what());
     }
@@ -140,7 +143,8 @@ EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
   read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
   if (!on_a_mesh) engine.defer = 0;  // whatever the preset says
   read_quantity(table, "defer", Dimension::none, engine.defer, {.at_least = "0", .at_most = "0.1"});
-  if (!on_a_mesh && engine.defer > 0) throw table.error("defer", "is for kinds with a mesh: without one all grains are to run");
+  if (!on_a_mesh && engine.defer > 0)
+    throw table.error("defer", "is for kinds with a mesh: without one all grains are to run");
   if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
   return engine;
 }
@@ -151,11 +155,13 @@ BiaxialCase read_biaxial(const io::Table& table) {
                                     std::vector<std::string>{"100 kPa", "200 kPa", "400 kPa"});
   if (test.pressures.empty()) throw table.error("pressures", "names no pressure");
   read_quantity(table, "strain", Dimension::none, test.strain, {.at_least = "1e-4", .at_most = "1"});
-  read_quantity(table, "inertial_number", Dimension::none, test.inertial_number, {.at_least = "1e-6", .at_most = "1e-2"});
+  read_quantity(table, "inertial_number", Dimension::none, test.inertial_number,
+                {.at_least = "1e-6", .at_most = "1e-2"});
   read_quantity(table, "window", Dimension::none, test.window, {.at_least = "1e-5", .at_most = "0.1"});
   read_integer(table, "samples", test.samples, {.at_least = 20, .at_most = 100'000});
   if (test.strain < 2.0 * test.window) throw table.error("window", "is more than half of the strain");
-  if (test.samples < 5.0 * test.strain / test.window) throw table.error("samples", "leaves fewer than five points in a window");
+  if (test.samples < 5.0 * test.strain / test.window)
+    throw table.error("samples", "leaves fewer than five points in a window");
   for (std::size_t k = 1; k < test.pressures.size(); ++k) {
     if (std::find(test.pressures.begin(), test.pressures.begin() + static_cast<std::ptrdiff_t>(k), test.pressures[k]) !=
         test.pressures.begin() + static_cast<std::ptrdiff_t>(k)) {
@@ -179,9 +185,11 @@ std::vector<PathSegment> read_path(const io::Table& table) {
     const auto [xx, xy, yx, yy] = segment.gradient;
     if (segment.constant_xx && xx != 0) throw entry.error("gradient", "must have no xx where constant_xx finds it");
     if (segment.constant_xx && xy == 0 && yx == 0 && yy == 0) {
-      throw entry.error("gradient", "must not be 0 where constant_xx is to find its xx, which is sought within its size");
+      throw entry.error("gradient",
+                        "must not be 0 where constant_xx is to find its xx, which is sought within its size");
     }
-    if (!((1 + xx) * (1 + yy) - xy * yx > 0)) throw entry.error("gradient", "leaves no area: det(1 + gradient) must be positive");
+    if (!((1 + xx) * (1 + yy) - xy * yx > 0))
+      throw entry.error("gradient", "leaves no area: det(1 + gradient) must be positive");
     path.push_back(segment);
   }
   return path;

@@ -1,13 +1,14 @@
-// The tables of what has a mesh: [ground], [column], [gravity], [volume_loss], [biaxial_bvp], [newton], [output], [elastic].
+// The tables of what has a mesh: [ground], [column], [gravity], [volume_loss], [biaxial_bvp], [newton], [output],
+// [elastic].
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 #include <string>
 
+#include "host/case/result_fields.hpp"
 #include "host/case/tables.hpp"
 #include "host/estimate/work.hpp"
-#include "host/case/result_fields.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::host {
@@ -86,8 +87,10 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
 }
 
 TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise) {
-  constexpr std::array<const char*, 5> names{"auto", "contact", "elastic", "static", "loading"};  // as the enumeration counts them
-  const std::string tangent = table.choice("tangent", {names.begin(), names.end()}, names[static_cast<std::size_t>(otherwise)]);
+  constexpr std::array<const char*, 5> names{"auto", "contact", "elastic", "static", "loading"};  // as the enumeration
+                                                                                                  // counts them
+  const std::string tangent = table.choice("tangent", {names.begin(), names.end()},
+                                           names[static_cast<std::size_t>(otherwise)]);
   const auto found = std::find(names.begin(), names.end(), tangent);
   return static_cast<TangentChoice>(found - names.begin());
 }
@@ -100,7 +103,8 @@ NewtonCase read_newton(const io::Table& table) {
   read_integer(table, "maximum_iterations", newton.maximum_iterations, {.at_least = 1, .at_most = 10000});
   read_integer(table, "anderson_depth", newton.anderson_depth, {.at_least = 0, .at_most = 50});
   newton.tangent = read_tangent(table, newton.tangent);
-  read_quantity(table, "tangent_strain", Dimension::none, newton.tangent_strain, {.at_least = "1e-8", .at_most = "1e-2"});
+  read_quantity(table, "tangent_strain", Dimension::none, newton.tangent_strain,
+                {.at_least = "1e-8", .at_most = "1e-2"});
   read_quantity(table, "initial_tangent_fraction", Dimension::none, newton.initial_tangent_fraction,
                 {.at_least = "0", .at_most = "10"});
   read_quantity(table, "relax_below", Dimension::none, newton.relax_below, {.at_least = "0", .at_most = "1"});

@@ -8,8 +8,8 @@
 
 namespace voussoir::host {
 
-std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double strain, double inertial_number, int samples,
-                                        const kernels::EngineSettings& settings,
+std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double strain, double inertial_number,
+                                        int samples, const kernels::EngineSettings& settings,
                                         const kernels::MicrostructureRequest& microstructure) {
   kernels::RveBatch batch = batch_of(rves);
   std::vector<std::vector<kernels::ServoSample>> traces(rves.size());
@@ -39,8 +39,8 @@ std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double 
   for (std::size_t k = 0; k < rves.size(); ++k) {
     curves[k].status = reports[k].status;
     for (const kernels::ServoSample& s : traces[k]) {
-      curves[k].points.push_back({-s.strain_y, -s.strain_x, -s.stress_xx, -s.stress_yy, -s.stress_xy, s.unbalanced,
-                                  s.microstructure});
+      curves[k].points.push_back(
+          {-s.strain_y, -s.strain_x, -s.stress_xx, -s.stress_yy, -s.stress_xy, s.unbalanced, s.microstructure});
     }
   }
   return curves;

@@ -9,11 +9,11 @@
 #include <numbers>
 #include <optional>
 
-#include "host/element_tests/biaxial.hpp"
-#include "host/process/exit_code.hpp"
 #include "host/case/result_fields.hpp"
-#include "host/record/provenance.hpp"
+#include "host/element_tests/biaxial.hpp"
 #include "host/material/rve_pool.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/record/provenance.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -23,7 +23,8 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 
 template <class Value>
-io::TableColumn column(const char* name, const char* unit, const std::vector<BiaxialPoint>& points, const Value& value) {
+io::TableColumn column(const char* name, const char* unit, const std::vector<BiaxialPoint>& points,
+                       const Value& value) {
   io::TableColumn out{name, unit, {}};
   for (const BiaxialPoint& point : points) out.values.push_back(value(point));
   return out;
@@ -34,26 +35,29 @@ void add_microstructure(const BiaxialCurve& curve, const kernels::Microstructure
                         std::vector<io::TableColumn>& table) {
   if (!wanted.any()) return;
   const auto& points = curve.points;
-  table.push_back(column("coordination", "-", points, [](const BiaxialPoint& x) { return x.microstructure.coordination; }));
-  table.push_back(column("grain_rotation", "rad", points, [](const BiaxialPoint& x) { return x.microstructure.grain_rotation; }));
+  table.push_back(
+      column("coordination", "-", points, [](const BiaxialPoint& x) { return x.microstructure.coordination; }));
+  table.push_back(
+      column("grain_rotation", "rad", points, [](const BiaxialPoint& x) { return x.microstructure.grain_rotation; }));
   for (const MicrostructureField& field : microstructure_fields(wanted)) {
-    table.push_back(column(field.name, field.unit, points, [&](const BiaxialPoint& x) { return field.value(x.microstructure); }));
+    table.push_back(
+        column(field.name, field.unit, points, [&](const BiaxialPoint& x) { return field.value(x.microstructure); }));
   }
 }
 
 std::vector<io::TableColumn> curve_table(const BiaxialCurve& curve, const kernels::MicrostructureRequest& wanted) {
   const auto& points = curve.points;
   std::vector<io::TableColumn> table{
-          column("axial_strain", "-", points, [](const BiaxialPoint& x) { return x.axial_strain; }),
-          column("lateral_strain", "-", points, [](const BiaxialPoint& x) { return x.lateral_strain; }),
-          column("volumetric_strain", "-", points, [](const BiaxialPoint& x) { return x.volumetric_strain(); }),
-          column("stress_xx", "Pa", points, [](const BiaxialPoint& x) { return x.stress_xx; }),
-          column("stress_yy", "Pa", points, [](const BiaxialPoint& x) { return x.stress_yy; }),
-          column("stress_xy", "Pa", points, [](const BiaxialPoint& x) { return x.stress_xy; }),
-          column("p", "Pa", points, [](const BiaxialPoint& x) { return x.p(); }),
-          column("q", "Pa", points, [](const BiaxialPoint& x) { return x.q(); }),
-          column("void_ratio", "-", points, [&](const BiaxialPoint& x) { return curve.void_ratio_at(x); }),
-          column("unbalanced_ratio", "-", points, [](const BiaxialPoint& x) { return x.unbalanced; })};
+      column("axial_strain", "-", points, [](const BiaxialPoint& x) { return x.axial_strain; }),
+      column("lateral_strain", "-", points, [](const BiaxialPoint& x) { return x.lateral_strain; }),
+      column("volumetric_strain", "-", points, [](const BiaxialPoint& x) { return x.volumetric_strain(); }),
+      column("stress_xx", "Pa", points, [](const BiaxialPoint& x) { return x.stress_xx; }),
+      column("stress_yy", "Pa", points, [](const BiaxialPoint& x) { return x.stress_yy; }),
+      column("stress_xy", "Pa", points, [](const BiaxialPoint& x) { return x.stress_xy; }),
+      column("p", "Pa", points, [](const BiaxialPoint& x) { return x.p(); }),
+      column("q", "Pa", points, [](const BiaxialPoint& x) { return x.q(); }),
+      column("void_ratio", "-", points, [&](const BiaxialPoint& x) { return curve.void_ratio_at(x); }),
+      column("unbalanced_ratio", "-", points, [](const BiaxialPoint& x) { return x.unbalanced; })};
   add_microstructure(curve, wanted, table);
   return table;
 }
@@ -64,21 +68,24 @@ std::vector<PackedRve> packings_of(const Case& input, const PackingNote& note) {
   for (const double pressure : input.biaxial.pressures) {
     Case at_pressure = input;
     at_pressure.packing.pressure = pressure;
-    for (PackedRve& rve : obtain_packings(at_pressure, seeds_of(input.packing), note, Bias::left)) all.push_back(std::move(rve));
+    for (PackedRve& rve : obtain_packings(at_pressure, seeds_of(input.packing), note, Bias::left))
+      all.push_back(std::move(rve));
   }
   return all;
 }
 
 const char* outcome(const BiaxialCurve& curve, const Strength& s) {
-  return curve.status == kernels::RveStatus::converged && !held(curve, s) ? "sigma_xx not held" : kernels::name_of(curve.status);
+  return curve.status == kernels::RveStatus::converged && !held(curve, s) ? "sigma_xx not held"
+                                                                          : kernels::name_of(curve.status);
 }
 
 void print(const BiaxialCurve& curve, const Strength& s) {
-  std::printf("seed %4lld  %7.1f kPa  phi_p %5.1f deg at %4.1f %%  phi_cs %5.1f deg  psi_max %5.1f deg  contraction %.3f %%  "
-              "sigma_xx off by %.2f %%, scatters by %.1f %%  I %.1e  %s\n",
-              static_cast<long long>(curve.seed), curve.pressure * 1e-3, s.peak_angle / degree, s.peak_strain * 100.0,
-              s.critical_angle / degree, s.dilatancy / degree, s.contraction * 100.0, s.lateral_error * 100.0,
-              s.lateral_scatter * 100.0, curve.inertial_number, outcome(curve, s));
+  std::printf(
+      "seed %4lld  %7.1f kPa  phi_p %5.1f deg at %4.1f %%  phi_cs %5.1f deg  psi_max %5.1f deg  contraction %.3f %%  "
+      "sigma_xx off by %.2f %%, scatters by %.1f %%  I %.1e  %s\n",
+      static_cast<long long>(curve.seed), curve.pressure * 1e-3, s.peak_angle / degree, s.peak_strain * 100.0,
+      s.critical_angle / degree, s.dilatancy / degree, s.contraction * 100.0, s.lateral_error * 100.0,
+      s.lateral_scatter * 100.0, curve.inertial_number, outcome(curve, s));
 }
 
 struct Summary {
@@ -102,10 +109,17 @@ struct Summary {
   }
 
   [[nodiscard]] std::vector<io::TableColumn> table() const {
-    return {{"seed", "-", seed},           {"pressure", "Pa", pressure},       {"peak_angle", "rad", peak},
-            {"peak_strain", "-", peak_strain}, {"critical_angle", "rad", critical}, {"dilatancy_angle", "rad", dilatancy},
-            {"contraction", "-", contraction}, {"lateral_error", "-", lateral},
-            {"lateral_scatter", "-", scatter}, {"inertial_number", "-", inertial},  {"valid", "-", valid}};
+    return {{"seed", "-", seed},
+            {"pressure", "Pa", pressure},
+            {"peak_angle", "rad", peak},
+            {"peak_strain", "-", peak_strain},
+            {"critical_angle", "rad", critical},
+            {"dilatancy_angle", "rad", dilatancy},
+            {"contraction", "-", contraction},
+            {"lateral_error", "-", lateral},
+            {"lateral_scatter", "-", scatter},
+            {"inertial_number", "-", inertial},
+            {"valid", "-", valid}};
   }
 
   /// Entries of the tests that were held.
@@ -161,19 +175,22 @@ int run_biaxial(const Case& input, const RunOptions& options) {
     print(curve, s);
     summary.add(curve, s, held(curve, s));
     failed = failed || !held(curve, s);
-    writer.set_table(fmt::format("seed_{}_{:.4g}_kPa", curve.seed, curve.pressure * 1e-3), curve_table(curve, input.output.microstructure));
+    writer.set_table(fmt::format("seed_{}_{:.4g}_kPa", curve.seed, curve.pressure * 1e-3),
+                     curve_table(curve, input.output.microstructure));
   }
   writer.set_table("strength", summary.table());
   const std::vector<double> psi = summary.of_valid(summary.dilatancy);
   if (!psi.empty()) {
-    std::printf("all valid tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f deg (smoothed over %.1f %% of axial strain)\n",
-                common_angle(summary.of_valid(summary.peak), summary.of_valid(summary.peak_p)) / degree,
-                common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
-                *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
+    std::printf(
+        "all valid tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f deg (smoothed over %.1f %% of axial strain)\n",
+        common_angle(summary.of_valid(summary.peak), summary.of_valid(summary.peak_p)) / degree,
+        common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
+        *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
   }
   const std::size_t wanted = wanted_tests(input);
   if (curves.size() < wanted) {
-    std::fprintf(stderr, "biaxial: %zu of %zu tests have no packing that comes to rest\n", wanted - curves.size(), wanted);
+    std::fprintf(stderr, "biaxial: %zu of %zu tests have no packing that comes to rest\n", wanted - curves.size(),
+                 wanted);
   }
   return failed || curves.size() < wanted ? exit_numerical : exit_ok;
 }

@@ -28,14 +28,15 @@ void print(const char* label, const SetTests& one, const CalibrateCase& targets)
   std::printf("%-8s beta %.4f  eta %.4f  t %.4f m: ", label, one.set[Parameter::rolling_stiffness],
               one.set[Parameter::rolling_limit], one.set[Parameter::thickness]);
   if (!one.usable()) {
-    const std::string held =
-        fmt::format("{} of {} tests, {} of {} packings held", one.valid, one.tests, one.held_seeds.size(), one.seeds);
+    const std::string held = fmt::format("{} of {} tests, {} of {} packings held", one.valid, one.tests,
+                                         one.held_seeds.size(), one.seeds);
     std::printf("not usable: %s\n", one.fault.empty() ? held.c_str() : one.fault.c_str());
     return;
   }
   const Observation &m = one.mean, &s = one.deviation;
-  std::printf("phi_p %5.1f +- %.1f  phi_cs %5.1f +- %.1f  psi_max %5.1f +- %.1f deg  peak at %4.1f +- %.1f %%  contraction",
-              m[0] / degree, s[0] / degree, m[1] / degree, s[1] / degree, m[2] / degree, s[2] / degree, m[3] * 100, s[3] * 100);
+  std::printf(
+      "phi_p %5.1f +- %.1f  phi_cs %5.1f +- %.1f  psi_max %5.1f +- %.1f deg  peak at %4.1f +- %.1f %%  contraction",
+      m[0] / degree, s[0] / degree, m[1] / degree, s[1] / degree, m[2] / degree, s[2] / degree, m[3] * 100, s[3] * 100);
   for (const double contraction : one.contraction) std::printf(" %.2f", contraction * 100);
   std::printf(" %%  misfit %.2f", misfit(m, targets));
   if (one.valid < one.tests) std::printf("  (%zu of %zu packings held)", one.held_seeds.size(), one.seeds);
@@ -55,7 +56,8 @@ std::vector<io::TableColumn> table_of(const std::vector<SetTests>& sets, const s
     for (const SetTests& one : sets) columns.back().values.push_back(one.set[p]);
   }
   for (std::size_t o = 0; o < Observable::count; ++o) {
-    io::TableColumn mean{observable_names[o], unit_of(o), {}}, deviation{fmt::format("{}_deviation", observable_names[o]), unit_of(o), {}};
+    io::TableColumn mean{observable_names[o], unit_of(o), {}},
+        deviation{fmt::format("{}_deviation", observable_names[o]), unit_of(o), {}};
     for (const SetTests& one : sets) {
       mean.values.push_back(one.mean[o]);
       deviation.values.push_back(one.deviation[o]);
@@ -66,7 +68,9 @@ std::vector<io::TableColumn> table_of(const std::vector<SetTests>& sets, const s
   for (const bool highest : {false, true}) {
     columns.push_back({highest ? "contraction_highest_pressure" : "contraction_lowest_pressure", "-", {}});
     for (const SetTests& one : sets) {
-      columns.back().values.push_back(one.contraction.empty() ? 0.0 : highest ? one.contraction.back() : one.contraction.front());
+      columns.back().values.push_back(one.contraction.empty() ? 0.0
+                                      : highest               ? one.contraction.back()
+                                                              : one.contraction.front());
     }
   }
   return columns;
@@ -110,25 +114,27 @@ void print_fit(const SetTests& fit, const CalibrateCase& targets) {
   const std::array<const char*, 3> names{"phi_p", "phi_cs", "psi_max"};
   const double n = std::sqrt(static_cast<double>(fit.held_seeds.size()));
   for (std::size_t o = 0; o < wanted.size(); ++o) {
-    std::printf("  %-8s wanted %5.1f deg, is %5.1f +- %.1f deg (standard error of %zu packings): off by %+.1f deg\n", names[o],
-                wanted[o].value / degree, fit.mean[o] / degree, fit.deviation[o] / n / degree, fit.held_seeds.size(),
-                (fit.mean[o] - wanted[o].value) / degree);
+    std::printf("  %-8s wanted %5.1f deg, is %5.1f +- %.1f deg (standard error of %zu packings): off by %+.1f deg\n",
+                names[o], wanted[o].value / degree, fit.mean[o] / degree, fit.deviation[o] / n / degree,
+                fit.held_seeds.size(), (fit.mean[o] - wanted[o].value) / degree);
   }
   const double strain = fit.mean[Observable::peak_strain];
   const bool within = strain >= targets.peak_strain_minimum && strain <= targets.peak_strain_maximum;
-  std::printf("  peak at %.1f +- %.1f %% of axial strain (wanted %.0f to %.0f %%: %s); contraction %s with pressure\n", strain * 100,
-              fit.deviation[Observable::peak_strain] / n * 100, targets.peak_strain_minimum * 100,
-              targets.peak_strain_maximum * 100, within ? "met" : "missed", fit.contraction_grows() ? "grows" : "does not grow");
+  std::printf("  peak at %.1f +- %.1f %% of axial strain (wanted %.0f to %.0f %%: %s); contraction %s with pressure\n",
+              strain * 100, fit.deviation[Observable::peak_strain] / n * 100, targets.peak_strain_minimum * 100,
+              targets.peak_strain_maximum * 100, within ? "met" : "missed",
+              fit.contraction_grows() ? "grows" : "does not grow");
 }
 
 void print_sensitivity(const Optimum& optimum, const SearchBox& box) {
   for (std::size_t d = 0; d < box.dimensions(); ++d) {
     const Observation& s = optimum.per_doubling[box.parameter(d)];
-    std::printf("  %s doubled: phi_p %+.1f  phi_cs %+.1f  psi_max %+.1f deg  peak strain %+.1f %%\n", parameter_names[box.parameter(d)],
-                s[0] / degree, s[1] / degree, s[2] / degree, s[3] * 100);
+    std::printf("  %s doubled: phi_p %+.1f  phi_cs %+.1f  psi_max %+.1f deg  peak strain %+.1f %%\n",
+                parameter_names[box.parameter(d)], s[0] / degree, s[1] / degree, s[2] / degree, s[3] * 100);
   }
-  std::printf("  the surface leaves %.1f, %.1f, %.1f deg and %.1f %% of the sets near it\n", optimum.scatter[0] / degree,
-              optimum.scatter[1] / degree, optimum.scatter[2] / degree, optimum.scatter[3] * 100);
+  std::printf("  the surface leaves %.1f, %.1f, %.1f deg and %.1f %% of the sets near it\n",
+              optimum.scatter[0] / degree, optimum.scatter[1] / degree, optimum.scatter[2] / degree,
+              optimum.scatter[3] * 100);
 }
 
 std::vector<io::TableColumn> sensitivity_table(const Optimum& optimum) {
@@ -142,16 +148,30 @@ std::vector<io::TableColumn> sensitivity_table(const Optimum& optimum) {
 
 /// Every test of the confirmation.
 std::vector<io::TableColumn> test_table(const std::vector<SetTests>& sets) {
-  std::vector<io::TableColumn> c{{"set", "-", {}},          {"seed", "-", {}},           {"pressure", "Pa", {}},
-                                 {"peak_angle", "rad", {}}, {"peak_strain", "-", {}},    {"critical_angle", "rad", {}},
-                                 {"dilatancy_angle", "rad", {}}, {"contraction", "-", {}}, {"lateral_error", "-", {}},
+  std::vector<io::TableColumn> c{{"set", "-", {}},
+                                 {"seed", "-", {}},
+                                 {"pressure", "Pa", {}},
+                                 {"peak_angle", "rad", {}},
+                                 {"peak_strain", "-", {}},
+                                 {"critical_angle", "rad", {}},
+                                 {"dilatancy_angle", "rad", {}},
+                                 {"contraction", "-", {}},
+                                 {"lateral_error", "-", {}},
                                  {"inertial_number", "-", {}}};
   for (std::size_t k = 0; k < sets.size(); ++k) {
     for (std::size_t t = 0; t < sets[k].curves.size(); ++t) {
       const BiaxialCurve& curve = sets[k].curves[t];
       const Strength& s = sets[k].strengths[t];
-      const double row[] = {static_cast<double>(k), static_cast<double>(curve.seed), curve.pressure, s.peak_angle, s.peak_strain,
-                            s.critical_angle, s.dilatancy, s.contraction, s.lateral_error, curve.inertial_number};
+      const double row[] = {static_cast<double>(k),
+                            static_cast<double>(curve.seed),
+                            curve.pressure,
+                            s.peak_angle,
+                            s.peak_strain,
+                            s.critical_angle,
+                            s.dilatancy,
+                            s.contraction,
+                            s.lateral_error,
+                            curve.inertial_number};
       for (std::size_t i = 0; i < c.size(); ++i) c[i].values.push_back(row[i]);
     }
   }

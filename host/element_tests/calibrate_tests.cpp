@@ -97,7 +97,9 @@ void summarise(SetTests& tests, const std::vector<std::int64_t>& seeds, const st
   if (tests.usable()) take_means(tests, pressures);
 }
 
-std::size_t tests_of_a_set(const Case& input) { return seeds_of(input.packing).size() * input.biaxial.pressures.size(); }
+std::size_t tests_of_a_set(const Case& input) {
+  return seeds_of(input.packing).size() * input.biaxial.pressures.size();
+}
 
 std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet> sets, const PackingNote& note) {
   std::vector<SetTests> out(sets.size());

@@ -13,17 +13,18 @@ namespace voussoir::host {
 /// The tests of one parameter set: every seed at every pressure.
 struct SetTests {
   ParameterSet set{};
-  int tests = 0, valid = 0;  ///< run, and held as they should (biaxial.hpp)
-  std::size_t seeds = 0;     ///< packings at each pressure
+  int tests = 0, valid = 0;              ///< run, and held as they should (biaxial.hpp)
+  std::size_t seeds = 0;                 ///< packings at each pressure
   std::vector<std::int64_t> held_seeds;  ///< those all of whose tests held; the others are left out whole
-  Observation mean{};        ///< over the held seeds; of each: common angles of the pressures, mean dilatancy and peak strain
-  Observation deviation{};   ///< standard deviation over them; 0 with fewer than two
+  Observation mean{};  ///< over the held seeds; of each: common angles of the pressures, mean dilatancy and peak strain
+  Observation deviation{};          ///< standard deviation over them; 0 with fewer than two
   std::vector<double> contraction;  ///< largest eps_v, mean over them, by pressure [-]
   std::vector<BiaxialCurve> curves;
   std::vector<Strength> strengths;  ///< of each curve
   std::string fault;                ///< why there are no tests; empty: there are
 
-  /// Two thirds of the seeds at least held. In wide gradings a single small grain crushed between large ones ends a test
+  /// Two thirds of the seeds at least held. In wide gradings a single small grain crushed between large ones ends a
+  /// test
   /// (`overlap_limit`), mostly past the peak; to refuse the set for it would leave few.
   [[nodiscard]] bool usable() const { return !held_seeds.empty() && 3 * held_seeds.size() >= 2 * seeds; }
   /// The largest contraction grows with the pressure.
@@ -33,15 +34,16 @@ struct SetTests {
 /// What a set's tests (curves and strengths, in any order) show: held seeds, and means where they are enough.
 void summarise(SetTests& tests, const std::vector<std::int64_t>& seeds, const std::vector<double>& pressures);
 
-/// Packings of each set at the pressures of input.biaxial (kept in input.packing.folder), then all tests side by side. A set
-/// whose packings do not come to rest says so.
-[[nodiscard]] std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet> sets, const PackingNote& note);
+/// Packings of each set at the pressures of input.biaxial (kept in input.packing.folder), then all tests side by side.
+/// A set whose packings do not come to rest says so.
+[[nodiscard]] std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet> sets,
+                                              const PackingNote& note);
 
 /// Tests that one set needs.
 [[nodiscard]] std::size_t tests_of_a_set(const Case& input);
 
-/// `kind = "calibrate"`: grid, refinements, confirmation; tables `search`, `fit`, `tests` and `sensitivity` of run.h5, a summary
-/// to standard output. Returns an exit code.
+/// `kind = "calibrate"`: grid, refinements, confirmation; tables `search`, `fit`, `tests` and `sensitivity` of run.h5,
+/// a summary to standard output. Returns an exit code.
 [[nodiscard]] int run_calibrate(const Case& input, const RunOptions& options);
 
 }  // namespace voussoir::host

@@ -60,8 +60,11 @@ std::vector<double> lowest(const SearchBox& box, const ResponseSurface& surface,
 }  // namespace
 
 double misfit(const Observation& value, const CalibrateCase& targets) {
-  const auto off = [](double x, const CalibrationTarget& target) { return squared((x - target.value) / target.tolerance); };
-  const double strain = std::max({targets.peak_strain_minimum - value[Observable::peak_strain], value[Observable::peak_strain] - targets.peak_strain_maximum, 0.0});
+  const auto off = [](double x, const CalibrationTarget& target) {
+    return squared((x - target.value) / target.tolerance);
+  };
+  const double strain = std::max({targets.peak_strain_minimum - value[Observable::peak_strain],
+                                  value[Observable::peak_strain] - targets.peak_strain_maximum, 0.0});
   return off(value[Observable::peak_angle], targets.peak) + off(value[Observable::critical_angle], targets.critical) +
          off(value[Observable::dilatancy_angle], targets.dilatancy) + squared(strain / targets.peak_strain_tolerance);
 }
@@ -118,7 +121,8 @@ ResponseSurface::ResponseSurface(const SearchBox& box, std::span<const Measured>
     const std::vector<double> place = box.place_of(point.set);
     weights(k) = std::exp(-0.25 * distance_squared(place, center) / (range * range));  // of a row: its square weighs
     rows.row(k) = weights(k) * monomials(place).transpose();
-    for (std::size_t o = 0; o < Observable::count; ++o) values(k, static_cast<Eigen::Index>(o)) = weights(k) * point.value[o];
+    for (std::size_t o = 0; o < Observable::count; ++o)
+      values(k, static_cast<Eigen::Index>(o)) = weights(k) * point.value[o];
   }
   const Eigen::MatrixXd solution = rows.completeOrthogonalDecomposition().solve(values);
   const Eigen::MatrixXd left = values - rows * solution;
@@ -141,7 +145,9 @@ Observation ResponseSurface::at(std::span<const double> place) const {
 
 Optimum find_optimum(const SearchBox& box, std::span<const Measured> points, const CalibrateCase& targets, int round) {
   const double range = std::max(0.5 * std::pow(0.5, round), 0.2);
-  const auto worse = [&](const Measured& a, const Measured& b) { return misfit(a.value, targets) < misfit(b.value, targets); };
+  const auto worse = [&](const Measured& a, const Measured& b) {
+    return misfit(a.value, targets) < misfit(b.value, targets);
+  };
   std::vector<double> center = box.place_of(std::min_element(points.begin(), points.end(), worse)->set);
   // Twice: the best of the points may be a lucky one, the surface around it sees its neighbours.
   for (int k = 0; k < 2; ++k) center = lowest(box, ResponseSurface(box, points, center, range), targets, center, range);
@@ -189,6 +195,8 @@ SoilCase with_parameters(SoilCase soil, const ParameterSet& set) {
   return soil;
 }
 
-ParameterSet parameters_of(const SoilCase& soil) { return {soil.rolling_stiffness, soil.rolling_limit, soil.thickness}; }
+ParameterSet parameters_of(const SoilCase& soil) {
+  return {soil.rolling_stiffness, soil.rolling_limit, soil.thickness};
+}
 
 }  // namespace voussoir::host

@@ -1,6 +1,6 @@
 #pragma once
-/// The search behind `kind = "calibrate"`: a grid of parameters, a quadratic response surface through what was measured there,
-/// and where to measure next. No grains here: what is measured comes from calibrate_tests.hpp.
+/// The search behind `kind = "calibrate"`: a grid of parameters, a quadratic response surface through what was measured
+/// there, and where to measure next. No grains here: what is measured comes from calibrate_tests.hpp.
 
 #include <array>
 #include <cstddef>
@@ -40,7 +40,9 @@ class SearchBox {
   [[nodiscard]] std::size_t dimensions() const { return searched_.size(); }
   [[nodiscard]] Parameter::Index parameter(std::size_t dimension) const { return searched_[dimension]; }
   /// Spacing of the grid, 1 / (values - 1).
-  [[nodiscard]] double spacing(std::size_t dimension) const { return 1.0 / static_cast<double>(lists_[searched_[dimension]].size() - 1); }
+  [[nodiscard]] double spacing(std::size_t dimension) const {
+    return 1.0 / static_cast<double>(lists_[searched_[dimension]].size() - 1);
+  }
 
   /// All combinations of the lists.
   [[nodiscard]] std::vector<ParameterSet> grid() const;
@@ -58,7 +60,8 @@ class SearchBox {
 /// Weighted least-squares quadratics, one per observable, over places of a box.
 class ResponseSurface {
  public:
-  /// Near `center`, where weights fall off over `range`. With fewer points than coefficients the smallest coefficients are taken.
+  /// Near `center`, where weights fall off over `range`. With fewer points than coefficients the smallest coefficients
+  /// are taken.
   ResponseSurface(const SearchBox& box, std::span<const Measured> points, std::span<const double> center, double range);
 
   [[nodiscard]] Observation at(std::span<const double> place) const;
@@ -75,11 +78,14 @@ struct Optimum {
   ParameterSet set{};
   Observation expected{};  ///< of the surface there
   Observation scatter{};
-  std::array<Observation, Parameter::count> per_doubling{};  ///< change of the observables when a parameter doubles; 0: not searched
+  std::array<Observation, Parameter::count> per_doubling{};  ///< change of the observables when a parameter doubles; 0:
+                                                             ///< not searched
 };
-[[nodiscard]] Optimum find_optimum(const SearchBox& box, std::span<const Measured> points, const CalibrateCase& targets, int round);
+[[nodiscard]] Optimum find_optimum(const SearchBox& box, std::span<const Measured> points, const CalibrateCase& targets,
+                                   int round);
 
-/// What the next round measures: the optimum and one step to either side along each dimension, the step halved each round.
+/// What the next round measures: the optimum and one step to either side along each dimension, the step halved each
+/// round.
 [[nodiscard]] std::vector<ParameterSet> around(const SearchBox& box, const ParameterSet& center, int round);
 
 /// The soil with another parameter set.

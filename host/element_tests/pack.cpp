@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "host/process/exit_code.hpp"
 #include "host/packing/packings.hpp"
+#include "host/process/exit_code.hpp"
 
 namespace voussoir::host {
 

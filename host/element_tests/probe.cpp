@@ -9,12 +9,12 @@
 #include <stdexcept>
 
 #include "host/case/engine.hpp"
-#include "host/process/exit_code.hpp"
-#include "host/packing/packings.hpp"
+#include "host/element_tests/strain_path.hpp"
 #include "host/material/answers.hpp"
 #include "host/material/rve_pool.hpp"
+#include "host/packing/packings.hpp"
 #include "host/packing/stored_packing.hpp"
-#include "host/element_tests/strain_path.hpp"
+#include "host/process/exit_code.hpp"
 #include "io/atomic_file.hpp"
 
 namespace voussoir::host {
@@ -54,7 +54,8 @@ std::vector<double> scales(int replicas) {
 /// What the run's tables hold so far.
 struct Tables {
   std::string path =
-      "seed,replica,increment,evaluations,strain_xx,strain_yy,strain_xy,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,void_ratio,"
+      "seed,replica,increment,evaluations,strain_xx,strain_yy,strain_xy,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,void_"
+      "ratio,"
       "steps,unbalanced_ratio,inertial_number,status\n";
   std::string probe =
       "seed,replica,probe,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,change_xx_Pa,change_yy_Pa,change_xy_Pa,"
@@ -66,13 +67,14 @@ struct Tables {
 };
 
 std::string end_of_row(const kernels::RveReport& report) {
-  return fmt::format("{},{:.6g},{:.6g},{}\n", report.steps, report.unbalanced, report.inertial_number, kernels::name_of(report.status));
+  return fmt::format("{},{:.6g},{:.6g},{}\n", report.steps, report.unbalanced, report.inertial_number,
+                     kernels::name_of(report.status));
 }
 
 std::string cells_of(const kernels::RveReport& report) {
   const fem::Tangent d = whole_tangent_of(report);
-  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},", d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2),
-                     d(2, 2), d(1, 0), d(2, 0), d(2, 1), kernels::name_of(report.tangent_kind));
+  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{},", d(0, 0), d(0, 1), d(0, 2),
+                     d(1, 1), d(1, 2), d(2, 2), d(1, 0), d(2, 0), d(2, 1), kernels::name_of(report.tangent_kind));
 }
 
 void print_probe(const Probe& probe, const fem::Stress& change, double strain) {
@@ -83,9 +85,10 @@ void print_probe(const Probe& probe, const fem::Stress& change, double strain) {
 /// By the answer's own name: where what was asked for was not found, it is another one.
 void print_tangent(const kernels::RveReport& report) {
   const fem::Tangent d = whole_tangent_of(report) * 1e-6;
-  std::printf("tangent (%s) [MPa]: xxxx %.4f xxyy %.4f xxxy %.4f yyyy %.4f yyxy %.4f xyxy %.4f", kernels::name_of(report.tangent_kind), d(0, 0),
-              d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2));
-  if (report.tangent_kind == kernels::TangentKind::loading) std::printf(" yyxx %.4f xyxx %.4f xyyy %.4f", d(1, 0), d(2, 0), d(2, 1));
+  std::printf("tangent (%s) [MPa]: xxxx %.4f xxyy %.4f xxxy %.4f yyyy %.4f yyxy %.4f xyxy %.4f",
+              kernels::name_of(report.tangent_kind), d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2));
+  if (report.tangent_kind == kernels::TangentKind::loading)
+    std::printf(" yyxx %.4f xyxx %.4f xyyy %.4f", d(1, 0), d(2, 0), d(2, 1));
   std::printf("%s\n", report.tangent_capped ? "; not found within its iterations" : "");
 }
 
@@ -94,14 +97,16 @@ std::string take_path(const Case& input, PackedRve& rve, Tables& tables) {
   const std::vector<double> scale = scales(input.probe.replicas);
   RvePool pool(rve, {input.engine}, scale.size());
   const PathEnd end = walk_path(pool, input.probe.path, scale, [&](const PathPoint& at) {
-    tables.path += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, at.rve, at.increment,
-                               at.evaluations, at.strain.xx, at.strain.yy, 0.5 * (at.strain.xy + at.strain.yx), at.stress(0),
-                               at.stress(1), at.stress(2), at.void_ratio) +
+    tables.path += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, at.rve,
+                               at.increment, at.evaluations, at.strain.xx, at.strain.yy,
+                               0.5 * (at.strain.xy + at.strain.yx), at.stress(0), at.stress(1), at.stress(2),
+                               at.void_ratio) +
                    end_of_row(*at.report);
   });
   if (end.missed > 0) {
-    const std::string said = fmt::format("seed {}: sigma_xx is missed by up to {:.2g} % after {} of the path's increments; take smaller ones",
-                                         rve.seed, end.largest_miss * 100, end.missed);
+    const std::string said = fmt::format(
+        "seed {}: sigma_xx is missed by up to {:.2g} % after {} of the path's increments; take smaller ones", rve.seed,
+        end.largest_miss * 100, end.missed);
     std::fprintf(stderr, "probe: %s\n", said.c_str());
   }
   if (!end.usable) return fmt::format("seed {}, {}", rve.seed, end.message);
@@ -128,13 +133,15 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
   const kernels::RveReport start = pool.committed_reports().front();
   const fem::BatchReport report = pool.evaluate(gradients, after, unused);
   pool.commit();
-  if (show) std::printf("%-9s %12s %12s %12s   change of stress over strain [MPa], tension positive\n", "probe", "xx", "yy", "xy");
+  if (show)
+    std::printf("%-9s %12s %12s %12s   change of stress over strain [MPa], tension positive\n", "probe", "xx", "yy",
+                "xy");
   for (std::size_t k = 0; k < n; ++k) {
     const Probe& probe = all[k % all.size()];
     const fem::Stress change = after[k] - before[k];
     if (show && k < all.size()) print_probe(probe, change, input.probe.strain);
-    tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, k / all.size(), probe.name, after[k](0),
-                                after[k](1), after[k](2), change(0), change(1), change(2)) +
+    tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, k / all.size(),
+                                probe.name, after[k](0), after[k](1), after[k](2), change(0), change(1), change(2)) +
                     cells_of(start) + cells_of(pool.committed_reports()[k]) + end_of_row(pool.committed_reports()[k]);
   }
   if (show) print_tangent(start);
@@ -147,7 +154,8 @@ std::vector<PackedRve> packings_to_probe(const Case& input) {
   at_pressure.packing.pressure = input.probe.pressure;
   if (input.packing.seeds.empty() || !input.packing.file.empty()) return {choose_packing(at_pressure, print)};
   std::vector<PackedRve> rves;
-  for (const std::int64_t seed : input.packing.seeds) rves.push_back(obtain_packings(at_pressure, std::span(&seed, 1), print).front());
+  for (const std::int64_t seed : input.packing.seeds)
+    rves.push_back(obtain_packings(at_pressure, std::span(&seed, 1), print).front());
   return rves;
 }
 
@@ -167,7 +175,8 @@ int run_probe(const Case& input, const RunOptions& options) {
   for (PackedRve& rve : rves) {
     if (!input.probe.path.empty()) {
       if (note_failure(take_path(input, rve, tables))) continue;
-      io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed), stored_packing(rve, "path of " + input.name, input.fingerprint));
+      io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed),
+                       stored_packing(rve, "path of " + input.name, input.fingerprint));
     }
     note_failure(take_probes(input, rve, tables, &rve == &rves.front()));
   }

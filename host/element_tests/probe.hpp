@@ -6,9 +6,9 @@
 
 namespace voussoir::host {
 
-/// Path and probes of every seed (of `packing.seeds`, else of the packing the case chooses). Writes to the run's folder path.csv
-/// and end_SEED.h5, the state at the path's end (where there is a path), and probe.csv; the first packing's probes also to
-/// standard output. Returns an exit code.
+/// Path and probes of every seed (of `packing.seeds`, else of the packing the case chooses). Writes to the run's folder
+/// path.csv and end_SEED.h5, the state at the path's end (where there is a path), and probe.csv; the first packing's
+/// probes also to standard output. Returns an exit code.
 [[nodiscard]] int run_probe(const Case& input, const RunOptions& options);
 
 }  // namespace voussoir::host

@@ -10,8 +10,8 @@ namespace voussoir::host {
 
 namespace {
 
-/// Looks for the gradient's xx at which sigma_xx has its wanted value: secants, whose slope is kept within what contact tangents
-/// (stiff) and yielding packings (soft) make plausible.
+/// Looks for the gradient's xx at which sigma_xx has its wanted value: secants, whose slope is kept within what contact
+/// tangents (stiff) and yielding packings (soft) make plausible.
 class LateralSearch {
  public:
   LateralSearch(double first, double wanted) : x_(first), wanted_(wanted) {}
@@ -55,13 +55,18 @@ struct Walk {
   std::vector<fem::Gradient> gradients;
   std::vector<fem::Stress> stress;
   std::vector<fem::Tangent> tangent;
-  std::vector<kernels::Mat2> f;        ///< since the path's start
-  std::vector<double> wanted;          ///< sigma_xx where it is held [Pa]
-  std::vector<double> lateral;         ///< gradient's xx over its norm in the last increment
+  std::vector<kernels::Mat2> f;  ///< since the path's start
+  std::vector<double> wanted;    ///< sigma_xx where it is held [Pa]
+  std::vector<double> lateral;   ///< gradient's xx over its norm in the last increment
 
   explicit Walk(RvePool& rves)
-      : pool(rves), gradients(rves.size()), stress(rves.size()), tangent(rves.size()), f(rves.size(), kernels::identity2),
-        wanted(rves.size()), lateral(rves.size()) {
+      : pool(rves),
+        gradients(rves.size()),
+        stress(rves.size()),
+        tangent(rves.size()),
+        f(rves.size(), kernels::identity2),
+        wanted(rves.size()),
+        lateral(rves.size()) {
     pool.committed(stress, tangent);
   }
 };
@@ -95,7 +100,8 @@ IncrementEnd evaluate_held(Walk& walk) {
     end.particle_steps += static_cast<double>(end.report.work);
     ++end.evaluations;
     if (!end.report.usable) break;
-    for (std::size_t k = 0; k < searches.size(); ++k) searches[k].see(walk.stress[k](0), walk.tangent[k](0, 0), size[k]);
+    for (std::size_t k = 0; k < searches.size(); ++k)
+      searches[k].see(walk.stress[k](0), walk.tangent[k](0, 0), size[k]);
     if (std::all_of(searches.begin(), searches.end(), [](const LateralSearch& s) { return s.found(); })) break;
   }
   for (std::size_t k = 0; k < searches.size(); ++k) {

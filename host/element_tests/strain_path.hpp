@@ -13,26 +13,26 @@ namespace voussoir::host {
 /// One RVE after one increment of a path.
 struct PathPoint {
   std::size_t rve = 0;
-  int increment = 0;               ///< 1, 2, ... over all segments
-  int evaluations = 0;             ///< of this increment so far, the last one included
-  kernels::Mat2 strain;            ///< log F since the path's start, extension positive [-]
-  fem::Stress stress;              ///< tension positive [Pa]
-  double void_ratio = 0;           ///< [-]
+  int increment = 0;      ///< 1, 2, ... over all segments
+  int evaluations = 0;    ///< of this increment so far, the last one included
+  kernels::Mat2 strain;   ///< log F since the path's start, extension positive [-]
+  fem::Stress stress;     ///< tension positive [Pa]
+  double void_ratio = 0;  ///< [-]
   const kernels::RveReport* report = nullptr;
 };
 
 /// How a path ended.
 struct PathEnd {
   bool usable = true;
-  std::string message;             ///< what failed and when; empty when usable
-  double particle_steps = 0;       ///< of all RVEs
-  int missed = 0;                  ///< increments that end beyond `lateral_tolerance`: `most_evaluations` did not do
-  double largest_miss = 0;         ///< of all RVEs and held increments, |sigma_xx - wanted| over the wanted one [-]
+  std::string message;        ///< what failed and when; empty when usable
+  double particle_steps = 0;  ///< of all RVEs
+  int missed = 0;             ///< increments that end beyond `lateral_tolerance`: `most_evaluations` did not do
+  double largest_miss = 0;    ///< of all RVEs and held increments, |sigma_xx - wanted| over the wanted one [-]
 };
 
-/// Walks all RVEs of `pool` along the segments, each increment by `evaluate` and `commit`. Where a segment holds sigma_xx, the
-/// gradient's xx is found for it (at most `most_evaluations` evaluations an increment, to `lateral_tolerance`); what is
-/// missed of it is counted, and asked for again by the next increment.
+/// Walks all RVEs of `pool` along the segments, each increment by `evaluate` and `commit`. Where a segment holds
+/// sigma_xx, the gradient's xx is found for it (at most `most_evaluations` evaluations an increment, to
+/// `lateral_tolerance`); what is missed of it is counted, and asked for again by the next increment.
 /// @param scale by RVE: factor on its gradients; replicas differ by a little there
 /// @param note called for each RVE after each increment
 [[nodiscard]] PathEnd walk_path(RvePool& pool, std::span<const PathSegment> segments, std::span<const double> scale,

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 
-#include "host/estimate/work.hpp"
 #include "host/case/result_fields.hpp"
+#include "host/estimate/work.hpp"
 #include "host/packing/packings.hpp"
 #include "io/case_file.hpp"
 
@@ -37,13 +37,14 @@ constexpr std::array<FieldSize, 16> fields{{{"displacement", 2, true},
                                             {"inertial_number", 1, false, true},
                                             {"steps", 1, false, true}}};
 
-// Measured: 984 RVEs of 300 grains took 179.5 MB, checkpoints of 18.94 MB and result files of 278 kB; 3344 RVEs of 700 grains
-// 915.8 MB, 148.1 MB and, with five whole RVEs, 1.33 MB.
-constexpr double process_bytes = 73e6;     ///< of the program with its libraries
-constexpr double memory_a_grain = 360.0;   ///< committed and trial state with room for four contacts a grain, a checkpoint's copies
+// Measured: 984 RVEs of 300 grains took 179.5 MB, checkpoints of 18.94 MB and result files of 278 kB; 3344 RVEs of 700
+// grains 915.8 MB, 148.1 MB and, with five whole RVEs, 1.33 MB.
+constexpr double process_bytes = 73e6;    ///< of the program with its libraries
+constexpr double memory_a_grain = 360.0;  ///< committed and trial state with room for four contacts a grain, a
+                                          ///< checkpoint's copies
 constexpr double contacts_a_grain = 1.93;
-constexpr double nodes_a_point = 0.79;     ///< of the study's meshes: 3.16 nodes an element
-constexpr double file_overhead = 30e3;     ///< attributes and groups of a result file
+constexpr double nodes_a_point = 0.79;  ///< of the study's meshes: 3.16 nodes an element
+constexpr double file_overhead = 30e3;  ///< attributes and groups of a result file
 
 int microstructure_components(const kernels::MicrostructureRequest& request) {
   return request.any() ? static_cast<int>(microstructure_fields(request).size()) : 0;
@@ -60,7 +61,8 @@ double result_file_bytes(const Case& input, double points, double nodes) {
     if (!is_wanted(input.output, field.name) || (field.of_grains && input.material != MaterialKind::grains)) continue;
     bytes += 8.0 * field.components * (field.nodal ? 2.5 * nodes : 1.25 * points);
   }
-  if (input.output.fields.empty()) bytes += 8.0 * 1.25 * points * microstructure_components(input.output.microstructure);
+  if (input.output.fields.empty())
+    bytes += 8.0 * 1.25 * points * microstructure_components(input.output.microstructure);
   const double snapshot = 32.0 + 48.0 * contacts_a_grain;  // bytes a grain
   return bytes + static_cast<double>(input.output.rves.size()) * input.packing.grains * snapshot;
 }
@@ -100,26 +102,30 @@ void check_snapshot_points(const Case& input, const CaseSize& size) {
 std::vector<std::string> describe(const Case& input, const CaseSize& size) {
   std::vector<std::string> lines;
   if (!input.packing.file.empty()) {
-    lines.push_back(fmt::format("packing.file holds {} grains; packing.grains, seeds and density do not count", input.packing.grains));
+    lines.push_back(fmt::format("packing.file holds {} grains; packing.grains, seeds and density do not count",
+                                input.packing.grains));
   } else if (input.material == MaterialKind::grains) {
     lines.push_back(fmt::format("{} packings of {} grains to be made or found", size.packings, input.packing.grains));
   }
   if (size.tests > 0) {
-    lines.push_back(fmt::format("{} tests, about {:.2g} particle-steps, packings apart", size.tests, size.particle_steps));
+    lines.push_back(
+        fmt::format("{} tests, about {:.2g} particle-steps, packings apart", size.tests, size.particle_steps));
   }
   if (size.points > 0) {
-    lines.push_back(fmt::format("{} Gauss points, {} in the column, {} increments planned", size.points, size.column_points,
-                                size.increments));
+    lines.push_back(fmt::format("{} Gauss points, {} in the column, {} increments planned", size.points,
+                                size.column_points, size.increments));
   }
   if (size.grains > 0) {
-    lines.push_back(fmt::format("{:.3g} grains in all, about {:.2g} particle-steps (an estimate, good to a factor of 2)",
-                                size.grains, size.particle_steps));
+    lines.push_back(
+        fmt::format("{:.3g} grains in all, about {:.2g} particle-steps (an estimate, good to a factor of 2)",
+                    size.grains, size.particle_steps));
   }
   if (size.points > 0) {
     const auto files = static_cast<double>(size.increments) / input.output.every;
-    lines.push_back(fmt::format("about {} of memory; result files of {} each, {} in all; checkpoints of {}, two are kept",
-                                bytes_text(size.memory), bytes_text(size.result_file), bytes_text(files * size.result_file),
-                                bytes_text(size.checkpoint)));
+    lines.push_back(
+        fmt::format("about {} of memory; result files of {} each, {} in all; checkpoints of {}, two are kept",
+                    bytes_text(size.memory), bytes_text(size.result_file), bytes_text(files * size.result_file),
+                    bytes_text(size.checkpoint)));
   }
   return lines;
 }

@@ -16,17 +16,17 @@ namespace {
 //   cases/tunnel_quick, I = 3e-4      column 1.7, 132; gravity 1.8, 131; volume loss 4.9, 146
 //   the same, coarser, 1e-4, V_l 5 %  column 1.7, 218; gravity 1.9, 206; volume loss 3.0, 160
 //   cases/column, I = 2e-4            column 1.7, 144
-// With the constants below these runs are estimated at 1.1, 1.4 and 0.95 of what they took, and tunnel_quick with two other
-// packings (packing.seed = 20, 40), which were harder to bring to equilibrium, at 0.76 and 0.67.
-// Since increments are relaxed (fem/README.md) the later evaluations have few steps: the constants count whole ones.
-// tunnel_quick to V_l = 20 %, 80 increments: evaluations 2.0 (gravity), 3.5 to 10 %, 4.8 beyond.
+// With the constants below these runs are estimated at 1.1, 1.4 and 0.95 of what they took, and tunnel_quick with two
+// other packings (packing.seed = 20, 40), which were harder to bring to equilibrium, at 0.76 and 0.67. Since increments
+// are relaxed (fem/README.md) the later evaluations have few steps: the constants count whole ones. tunnel_quick to V_l
+// = 20 %, 80 increments: evaluations 2.0 (gravity), 3.5 to 10 %, 4.8 beyond.
 constexpr double gravity_evaluations = 1.2;
 constexpr double loss_evaluations = 4.5;
 constexpr double gravity_strain = 0.014;  ///< mean strain of an RVE over the load factor's step
 constexpr double loss_strain = 0.2;       ///< mean strain of an RVE over the volume loss of an increment
 constexpr double hold_steps = 30;
 constexpr double specimen_evaluations = 5.0;  ///< cases/biaxial_bvp: 7, most of them of few steps
-constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the top's, without change of volume
+constexpr double specimen_strain = 1.4;       ///< norm of an RVE's strain over the top's, without change of volume
 
 /// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)) with the scaled mass m of
 /// kernels/README.md (one stable step for all sizes), six neighbours.
@@ -95,15 +95,19 @@ CaseSize search_size(const Case& input) {
   const std::size_t seeds = seeds_of(input.packing).size();
   CaseSize size;
   size.tests = ((grid.size() + stars) * seeds + 2 * search.confirm_seeds.size()) * input.biaxial.pressures.size();
-  const double thickness_of_grid =
-      std::accumulate(grid.begin(), grid.end(), 0.0, [](double sum, const ParameterSet& set) { return sum + set[Parameter::thickness]; }) /
-      static_cast<double>(grid.size());
+  const double thickness_of_grid = std::accumulate(grid.begin(), grid.end(), 0.0,
+                                                   [](double sum, const ParameterSet& set) {
+                                                     return sum + set[Parameter::thickness];
+                                                   }) /
+                                   static_cast<double>(grid.size());
   SoilCase soil = input.soil;
   soil.thickness = thickness_of_grid;
   for (const double pressure : input.biaxial.pressures) {
     const double steps = inertial_steps(soil, input.biaxial.strain, pressure, 1.0);
-    size.particle_steps += steps / input.biaxial.inertial_number * input.packing.grains * static_cast<double>((grid.size() + stars) * seeds);
-    size.particle_steps += steps / search.confirm_inertial_number * search.confirm_grains * 2.0 * static_cast<double>(search.confirm_seeds.size());
+    size.particle_steps += steps / input.biaxial.inertial_number * input.packing.grains *
+                           static_cast<double>((grid.size() + stars) * seeds);
+    size.particle_steps += steps / search.confirm_inertial_number * search.confirm_grains * 2.0 *
+                           static_cast<double>(search.confirm_seeds.size());
   }
   return size;
 }

@@ -9,14 +9,16 @@ namespace voussoir::host {
 
 namespace {
 
-/// Share of unbalanced ratio x pressure that shows as an error of the stress: the moment sum of random residual forces at
-/// positions uniform in the cell, 1/sqrt(12). Of grains at rest: what one that ended at the step limit still has to go is not in its
-/// unbalanced ratio (docs/trade.md), so those are counted.
+/// Share of unbalanced ratio x pressure that shows as an error of the stress: the moment sum of random residual forces
+/// at positions uniform in the cell, 1/sqrt(12). Of grains at rest: what one that ended at the step limit still has to
+/// go is not in its unbalanced ratio (docs/trade.md), so those are counted.
 constexpr double noise_share = 0.29;
 
 }  // namespace
 
-fem::Stress stress_of(const kernels::RveReport& r) { return {r.stress[0], r.stress[3], 0.5 * (r.stress[1] + r.stress[2])}; }
+fem::Stress stress_of(const kernels::RveReport& r) {
+  return {r.stress[0], r.stress[3], 0.5 * (r.stress[1] + r.stress[2])};
+}
 
 fem::Tangent tangent_of(const kernels::RveReport& r) {
   const double* d = r.tangent;

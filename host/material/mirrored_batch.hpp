@@ -1,8 +1,8 @@
 #pragma once
-/// Mirror images of one packing. A packing cloned everywhere biases tau_xy everywhere, and where the bias grows with depth,
-/// equilibrium tilts sigma_xx across the whole ground. Every second Gauss point of an element answers as the mirror image
-/// (x to -x) of its RVE, so that the bias cancels within each element. No RVE is changed: gradients go in mirrored, answers
-/// come out mirrored, exactly.
+/// Mirror images of one packing. A packing cloned everywhere biases tau_xy everywhere, and where the bias grows with
+/// depth, equilibrium tilts sigma_xx across the whole ground. Every second Gauss point of an element answers as the
+/// mirror image (x to -x) of its RVE, so that the bias cancels within each element. No RVE is changed: gradients go in
+/// mirrored, answers come out mirrored, exactly.
 
 #include <memory>
 

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "host/case/result_fields.hpp"
-#include "host/ranks/session.hpp"
 #include "host/material/answers.hpp"
+#include "host/ranks/session.hpp"
 #include "kernels/state/committed_contacts.hpp"
 
 namespace voussoir::host {
@@ -18,17 +18,22 @@ namespace {
 /// An evaluation asking for this many times the frozen steps gets more after all: the predictor was far off.
 constexpr int step_regret = 2;
 
-/// Of the static tangents that steer the mesh's iterates: some 32 iterations. Run out, they need no fewer evaluations (fem/README.md).
+/// Of the static tangents that steer the mesh's iterates: some 32 iterations. Run out, they need no fewer evaluations
+/// (fem/README.md).
 constexpr double newton_tangent_tolerance = 0.1;
 
 kernels::TangentKind kernel_tangent(TangentChoice choice, kernels::Backend backend) {
   switch (choice) {
     case TangentChoice::automatic:
       return kernels::takes_teams(backend) ? kernels::TangentKind::contact : kernels::TangentKind::elastic;
-    case TangentChoice::elastic: return kernels::TangentKind::elastic;
-    case TangentChoice::static_: return kernels::TangentKind::static_;
-    case TangentChoice::loading: return kernels::TangentKind::loading;
-    case TangentChoice::contact: break;
+    case TangentChoice::elastic:
+      return kernels::TangentKind::elastic;
+    case TangentChoice::static_:
+      return kernels::TangentKind::static_;
+    case TangentChoice::loading:
+      return kernels::TangentKind::loading;
+    case TangentChoice::contact:
+      break;
   }
   return kernels::TangentKind::contact;
 }
@@ -44,9 +49,12 @@ int round_up(double steps) {
 
 kernels::Backend engine_backend(const EngineCase& engine) {
   switch (engine.backend) {
-    case EngineBackend::lanes: return kernels::Backend::lanes;
-    case EngineBackend::teams: return kernels::Backend::teams;
-    case EngineBackend::automatic: break;
+    case EngineBackend::lanes:
+      return kernels::Backend::lanes;
+    case EngineBackend::teams:
+      return kernels::Backend::teams;
+    case EngineBackend::automatic:
+      break;
   }
   return kernels::Backend::automatic;
 }
@@ -74,9 +82,11 @@ RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
   for (auto& report : committed_reports_) {
     if (kernels::is_failure(report.status)) {
-      throw std::invalid_argument(fmt::format("the packing of seed {} cannot start: {}", rve.seed, kernels::name_of(report.status)));
+      throw std::invalid_argument(
+          fmt::format("the packing of seed {} cannot start: {}", rve.seed, kernels::name_of(report.status)));
     }
-    if (report.status == kernels::RveStatus::step_limit) report.status = kernels::RveStatus::converged;  // no motion was asked
+    if (report.status == kernels::RveStatus::step_limit)
+      report.status = kernels::RveStatus::converged;  // no motion was asked
   }
   deferral_.start(committed_reports_);
 }
@@ -86,8 +96,8 @@ void RvePool::begin_increment() {
   deferral_.begin_increment();
 }
 
-/// Steps that keep the target inertial number at the RVE's committed pressure. A rotation costs none, the path is rigid all the
-/// way.
+/// Steps that keep the target inertial number at the RVE's committed pressure. A rotation costs none, the path is rigid
+/// all the way.
 int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
   const double strain = kernels::symmetric_norm(kernels::log_of(f_rel));
   const double p = std::max(committed_reports_[rve].pressure(), settings_.pressure_floor);
@@ -117,8 +127,8 @@ kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients, co
     running_.push_back(static_cast<int>(k));
   }
   steps_are_fixed_ = true;
-  const kernels::Work work =
-      kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings, trial_reports_, running_);
+  const kernels::Work work = kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings,
+                                              trial_reports_, running_);
   for (const int rve : running_) {
     const auto k = static_cast<std::size_t>(rve);
     deferral_.check(k, gradients[k], trial_reports_[k]);
@@ -191,7 +201,8 @@ std::vector<fem::PointField> RvePool::fields() const {
 
 double RvePool::void_ratio_of(std::size_t rve) const {
   const kernels::RveStates& s = batch_.committed;
-  return void_ratio(s.cell(rve, 0) * s.cell(rve, 3) - s.cell(rve, 1) * s.cell(rve, 2), batch_.packing(rve).solid_area());
+  return void_ratio(s.cell(rve, 0) * s.cell(rve, 3) - s.cell(rve, 1) * s.cell(rve, 2),
+                    batch_.packing(rve).solid_area());
 }
 
 PackedRve RvePool::packed(std::size_t rve) const {

@@ -1,13 +1,14 @@
 #pragma once
-/// One RVE per Gauss point behind fem's one door: chooses step counts, runs the engine, answers with stress and tangent.
+/// One RVE per Gauss point behind fem's one door: chooses step counts, runs the engine, answers with stress and
+/// tangent.
 
 #include <memory>
 
 #include "fem/material_batch.hpp"
 #include "host/material/deferral.hpp"
-#include "host/packing/packings.hpp"
 #include "host/material/rve_pool_state.hpp"
 #include "host/material/snapshot_source.hpp"
+#include "host/packing/packings.hpp"
 
 namespace voussoir::host {
 
@@ -22,8 +23,9 @@ struct PoolOptions {
   EngineCase engine;
   TangentChoice tangent = TangentChoice::contact;
   double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< of a static one [-]
-  double tangent_strain = 1.0e-6;  ///< of a loading tangent [-]
-  kernels::MicrostructureRequest microstructure = {};  ///< what fields() shall hold besides; computed there, at each call
+  double tangent_strain = 1.0e-6;                                          ///< of a loading tangent [-]
+  kernels::MicrostructureRequest microstructure = {};  ///< what fields() shall hold besides; computed there, at each
+                                                       ///< call
 };
 
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
@@ -43,14 +45,15 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
   [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
-  [[nodiscard]] PackedRve packed(std::size_t rve) const;      ///< where its grains last ran, for another pool to start from
+  [[nodiscard]] PackedRve packed(std::size_t rve) const;  ///< where its grains last ran, for another pool to start from
 
   /// For a pool that is one rank's part of a larger one: the engine's own reports, and states one by one.
-  /// `advance` is `evaluate`; what the RVEs answered is in trial_reports(), eq. (4) instead of a dearer tangent where none is wanted.
+  /// `advance` is `evaluate`; what the RVEs answered is in trial_reports(), eq. (4) instead of a dearer tangent where
+  /// none is wanted.
   kernels::Work advance(std::span<const fem::Gradient> gradients, bool with_tangents);
   [[nodiscard]] const std::vector<kernels::RveReport>& trial_reports() const { return trial_reports_; }
   [[nodiscard]] const std::vector<kernels::RveReport>& committed_reports() const { return committed_reports_; }
-  [[nodiscard]] double deferral_error() const { return deferral_.error(); }  ///< of the last evaluation [-]
+  [[nodiscard]] double deferral_error() const { return deferral_.error(); }         ///< of the last evaluation [-]
   [[nodiscard]] double pressure_floor() const { return settings_.pressure_floor; }  ///< of the reports' ratios [Pa]
   [[nodiscard]] std::uint64_t identity() const;
   [[nodiscard]] std::vector<std::byte> state_of(std::size_t rve) const;
@@ -65,8 +68,8 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<kernels::RveReport> trial_reports_;
   std::vector<kernels::RveReport> committed_reports_;
   Deferral deferral_;
-  std::vector<int> running_;               ///< RVEs whose grains the evaluation needs; only where some may be deferred
-  std::vector<fem::Gradient> increment_;   ///< of the last evaluation; likewise
+  std::vector<int> running_;              ///< RVEs whose grains the evaluation needs; only where some may be deferred
+  std::vector<fem::Gradient> increment_;  ///< of the last evaluation; likewise
   bool steps_are_fixed_ = false;
 
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "io/byte_stream.hpp"
 #include "host/material/rve_pool.hpp"
+#include "io/byte_stream.hpp"
 #include "io/hash.hpp"
 
 namespace voussoir::host {
@@ -46,7 +46,8 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
   transfer(&s.cell(rve, 0), 4);
   transfer(&s.contact_count(rve), 1);
   const int count = s.contact_count(rve);
-  if (count < 0 || count > s.contact_capacity()) throw std::runtime_error("the checkpoint's contact count is impossible");
+  if (count < 0 || count > s.contact_capacity())
+    throw std::runtime_error("the checkpoint's contact count is impossible");
   transfer(&s.contact_key(rve, 0), static_cast<std::size_t>(count));
   transfer(&s.contact_history(rve, 0, 0), 2 * static_cast<std::size_t>(count));
   for (int c = 0; c < count; ++c) {

@@ -1,5 +1,6 @@
 #pragma once
-/// A material whose points can be drawn grain by grain. A batch implements it beside fem::MaterialBatch where it has grains.
+/// A material whose points can be drawn grain by grain. A batch implements it beside fem::MaterialBatch where it has
+/// grains.
 
 #include <cstdint>
 #include <span>

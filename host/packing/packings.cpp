@@ -21,7 +21,7 @@ namespace {
 constexpr double oedometric_end = 700.0e3;       ///< [Pa], the deepest ground of the study
 constexpr double oedometric_increment = 1.0e-3;  ///< axial strain [-]
 constexpr int most_increments = 200;
-constexpr double bias_floor = 20.0e3;            ///< below it tau_xy is what consolidation left [Pa]
+constexpr double bias_floor = 20.0e3;  ///< below it tau_xy is what consolidation left [Pa]
 
 /// Largest |tau_xy|/sigma_yy of a curve above the floor.
 double bias_of(const std::vector<OedometricPoint>& curve) {
@@ -34,8 +34,10 @@ double bias_of(const std::vector<OedometricPoint>& curve) {
 
 std::string table_line(const PackedRve& rve) {
   const std::string bias = std::isnan(rve.bias) ? "" : fmt::format("  bias {:.4f}", rve.bias);
-  return fmt::format("seed {:5d}  grains {:5d}  mu_t {:.3f}  void ratio {:.4f}  p {:.1f} Pa  coordination {:.3f}  unbalanced {:.1e}{}",
-                     rve.seed, rve.packing.size(), rve.consolidation_friction, rve.void_ratio, rve.pressure, rve.coordination, rve.unbalanced, bias);
+  return fmt::format(
+      "seed {:5d}  grains {:5d}  mu_t {:.3f}  void ratio {:.4f}  p {:.1f} Pa  coordination {:.3f}  unbalanced {:.1e}{}",
+      rve.seed, rve.packing.size(), rve.consolidation_friction, rve.void_ratio, rve.pressure, rve.coordination,
+      rve.unbalanced, bias);
 }
 
 }  // namespace
@@ -82,7 +84,8 @@ void keep(const Case& input, const PackedRve& rve) {
 }
 
 std::optional<PackedRve> find(const Case& input, std::int64_t seed) {
-  const auto file = io::find_packing(input.packing.folder, io::fingerprint_of(recipe_text(input.soil, input.packing, seed)));
+  const auto file = io::find_packing(input.packing.folder,
+                                     io::fingerprint_of(recipe_text(input.soil, input.packing, seed)));
   auto rve = file ? restored_packing(*file, input.soil) : std::nullopt;
   return rve && rve->packing.size() == input.packing.grains ? rve : std::nullopt;
 }
@@ -105,7 +108,8 @@ void measure_bias(const Case& input, std::vector<PackedRve>& rves) {
 
 }  // namespace
 
-std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note, Bias bias) {
+std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note,
+                                       Bias bias) {
   if (input.packing.file.extension() == ".h5") {
     auto rve = restored_packing(io::load_packing(input.packing.file), input.soil);
     if (!rve) throw std::runtime_error(input.packing.file.string() + " is no packing of this program's grains");
@@ -115,9 +119,11 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
   if (!input.packing.file.empty()) {
     PackedRve rve = settle_foreign_packing(input.soil, input.packing);
     if (rve.status != kernels::RveStatus::converged) {
-      throw std::runtime_error(fmt::format("{} does not come to rest: {}", input.packing.file.string(), kernels::name_of(rve.status)));
+      throw std::runtime_error(
+          fmt::format("{} does not come to rest: {}", input.packing.file.string(), kernels::name_of(rve.status)));
     }
-    if (note) note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe do not count)");
+    if (note)
+      note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe do not count)");
     return {rve};
   }
   std::vector<std::int64_t> missing;
@@ -128,7 +134,8 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
     if (rve.status == kernels::RveStatus::converged) {
       keep(input, rve);
     } else if (note) {
-      note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed, kernels::name_of(rve.status)));
+      note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
+                       kernels::name_of(rve.status)));
     }
   }
   std::vector<PackedRve> out;
@@ -152,8 +159,8 @@ PackedRve choose_packing(const Case& input, const PackingNote& note) {
   };
   PackedRve best = *std::min_element(all.begin(), all.end(), less_biased);
   if (note) {
-    note(fmt::format("packing of seed {} is used: largest |tau_xy|/sigma_yy in oedometric compression {:.4f}", best.seed,
-                     best.bias));
+    note(fmt::format("packing of seed {} is used: largest |tau_xy|/sigma_yy in oedometric compression {:.4f}",
+                     best.seed, best.bias));
   }
   return best;
 }

@@ -18,8 +18,8 @@ namespace {
 constexpr int recipe_version = 2;  ///< raise when a change here or in the engine changes packings
 constexpr double loose_solid_fraction = 0.45;
 constexpr int placement_tries = 20000;
-constexpr int void_ratio_rounds = 8;             ///< of the bisection on the temporary friction
-constexpr double void_ratio_tolerance = 0.01;    ///< of a wanted void ratio [-]
+constexpr int void_ratio_rounds = 8;           ///< of the bisection on the temporary friction
+constexpr double void_ratio_tolerance = 0.01;  ///< of a wanted void ratio [-]
 
 /// Uniform in [0, 1): the standard's distributions differ between libraries, the engine's bits do not.
 class Uniform {
@@ -31,11 +31,12 @@ class Uniform {
   std::mt19937_64 engine_;
 };
 
-/// The grading curve as shares of the number of grains. Between two points of a curve by area the area is spread evenly over
-/// sizes, so the number of grains between d1 and d goes with 1/d1 - 1/d.
+/// The grading curve as shares of the number of grains. Between two points of a curve by area the area is spread evenly
+/// over sizes, so the number of grains between d1 and d goes with 1/d1 - 1/d.
 class GradingByNumber {
  public:
-  explicit GradingByNumber(const SoilCase& soil) : by_area_(!soil.sizes.empty() && soil.passing_by == GradingMeasure::area) {
+  explicit GradingByNumber(const SoilCase& soil)
+      : by_area_(!soil.sizes.empty() && soil.passing_by == GradingMeasure::area) {
     sizes_ = soil.sizes.empty() ? std::vector<double>{soil.size_minimum, soil.size_maximum} : soil.sizes;
     const std::vector<double> passing = soil.sizes.empty() ? std::vector<double>{0.0, 1.0} : soil.passing;
     below_.assign(1, 0.0);
@@ -92,8 +93,8 @@ void place_loose(PackedRve& rve, Uniform& uniform) {
   }
 }
 
-/// Largest strain per step so that the inertial number stays at 1e-3 once the pressure has been reached; the limits keep
-/// packings of 100 Pa from taking forever and those of 1 MPa from closing on their overlaps.
+/// Largest strain per step so that the inertial number stays at 1e-3 once the pressure has been reached; the limits
+/// keep packings of 100 Pa from taking forever and those of 1 MPa from closing on their overlaps.
 double consolidation_rate(const kernels::Packing& packing, double pressure) {
   return std::clamp(1e-3 / packing.inertial_time(pressure), 2e-6, 2e-5);
 }
@@ -116,7 +117,8 @@ std::vector<kernels::RveReport> consolidate(kernels::RveBatch& batch, double pre
 }
 
 /// States and measures of a consolidated batch.
-void take_results(std::span<PackedRve> rves, const kernels::RveBatch& batch, std::span<const kernels::RveReport> reports) {
+void take_results(std::span<PackedRve> rves, const kernels::RveBatch& batch,
+                  std::span<const kernels::RveReport> reports) {
   for (std::size_t k = 0; k < rves.size(); ++k) {
     PackedRve& rve = rves[k];
     load_rve(batch.committed, k, rve);
@@ -142,7 +144,8 @@ std::vector<PackedRve> settle(std::span<const PackedRve> loose, const PackingCas
   std::vector<PackedRve> rves(loose.begin(), loose.end());
   kernels::RveBatch batch = batch_of(rves);
   for (std::size_t k = 0; k < rves.size(); ++k) {
-    for (kernels::GrainMaterial& material : batch.packings[k].materials) material.friction = rves[k].consolidation_friction;
+    for (kernels::GrainMaterial& material : batch.packings[k].materials)
+      material.friction = rves[k].consolidation_friction;
   }
   consolidate(batch, recipe.pressure, 1.0);
   for (std::size_t k = 0; k < rves.size(); ++k) batch.packings[k].materials = rves[k].packing.materials;
@@ -151,13 +154,14 @@ std::vector<PackedRve> settle(std::span<const PackedRve> loose, const PackingCas
   return rves;
 }
 
-/// Each packing with the temporary friction that gives it the wanted void ratio, by bisection: more friction, looser packing.
-/// The nearest packing seen is taken; one that misses by more than `void_ratio_tolerance` ends as step_limit.
+/// Each packing with the temporary friction that gives it the wanted void ratio, by bisection: more friction, looser
+/// packing. The nearest packing seen is taken; one that misses by more than `void_ratio_tolerance` ends as step_limit.
 std::vector<PackedRve> find_void_ratio(std::vector<PackedRve> loose, const PackingCase& recipe) {
   std::vector<double> low(loose.size(), 0.0), high(loose.size(), 1.0);
   std::vector<PackedRve> best;
   for (int round = 0; round < void_ratio_rounds; ++round) {
-    for (std::size_t k = 0; k < loose.size(); ++k) loose[k].consolidation_friction = round == 0 ? 0.25 : 0.5 * (low[k] + high[k]);
+    for (std::size_t k = 0; k < loose.size(); ++k)
+      loose[k].consolidation_friction = round == 0 ? 0.25 : 0.5 * (low[k] + high[k]);
     const std::vector<PackedRve> tried = settle(loose, recipe);
     if (best.empty()) best = tried;
     for (std::size_t k = 0; k < loose.size(); ++k) {
@@ -167,7 +171,8 @@ std::vector<PackedRve> find_void_ratio(std::vector<PackedRve> loose, const Packi
     }
   }
   for (PackedRve& rve : best) {
-    if (std::abs(rve.void_ratio - recipe.void_ratio) > void_ratio_tolerance) rve.status = kernels::RveStatus::step_limit;
+    if (std::abs(rve.void_ratio - recipe.void_ratio) > void_ratio_tolerance)
+      rve.status = kernels::RveStatus::step_limit;
   }
   return best;
 }
@@ -219,7 +224,8 @@ std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t 
   return radii;
 }
 
-std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe, std::span<const std::int64_t> seeds) {
+std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe,
+                                     std::span<const std::int64_t> seeds) {
   std::vector<PackedRve> loose(seeds.size());
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     loose[k] = loose_packing(soil, recipe, seeds[k]);
@@ -255,8 +261,8 @@ std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::in
                                  recipe.consolidation_friction, recipe.pressure, seed);
   if (recipe.void_ratio > 0) text += fmt::format(" e {}", recipe.void_ratio);
   for (const kernels::GrainMaterial& m : grain_materials(soil)) {
-    text += fmt::format(" E {} kt/kn {} mu {} beta {} eta {}", m.modulus, m.stiffness_ratio, m.friction, m.rolling_stiffness,
-                        m.rolling_limit);
+    text += fmt::format(" E {} kt/kn {} mu {} beta {} eta {}", m.modulus, m.stiffness_ratio, m.friction,
+                        m.rolling_stiffness, m.rolling_limit);
   }
   for (const GrainClassCase& grains : soil.classes) text += fmt::format(" to {}", grains.size_to);
   for (std::size_t k = 0; k < soil.sizes.size(); ++k) text += fmt::format(" {}:{}", soil.sizes[k], soil.passing[k]);

@@ -1,6 +1,6 @@
 #pragma once
-/// Making one packing from a recipe (method.md §3): loose random discs, isotropic consolidation with the temporary friction,
-/// then the working friction at the same pressure. Same recipe and seed: same packing, bit for bit.
+/// Making one packing from a recipe (method.md §3): loose random discs, isotropic consolidation with the temporary
+/// friction, then the working friction at the same pressure. Same recipe and seed: same packing, bit for bit.
 
 #include <cstdint>
 #include <limits>
@@ -22,12 +22,12 @@ struct PackedRve {
   std::vector<std::uint32_t> contact_key;
   std::vector<double> contact_history;  ///< (contact, 2): tangential force [N], rolling moment [N m]
   std::int64_t seed = 0;
-  double consolidation_friction = 0;  ///< temporary friction coefficient that made it [-]
-  double void_ratio = 0;    ///< area of voids / area of grains [-]
-  double pressure = 0;      ///< [Pa]
-  double coordination = 0;  ///< 2 contacts / grains [-]
-  double unbalanced = 0;    ///< [-]
-  double bias = std::numeric_limits<double>::quiet_NaN();  ///< see packing.hpp [-]; NaN: not measured
+  double consolidation_friction = 0;                          ///< temporary friction coefficient that made it [-]
+  double void_ratio = 0;                                      ///< area of voids / area of grains [-]
+  double pressure = 0;                                        ///< [Pa]
+  double coordination = 0;                                    ///< 2 contacts / grains [-]
+  double unbalanced = 0;                                      ///< [-]
+  double bias = std::numeric_limits<double>::quiet_NaN();     ///< see packing.hpp [-]; NaN: not measured
   kernels::RveStatus status = kernels::RveStatus::converged;  ///< of the consolidation
 };
 
@@ -35,20 +35,21 @@ struct PackedRve {
 [[nodiscard]] std::vector<kernels::GrainMaterial> grain_materials(const SoilCase& soil);
 [[nodiscard]] std::vector<std::uint8_t> classes_of(const SoilCase& soil, std::span<const double> radii);
 
-/// Radii [m] of `grains` discs, descending, from the soil's grading curve (linear in size between its points), stratified: a small
-/// packing has the same grading as a large one.
+/// Radii [m] of `grains` discs, descending, from the soil's grading curve (linear in size between its points),
+/// stratified: a small packing has the same grading as a large one.
 [[nodiscard]] std::vector<double> sample_radii(const SoilCase& soil, int grains, std::int64_t seed);
 
 /// What a packing of these radii [m] is made of.
 [[nodiscard]] kernels::Packing packing_of(const SoilCase& soil, std::vector<double> radii, double thickness);
 
-/// The packings of several seeds, side by side in one batch; each is the same whatever other seeds it is made with. One that
-/// does not come to rest says so in its status.
+/// The packings of several seeds, side by side in one batch; each is the same whatever other seeds it is made with. One
+/// that does not come to rest says so in its status.
 [[nodiscard]] std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe,
                                                    std::span<const std::int64_t> seeds);
 
-/// The packing of another code (`recipe.file`, see io::load_packing_csv) with this soil's grains: contacts are rebuilt from the
-/// overlaps, without history, then it comes to rest at `recipe.pressure`. Throws std::runtime_error on an unusable file.
+/// The packing of another code (`recipe.file`, see io::load_packing_csv) with this soil's grains: contacts are rebuilt
+/// from the overlaps, without history, then it comes to rest at `recipe.pressure`. Throws std::runtime_error on an
+/// unusable file.
 [[nodiscard]] PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe);
 
 /// A batch of one RVE per packing, each in its packing's state.

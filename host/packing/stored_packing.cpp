@@ -23,8 +23,13 @@ io::Packing stored_packing(const PackedRve& rve, const std::string& recipe, cons
   }
   file.history_names = {"tangential_force", "rolling_moment"};
   file.history = rve.contact_history;
-  file.numbers = {{"void_ratio", rve.void_ratio},     {"pressure", rve.pressure}, {"coordination", rve.coordination},
-                  {"unbalanced_ratio", rve.unbalanced}, {"consolidation_friction", rve.consolidation_friction}, {"bias", rve.bias},         {"seed", static_cast<double>(rve.seed)}};
+  file.numbers = {{"void_ratio", rve.void_ratio},
+                  {"pressure", rve.pressure},
+                  {"coordination", rve.coordination},
+                  {"unbalanced_ratio", rve.unbalanced},
+                  {"consolidation_friction", rve.consolidation_friction},
+                  {"bias", rve.bias},
+                  {"seed", static_cast<double>(rve.seed)}};
   file.labels = {{"recipe", recipe}, {"recipe_fingerprint", fingerprint}};
   return file;
 }
@@ -51,9 +56,11 @@ std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCas
   rve.contact_history = file.history;
   for (std::size_t c = 0; c < file.contacts(); ++c) {
     if (file.contact_i[c] >= file.contact_j[c]) return {};
-    rve.contact_key.push_back(kernels::pair_key(static_cast<int>(file.contact_i[c]), static_cast<int>(file.contact_j[c])));
+    rve.contact_key.push_back(
+        kernels::pair_key(static_cast<int>(file.contact_i[c]), static_cast<int>(file.contact_j[c])));
   }
-  const bool ascending = std::adjacent_find(rve.contact_key.begin(), rve.contact_key.end(), std::greater_equal<>()) == rve.contact_key.end();
+  const bool ascending = std::adjacent_find(rve.contact_key.begin(), rve.contact_key.end(), std::greater_equal<>()) ==
+                         rve.contact_key.end();
   const bool finite = std::all_of(file.history.begin(), file.history.end(), [](double h) { return std::isfinite(h); });
   rve.void_ratio = number("void_ratio");
   rve.pressure = number("pressure");
@@ -62,8 +69,8 @@ std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCas
   rve.bias = number("bias");
   rve.consolidation_friction = number("consolidation_friction");
   const double seed = number("seed");
-  if (!ascending || !finite || file.history_names != histories ||
-      !(rve.cell.det() > 0) || !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {
+  if (!ascending || !finite || file.history_names != histories || !(rve.cell.det() > 0) ||
+      !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {
     return {};
   }
   rve.seed = static_cast<std::int64_t>(seed);

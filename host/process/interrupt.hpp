@@ -1,5 +1,6 @@
 #pragma once
-/// A request to stop, from Ctrl-C (SIGINT), SIGTERM or SIGUSR1: the run ends after the current increment, with a checkpoint.
+/// A request to stop, from Ctrl-C (SIGINT), SIGTERM or SIGUSR1: the run ends after the current increment, with a
+/// checkpoint.
 
 namespace voussoir::host {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "host/process/build_info.hpp"
-#include "host/program/commands.hpp"
 #include "host/process/exit_code.hpp"
+#include "host/program/commands.hpp"
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
 
@@ -36,7 +36,8 @@ void add_overrides(CLI::App& command, Arguments& arguments) {
 /// The commands with their options; `code` receives the exit code of the one that was obeyed.
 void describe(CLI::App& app, Arguments& a, const std::string& command_text, int& code) {
   app.require_subcommand(1);
-  app.set_version_flag("--version", std::string("voussoir ") + build_version + " (" + build_revision + "), " + rank_library());
+  app.set_version_flag("--version",
+                       std::string("voussoir ") + build_version + " (" + build_revision + "), " + rank_library());
 
   CLI::App* run = app.add_subcommand("run", "run a case");
   run->add_option("case", a.file, "case file (TOML)")->required();
@@ -45,9 +46,8 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, int&
   run->add_flag("--replace", a.replace, "remove the results of an earlier run in the folder")->excludes("--resume");
   run->add_option("--threads", a.threads, "threads; default all cores")->check(CLI::Range(1, 4096));
   add_overrides(*run, a);
-  run->callback([&] {
-    code = command_run(a.file, a.overrides, {a.output, a.resume, a.replace, command_text, a.threads});
-  });
+  run->callback(
+      [&] { code = command_run(a.file, a.overrides, {a.output, a.resume, a.replace, command_text, a.threads}); });
 
   CLI::App* check = app.add_subcommand("check", "print every value of a case after defaults and --set, and its size");
   check->add_option("case", a.file, "case file (TOML)")->required();
@@ -61,8 +61,8 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, int&
   sweep->add_option("--threads", a.threads, "threads of each run")->check(CLI::Range(1, 4096));
   sweep->add_flag("--resume", a.resume, "skip finished runs, go on with interrupted ones");
   sweep->callback([&] {
-    code = command_sweep(a.file, {a.output, std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads,
-                                  a.resume});
+    code = command_sweep(a.file,
+                         {a.output, std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads, a.resume});
   });
 
   CLI::App* info = app.add_subcommand("info", "where a result comes from, and its increments");

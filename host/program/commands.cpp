@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "host/estimate/work.hpp"
 #include "host/case/engine.hpp"
+#include "host/estimate/work.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
-#include "host/ranks/session.hpp"
 #include "host/program/run_case.hpp"
+#include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
 
@@ -30,8 +30,7 @@ void print_increments(const std::vector<io::IncrementInfo>& increments) {
 
 }  // namespace
 
-int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
-                RunOptions options) {
+int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides, RunOptions options) {
   const Case input = load_case(case_file, overrides);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
   check_folder(options, input);

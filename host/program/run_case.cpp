@@ -6,14 +6,14 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "host/element_tests/biaxial.hpp"
-#include "host/stages/biaxial_bvp.hpp"
-#include "host/element_tests/calibrate_tests.hpp"
-#include "host/estimate/work.hpp"
 #include "host/case/engine.hpp"
-#include "host/process/exit_code.hpp"
-#include "host/packing/packings.hpp"
+#include "host/element_tests/biaxial.hpp"
+#include "host/element_tests/calibrate_tests.hpp"
 #include "host/element_tests/probe.hpp"
+#include "host/estimate/work.hpp"
+#include "host/packing/packings.hpp"
+#include "host/process/exit_code.hpp"
+#include "host/stages/biaxial_bvp.hpp"
 #include "host/stages/tunnel.hpp"
 #include "io/case_file.hpp"
 
@@ -32,7 +32,8 @@ RunStatus run_column_case(const Case& input, const RunOptions& options) {
 int answer(RunStatus status, const RunOptions& options) {
   const std::string folder = options.folder.string();
   switch (status) {
-    case RunStatus::finished: return exit_ok;
+    case RunStatus::finished:
+      return exit_ok;
     case RunStatus::interrupted:
       std::fprintf(stderr, "stopped on request; `--resume` goes on from the last increment in %s\n", folder.c_str());
       return exit_interrupted;
@@ -49,13 +50,20 @@ int run_case(const Case& input, const RunOptions& options) {
   if (!input.output.rves.empty()) check_snapshot_points(input, case_size(input));
   if (options.replace) remove_earlier_run(options);
   switch (input.kind) {
-    case CaseKind::tunnel: return answer(run_tunnel(input, options), options);
-    case CaseKind::column: return answer(run_column_case(input, options), options);
-    case CaseKind::biaxial_bvp: return answer(run_biaxial_bvp(input, options), options);
-    case CaseKind::pack: return run_pack(input, options);
-    case CaseKind::probe: return run_probe(input, options);
-    case CaseKind::biaxial: return run_biaxial(input, options);
-    case CaseKind::calibrate: return run_calibrate(input, options);
+    case CaseKind::tunnel:
+      return answer(run_tunnel(input, options), options);
+    case CaseKind::column:
+      return answer(run_column_case(input, options), options);
+    case CaseKind::biaxial_bvp:
+      return answer(run_biaxial_bvp(input, options), options);
+    case CaseKind::pack:
+      return run_pack(input, options);
+    case CaseKind::probe:
+      return run_probe(input, options);
+    case CaseKind::biaxial:
+      return run_biaxial(input, options);
+    case CaseKind::calibrate:
+      return run_calibrate(input, options);
   }
   return exit_machine;
 }

@@ -1,8 +1,8 @@
 // The command `voussoir sweep`: one process a run, so that a run behaves as it does alone.
-#include <spdlog/fmt/fmt.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,9 +17,9 @@
 #include <thread>
 #include <vector>
 
-#include "host/program/commands.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
+#include "host/program/commands.hpp"
 #include "host/ranks/session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/case_file.hpp"
@@ -86,17 +86,23 @@ pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepO
 
 const char* status_name(int exit_code) {
   switch (exit_code) {
-    case exit_ok: return "finished";
-    case exit_input: return "wrong input";
-    case exit_numerical: return "no equilibrium";
-    case exit_interrupted: return "interrupted";
-    case -1: return "not run";
-    default: return "machine failure";
+    case exit_ok:
+      return "finished";
+    case exit_input:
+      return "wrong input";
+    case exit_numerical:
+      return "no equilibrium";
+    case exit_interrupted:
+      return "interrupted";
+    case -1:
+      return "not run";
+    default:
+      return "machine failure";
   }
 }
 
-/// Waits until one of the processes has ended and notes its exit code. A request to stop is passed on, once: as SIGUSR1, since
-/// a run that a terminal's Ctrl-C has reached already takes a second SIGINT or SIGTERM for insistence.
+/// Waits until one of the processes has ended and notes its exit code. A request to stop is passed on, once: as
+/// SIGUSR1, since a run that a terminal's Ctrl-C has reached already takes a second SIGINT or SIGTERM for insistence.
 void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
   int status = 0;
   pid_t process = 0;

@@ -1,5 +1,6 @@
 #pragma once
-/// Messages between the ranks of a run: the only code that knows MPI. Sizes are free; nothing here fails but by ending all ranks.
+/// Messages between the ranks of a run: the only code that knows MPI. Sizes are free; nothing here fails but by ending
+/// all ranks.
 
 #include <cstddef>
 #include <span>
@@ -19,8 +20,8 @@ void close_channel();
 
 void send_message(int rank, std::span<const std::byte> message);
 
-/// Waits for the next message of a rank: awake for half a millisecond, then asleep between looks, so that a rank without work
-/// takes no core from one that has some.
+/// Waits for the next message of a rank: awake for half a millisecond, then asleep between looks, so that a rank
+/// without work takes no core from one that has some.
 [[nodiscard]] Message receive_message(int rank);
 
 /// Ends all ranks at once with this exit code: for what cannot be answered any more.

@@ -1,13 +1,13 @@
 #pragma once
-/// What the first rank asks and the others answer. A message is a Command and its values; a reply is a `true` and its values, or
-/// a `false` and a sentence.
+/// What the first rank asks and the others answer. A message is a Command and its values; a reply is a `true` and its
+/// values, or a `false` and a sentence.
 
 #include <cstdint>
 
-#include "io/byte_stream.hpp"
+#include "host/material/rve_pool.hpp"
 #include "host/packing/packings.hpp"
 #include "host/ranks/channel.hpp"
-#include "host/material/rve_pool.hpp"
+#include "io/byte_stream.hpp"
 
 namespace voussoir::host {
 
@@ -15,13 +15,13 @@ enum class Command : std::uint8_t {
   start,            ///< build's revision, threads -> host's name, threads
   make,             ///< recipe of the pool -> committed reports
   begin_increment,  ///< ->
-  evaluate,         ///< whether with tangents, gradients -> seconds, particle-steps, error of what was deferred, trial reports
-  commit,           ///< ->
-  fields,           ///< -> number of fields, then each
-  states,           ///< first, number of RVEs -> their records
-  set_states,       ///< first, records -> committed reports of all
-  forget,           ///< the pool is no longer needed -> peak memory
-  quit              ///< no reply
+  evaluate,  ///< whether with tangents, gradients -> seconds, particle-steps, error of what was deferred, trial reports
+  commit,    ///< ->
+  fields,    ///< -> number of fields, then each
+  states,    ///< first, number of RVEs -> their records
+  set_states,  ///< first, records -> committed reports of all
+  forget,      ///< the pool is no longer needed -> peak memory
+  quit         ///< no reply
 };
 
 inline Message message_of(Command command) { return {static_cast<std::byte>(command)}; }
@@ -65,12 +65,13 @@ inline PackedRve read_rve(ByteReader& read) {
   return rve;
 }
 
-/// Both directions. The names are bound one by one so that a new option does not compile before it is sent; a preset has done its
-/// work where the case was read.
+/// Both directions. The names are bound one by one so that a new option does not compile before it is sent; a preset
+/// has done its work where the case was read.
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
   auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure] = options;
-  auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps, defer] = engine;
+  auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps,
+         defer] = engine;
   static_cast<void>(preset);
   transfer(&precision, 1);
   transfer(&backend, 1);

@@ -8,8 +8,8 @@
 #include <functional>
 #include <stdexcept>
 
-#include "host/ranks/messages.hpp"
 #include "host/material/answers.hpp"
+#include "host/ranks/messages.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -18,8 +18,8 @@ constexpr std::size_t records_a_message = 128;  ///< RVEs of 700 grains take 45 
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Sends rank r + 1 the message `message(r + 1)`, does `meanwhile` here and returns the replies. Throws what failed here, else what
-/// failed first elsewhere; every reply is taken first, so that the ranks stay in step.
+/// Sends rank r + 1 the message `message(r + 1)`, does `meanwhile` here and returns the replies. Throws what failed
+/// here, else what failed first elsewhere; every reply is taken first, so that the ranks stay in step.
 std::vector<Message> ask(std::size_t others, const std::function<Message(std::size_t)>& message,
                          const std::function<void()>& meanwhile = {}) {
   for (std::size_t r = 1; r <= others; ++r) send_message(static_cast<int>(r), message(r));
@@ -63,15 +63,23 @@ std::vector<std::vector<std::size_t>> deal_points(std::size_t n, std::span<const
   return points;
 }
 
-RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std::span<const RankInfo> ranks, PackingNote note)
-    : rve_(std::move(rve)), options_(options), note_(std::move(note)), points_(deal_points(n, ranks)), trial_(n), committed_(n) {
-  const auto replies = ask(others(), [&](std::size_t r) { return make_message(r); },
-                           [&] { own_.emplace(rve_, options_, points_[0].size()); });
+RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std::span<const RankInfo> ranks,
+                   PackingNote note)
+    : rve_(std::move(rve)),
+      options_(options),
+      note_(std::move(note)),
+      points_(deal_points(n, ranks)),
+      trial_(n),
+      committed_(n) {
+  const auto replies = ask(
+      others(), [&](std::size_t r) { return make_message(r); },
+      [&] { own_.emplace(rve_, options_, points_[0].size()); });
   place(own_->committed_reports(), points_[0], committed_);
   std::string text = fmt::format("{} ranks:", ranks.size());
   for (std::size_t r = 0; r < ranks.size(); ++r) {
     if (r > 0) place(values_of(replies[r - 1]).list<kernels::RveReport>(), points_[r], committed_);
-    text += fmt::format("{} {} points on {} with {} threads", r > 0 ? "," : "", points_[r].size(), ranks[r].host, ranks[r].threads);
+    text += fmt::format("{} {} points on {} with {} threads", r > 0 ? "," : "", points_[r].size(), ranks[r].host,
+                        ranks[r].threads);
   }
   if (note_) note_(text);
 }
@@ -88,10 +96,11 @@ void RankPool::describe_costs() {
   if (!note_) return;
   const Ledger& l = ledger_;
   if (l.evaluations > 0) {
-    note_(fmt::format("ranks: {} evaluations in {:.3g} s, {:.3g} MB of messages each; the first rank waited {:.1f} % of that "
-                      "time, spreading cost {:.1f} %",
-                      l.evaluations, l.evaluating, l.bytes / static_cast<double>(l.evaluations) * 1e-6,
-                      100.0 * l.waiting / l.evaluating, 100.0 * (l.evaluating - l.slowest) / l.evaluating));
+    note_(fmt::format(
+        "ranks: {} evaluations in {:.3g} s, {:.3g} MB of messages each; the first rank waited {:.1f} % of that "
+        "time, spreading cost {:.1f} %",
+        l.evaluations, l.evaluating, l.bytes / static_cast<double>(l.evaluations) * 1e-6,
+        100.0 * l.waiting / l.evaluating, 100.0 * (l.evaluating - l.slowest) / l.evaluating));
   }
   for (std::size_t r = 1; r <= others(); ++r) {
     note_(fmt::format("rank {}: peak memory {:.0f} MB", r, values_of(replies[r - 1]).value<double>() * 1e-6));
@@ -111,7 +120,8 @@ void RankPool::begin_increment() {
   ask(others(), [](std::size_t) { return message_of(Command::begin_increment); }, [&] { own_->begin_increment(); });
 }
 
-Message RankPool::gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients, bool with_tangents) const {
+Message RankPool::gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients,
+                                   bool with_tangents) const {
   std::vector<double> flat;
   for (const std::size_t p : points_[rank]) flat.insert(flat.end(), gradients[p].data(), gradients[p].data() + 4);
   Message message = message_of(Command::evaluate, with_tangents);
@@ -170,10 +180,12 @@ void RankPool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> 
 
 std::vector<fem::PointField> RankPool::fields() const {
   std::vector<fem::PointField> mine;
-  const auto replies = ask(others(), [](std::size_t) { return message_of(Command::fields); }, [&] { mine = own_->fields(); });
+  const auto replies = ask(
+      others(), [](std::size_t) { return message_of(Command::fields); }, [&] { mine = own_->fields(); });
   std::vector<fem::PointField> all;
   for (const fem::PointField& field : mine) {
-    all.push_back({field.name, field.unit, field.components, std::vector<double>(size() * static_cast<std::size_t>(field.components))});
+    all.push_back({field.name, field.unit, field.components,
+                   std::vector<double>(size() * static_cast<std::size_t>(field.components))});
   }
   const auto spread = [&](std::size_t field, std::size_t rank, const std::vector<double>& values) {
     const auto width = static_cast<std::size_t>(all[field].components);
@@ -202,7 +214,8 @@ std::vector<std::vector<std::byte>> RankPool::records_of(std::size_t rank, std::
     for (std::size_t k = first; k < first + n; ++k) records.push_back(own_->state_of(k));
     return records;
   }
-  send_message(static_cast<int>(rank), message_of(Command::states, static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(n)));
+  send_message(static_cast<int>(rank),
+               message_of(Command::states, static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(n)));
   const Message reply = receive_message(static_cast<int>(rank));
   ByteReader read(reply);
   if (!read.value<bool>()) throw std::runtime_error(read.text());
@@ -237,7 +250,8 @@ void RankPool::set_state(std::span<const std::byte> bytes) {
     const auto message = [&](std::size_t r) {
       Message m = message_of(Command::set_states, static_cast<std::uint64_t>(first));
       ByteWriter write(m);
-      for (std::size_t k = first; k < std::min(first + records_a_message, points_[r].size()); ++k) write.list(records[points_[r][k]]);
+      for (std::size_t k = first; k < std::min(first + records_a_message, points_[r].size()); ++k)
+        write.list(records[points_[r][k]]);
       return m;
     };
     const auto replies = ask(others(), message);

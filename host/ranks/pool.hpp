@@ -1,12 +1,12 @@
 #pragma once
-/// One pool of RVEs over all ranks: the first rank's part of it, and the conversation with the others. Gauss points are dealt
-/// out one by one rather than in blocks, so that the costly ones near the opening spread.
+/// One pool of RVEs over all ranks: the first rank's part of it, and the conversation with the others. Gauss points are
+/// dealt out one by one rather than in blocks, so that the costly ones near the opening spread.
 
 #include <optional>
 
+#include "host/material/rve_pool.hpp"
 #include "host/ranks/channel.hpp"
 #include "host/ranks/session.hpp"
-#include "host/material/rve_pool.hpp"
 
 namespace voussoir::host {
 
@@ -39,16 +39,18 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
   /// What spreading the pool costs, for the log.
   struct Ledger {
     std::size_t evaluations = 0;
-    double bytes = 0;        ///< of the evaluations' messages
-    double evaluating = 0;   ///< [s]
-    double slowest = 0;      ///< sum over the evaluations of the rank that took longest [s]
-    double waiting = 0;      ///< of the first rank, for the others [s]
+    double bytes = 0;       ///< of the evaluations' messages
+    double evaluating = 0;  ///< [s]
+    double slowest = 0;     ///< sum over the evaluations of the rank that took longest [s]
+    double waiting = 0;     ///< of the first rank, for the others [s]
   };
 
   [[nodiscard]] std::size_t others() const { return points_.size() - 1; }
   [[nodiscard]] Message make_message(std::size_t rank) const;
-  [[nodiscard]] Message gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients, bool with_tangents) const;
-  [[nodiscard]] std::vector<std::vector<std::byte>> records_of(std::size_t rank, std::size_t first, std::size_t n) const;
+  [[nodiscard]] Message gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients,
+                                         bool with_tangents) const;
+  [[nodiscard]] std::vector<std::vector<std::byte>> records_of(std::size_t rank, std::size_t first,
+                                                               std::size_t n) const;
   void describe_costs();
 
   PackedRve rve_;

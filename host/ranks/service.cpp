@@ -7,12 +7,12 @@
 #include <optional>
 #include <stdexcept>
 
+#include "host/material/rve_pool.hpp"
 #include "host/process/build_info.hpp"
 #include "host/process/exit_code.hpp"
+#include "host/process/resources.hpp"
 #include "host/ranks/messages.hpp"
 #include "host/ranks/session.hpp"
-#include "host/process/resources.hpp"
-#include "host/material/rve_pool.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -22,16 +22,27 @@ class Service {
   /// Adds the answer to `reply`. Throws what keeps it from answering.
   void obey(Command command, ByteReader& read, ByteWriter& reply) {
     switch (command) {
-      case Command::start: return start(read, reply);
-      case Command::make: return make(read, reply);
-      case Command::begin_increment: return pool().begin_increment();
-      case Command::evaluate: return evaluate(read, reply);
-      case Command::commit: return pool().commit();
-      case Command::fields: return fields(reply);
-      case Command::states: return states(read, reply);
-      case Command::set_states: return set_states(read, reply);
-      case Command::forget: pool_.reset(); return reply.value(peak_memory());
-      case Command::quit: return;
+      case Command::start:
+        return start(read, reply);
+      case Command::make:
+        return make(read, reply);
+      case Command::begin_increment:
+        return pool().begin_increment();
+      case Command::evaluate:
+        return evaluate(read, reply);
+      case Command::commit:
+        return pool().commit();
+      case Command::fields:
+        return fields(reply);
+      case Command::states:
+        return states(read, reply);
+      case Command::set_states:
+        return set_states(read, reply);
+      case Command::forget:
+        pool_.reset();
+        return reply.value(peak_memory());
+      case Command::quit:
+        return;
     }
     throw std::logic_error("a command that this rank does not know");
   }
@@ -45,7 +56,8 @@ class Service {
   void start(ByteReader& read, ByteWriter& reply) {
     const std::string theirs = read.text();
     if (theirs != build_revision) {
-      throw std::runtime_error("has another build of the program (" + std::string(build_revision) + " instead of " + theirs + ")");
+      throw std::runtime_error("has another build of the program (" + std::string(build_revision) + " instead of " +
+                               theirs + ")");
     }
     const int threads = read.value<int>();
     if (!kokkos_) {
@@ -72,7 +84,8 @@ class Service {
     const bool with_tangents = read.value<bool>();
     const auto flat = read.list<double>();
     std::vector<fem::Gradient> gradients(flat.size() / 4);
-    for (std::size_t k = 0; k < gradients.size(); ++k) gradients[k] = Eigen::Map<const fem::Gradient>(flat.data() + 4 * k);
+    for (std::size_t k = 0; k < gradients.size(); ++k)
+      gradients[k] = Eigen::Map<const fem::Gradient>(flat.data() + 4 * k);
     const kernels::Work work = pool().advance(gradients, with_tangents);
     reply.value(std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
     reply.value(work);

@@ -21,7 +21,8 @@ constexpr std::array<std::string_view, 5> further_names{"result.xdmf", "k0.csv",
 /// A run killed in its first moment has left this.
 bool is_left_by_a_start(const std::filesystem::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
-  return entry.path().extension() == ".tmp" || std::find(first_names.begin(), first_names.end(), name) != first_names.end();
+  return entry.path().extension() == ".tmp" ||
+         std::find(first_names.begin(), first_names.end(), name) != first_names.end();
 }
 
 bool is_left_by_a_probe(const std::filesystem::directory_entry& entry) {
@@ -35,7 +36,8 @@ std::string fingerprint_of_results(const RunOptions& options) {
   try {
     return io::read_provenance(options.folder / "run.h5").fingerprint;
   } catch (const std::runtime_error& error) {
-    throw io::InputError("--output", options.folder.string(), std::string("its run.h5 cannot be used: ") + error.what());
+    throw io::InputError("--output", options.folder.string(),
+                         std::string("its run.h5 cannot be used: ") + error.what());
   }
 }
 
@@ -51,7 +53,8 @@ void check_folder(const RunOptions& options, const Case& input) {
     const bool ours = std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_probe);
     if (has_probe && ours && options.replace) return;
     if (has_probe && ours) {
-      throw io::InputError("--output", folder, "holds a probe, which has nothing to resume: add --replace to remove it");
+      throw io::InputError("--output", folder,
+                           "holds a probe, which has nothing to resume: add --replace to remove it");
     }
     if (std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_start)) return;
     throw io::InputError("--output", folder, "holds files that are no results of this program; choose another folder");
@@ -64,13 +67,15 @@ void check_folder(const RunOptions& options, const Case& input) {
                              "): resume needs the same case file and --set values");
   }
   if (!options.replace) {
-    throw io::InputError("--output", folder, "holds results already: add --resume to go on or --replace to remove them");
+    throw io::InputError("--output", folder,
+                         "holds results already: add --resume to go on or --replace to remove them");
   }
 }
 
 void remove_earlier_run(const RunOptions& options) {
   namespace fs = std::filesystem;
-  if (!fs::exists(options.folder / "run.h5") && !fs::exists(options.folder / "probe.csv")) return;  // what a start left is overwritten by the next one
+  if (!fs::exists(options.folder / "run.h5") && !fs::exists(options.folder / "probe.csv"))
+    return;  // what a start left is overwritten by the next one
   for (const std::string_view name : first_names) fs::remove_all(options.folder / name);
   if (fs::exists(options.folder / "probe.csv")) {
     std::vector<fs::path> ends;

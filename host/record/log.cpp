@@ -11,7 +11,8 @@
 
 namespace voussoir::host {
 
-RunLog::RunLog(const std::filesystem::path& file, bool append) : terminal_(isatty(STDOUT_FILENO) != 0 && rank_count() == 1) {
+RunLog::RunLog(const std::filesystem::path& file, bool append)
+    : terminal_(isatty(STDOUT_FILENO) != 0 && rank_count() == 1) {
   try {
     auto sink = std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), !append);
     file_ = std::make_shared<spdlog::logger>("run", std::move(sink));

@@ -1,6 +1,6 @@
 #pragma once
-/// What a run says while it runs: plain lines with their time in DIR/run.log and on the terminal, and one live line at the
-/// foot of a terminal, which is never written to a file.
+/// What a run says while it runs: plain lines with their time in DIR/run.log and on the terminal, and one live line at
+/// the foot of a terminal, which is never written to a file.
 
 #include <filesystem>
 #include <memory>

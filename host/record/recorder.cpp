@@ -73,14 +73,15 @@ void RunRecorder::show_iterate(double load_parameter, const fem::Iterate& iterat
 
 void RunRecorder::report(const io::IncrementInfo& info) {
   stage_current_ = info.stage_index;
-  std::string text =
-      fmt::format("{} {}/{}: at {:.5g}, {} iterations, residual {:.1e}, {:.2g} s", info.stage, info.stage_index,
-                  stage_planned_, info.load_parameter, info.iterations, info.residual, info.wall_s);
+  std::string text = fmt::format("{} {}/{}: at {:.5g}, {} iterations, residual {:.1e}, {:.2g} s", info.stage,
+                                 info.stage_index, stage_planned_, info.load_parameter, info.iterations, info.residual,
+                                 info.wall_s);
   if (info.cuts > 0) text += fmt::format(", cut {} times", info.cuts);
   const auto column = [&](const char* name) { return info.extra.contains(name) ? info.extra.at(name).value : 0.0; };
   if (column("relaxations") > 0) text += fmt::format(", relaxed in {} substeps", column("relaxations"));
   if (column("open_points") > 0) text += fmt::format(", {} points open", column("open_points"));
-  if (column("step_limit_points") > 0) text += fmt::format(", {} points at the step limit", column("step_limit_points"));
+  if (column("step_limit_points") > 0)
+    text += fmt::format(", {} points at the step limit", column("step_limit_points"));
   if (column("deferred_points") > 0) text += fmt::format(", {} points deferred", column("deferred_points"));
   if (column("deferral_error") > 0) text += fmt::format(", deferral was off by {:.1e} p", column("deferral_error"));
   if (column("slowest_steps") > 0) {
@@ -99,8 +100,8 @@ void RunRecorder::write(io::IncrementInfo info, const std::vector<io::Field>& fi
 }
 
 std::string RunRecorder::disk_use() const {
-  return fmt::format("{} result files of {:.3g} MB, checkpoint of {:.3g} MB", files_, file_bytes_ / std::max(files_, 1) * 1e-6,
-                     checkpoint_bytes_ * 1e-6);
+  return fmt::format("{} result files of {:.3g} MB, checkpoint of {:.3g} MB", files_,
+                     file_bytes_ / std::max(files_, 1) * 1e-6, checkpoint_bytes_ * 1e-6);
 }
 
 void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn> columns) {

@@ -1,5 +1,6 @@
 #pragma once
-/// The record of one run in one folder: result files, checkpoints, log and progress. It knows nothing of what is computed.
+/// The record of one run in one folder: result files, checkpoints, log and progress. It knows nothing of what is
+/// computed.
 
 #include <chrono>
 #include <optional>
@@ -18,9 +19,9 @@ namespace voussoir::host {
 
 class RunRecorder {
  public:
-  /// Starts the results in options.folder, or goes on behind the last checkpoint there when options.resume is set and one
-  /// exists. `kind` names the run in its provenance, which stays that of the start when a run goes on. Nothing is written
-  /// to a finished run before it is asked for. Throws std::runtime_error naming the file that cannot be used.
+  /// Starts the results in options.folder, or goes on behind the last checkpoint there when options.resume is set and
+  /// one exists. `kind` names the run in its provenance, which stays that of the start when a run goes on. Nothing is
+  /// written to a finished run before it is asked for. Throws std::runtime_error naming the file that cannot be used.
   RunRecorder(const RunOptions& options, const Case& input, const std::string& kind, io::MeshData mesh, RunLog& log);
 
   [[nodiscard]] bool finished() const { return finished_; }  ///< an earlier run has done everything
@@ -67,11 +68,11 @@ class RunRecorder {
   std::string resumed_stage_;
   int resumed_stage_index_ = 0;
   bool finished_ = false;
-  int sequence_ = 0;      ///< checkpoints so far
-  int result_index_ = 0;  ///< last result file
-  int files_ = 0;               ///< result files written by this process
-  double file_bytes_ = 0;       ///< of all of them
-  double checkpoint_bytes_ = 0; ///< of the last one
+  int sequence_ = 0;             ///< checkpoints so far
+  int result_index_ = 0;         ///< last result file
+  int files_ = 0;                ///< result files written by this process
+  double file_bytes_ = 0;        ///< of all of them
+  double checkpoint_bytes_ = 0;  ///< of the last one
   std::vector<StageTotals> totals_;
   std::string stage_;
   int stage_done_ = 0;     ///< increments of the stage behind the start of this process

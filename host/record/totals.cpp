@@ -32,10 +32,11 @@ StageTotals sum_of(const std::vector<StageTotals>& totals) {
 std::string row(const StageTotals& t) {
   const double named = t.parts.material + t.parts.assembly + t.parts.solve + t.output;
   const double most = t.evaluations.empty() ? 0 : *std::max_element(t.evaluations.begin(), t.evaluations.end());
-  return fmt::format("{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>9.1f}", t.stage,
-                     t.evaluations.size(), t.wall, t.parts.material, t.parts.assembly, t.parts.solve, t.output, t.wall - named,
-                     median(t.evaluations), most, t.cuts, t.particle_steps,
-                     t.parts.material > 0 ? 1e-6 * t.particle_steps / t.parts.material : 0.0);
+  return fmt::format(
+      "{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>9.1f}", t.stage,
+      t.evaluations.size(), t.wall, t.parts.material, t.parts.assembly, t.parts.solve, t.output, t.wall - named,
+      median(t.evaluations), most, t.cuts, t.particle_steps,
+      t.parts.material > 0 ? 1e-6 * t.particle_steps / t.parts.material : 0.0);
 }
 
 }  // namespace
@@ -45,8 +46,13 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
   for (std::size_t k = 0; k < totals.size(); ++k) {
     const StageTotals& t = totals[k];
     names += t.stage + "\n";
-    const std::vector<double> numbers{static_cast<double>(t.cuts), t.particle_steps, t.parts.material, t.parts.assembly,
-                                      t.parts.solve, t.output, t.wall};
+    const std::vector<double> numbers{static_cast<double>(t.cuts),
+                                      t.particle_steps,
+                                      t.parts.material,
+                                      t.parts.assembly,
+                                      t.parts.solve,
+                                      t.output,
+                                      t.wall};
     checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
     checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.unsettled);
@@ -82,28 +88,35 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
 std::string unsettled_line(const StageTotals& stage, std::size_t points) {
   const auto increments = std::count_if(stage.unsettled.begin(), stage.unsettled.end(), [](double n) { return n > 0; });
   if (increments == 0) return {};
-  return fmt::format("{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest. Were "
-                     "their stress off by as much as their pressure, the residual would be off by {:.2g} of its tolerance at the most",
-                     stage.stage, increments, stage.unsettled.size(),
-                     *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points,
-                     *std::max_element(stage.unsettled_share.begin(), stage.unsettled_share.end()));
+  return fmt::format(
+      "{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest. Were "
+      "their stress off by as much as their pressure, the residual would be off by {:.2g} of its tolerance at the most",
+      stage.stage, increments, stage.unsettled.size(),
+      *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points,
+      *std::max_element(stage.unsettled_share.begin(), stage.unsettled_share.end()));
 }
 
 std::string deferral_line(const StageTotals& stage, double bound) {
   if (stage.deferral_error.empty()) return {};
   const double largest = *std::max_element(stage.deferral_error.begin(), stage.deferral_error.end());
-  const auto beyond = std::count_if(stage.deferral_error.begin(), stage.deferral_error.end(), [=](double e) { return e > bound; });
-  return fmt::format("{}: RVEs that answered by their tangent were off by up to {:.1e} of their pressure where their grains have run since; "
-                     "in {} of {} increments one was off by more than engine.defer = {:g}",
-                     stage.stage, largest, beyond, stage.deferral_error.size(), bound);
+  const auto beyond = std::count_if(stage.deferral_error.begin(), stage.deferral_error.end(),
+                                    [=](double e) { return e > bound; });
+  return fmt::format(
+      "{}: RVEs that answered by their tangent were off by up to {:.1e} of their pressure where their grains have run "
+      "since; "
+      "in {} of {} increments one was off by more than engine.defer = {:g}",
+      stage.stage, largest, beyond, stage.deferral_error.size(), bound);
 }
 
 std::vector<std::string> totals_table(const std::vector<StageTotals>& totals) {
   std::vector<std::string> lines;
   if (totals.empty()) return lines;
-  lines.emplace_back("wall time [s] by stage and part; evaluations an increment (median, largest); particle-steps, and 10^6 of them a second of grains");
-  lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}", "stage", "incr.", "wall",
-                              "grains", "assembly", "solve", "output", "other", "eval.", "most", "cuts", "steps", "M/s"));
+  lines.emplace_back(
+      "wall time [s] by stage and part; evaluations an increment (median, largest); particle-steps, and 10^6 of them a "
+      "second of grains");
+  lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}", "stage",
+                              "incr.", "wall", "grains", "assembly", "solve", "output", "other", "eval.", "most",
+                              "cuts", "steps", "M/s"));
   for (const StageTotals& stage : totals) lines.push_back(row(stage));
   if (totals.size() > 1) lines.push_back(row(sum_of(totals)));
   return lines;

@@ -11,11 +11,12 @@ namespace voussoir::host {
 
 struct StageTotals {
   std::string stage;
-  std::vector<double> evaluations;  ///< of each increment, cut tries included
-  std::vector<double> unsettled;    ///< of each increment, points that ended at the step limit: not at rest
-  std::vector<double> unsettled_share;  ///< of each increment: were they off by their pressure, the residual by so much of the tolerance [-]
-  std::vector<double> deferral_error;  ///< of each increment, over pressure; none unless RVEs may be deferred [-]
-  int cuts = 0;                     ///< tries that did not converge
+  std::vector<double> evaluations;      ///< of each increment, cut tries included
+  std::vector<double> unsettled;        ///< of each increment, points that ended at the step limit: not at rest
+  std::vector<double> unsettled_share;  ///< of each increment: were they off by their pressure, the residual by so much
+                                        ///< of the tolerance [-]
+  std::vector<double> deferral_error;   ///< of each increment, over pressure; none unless RVEs may be deferred [-]
+  int cuts = 0;                         ///< tries that did not converge
   double particle_steps = 0;
   fem::PartTimes parts;
   double output = 0;  ///< result files and checkpoints [s]

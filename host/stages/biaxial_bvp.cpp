@@ -37,8 +37,8 @@ void add_specimen_columns(const SpecimenState& specimen, io::IncrementInfo& info
   info.extra["q_over_p"] = {specimen.p != 0 ? specimen.q / specimen.p : 0.0, "-"};
 }
 
-/// Table `gauss_histories` of io/FORMAT.md, gathered from the increments' own files: a resumed run has them all. A run may be
-/// resumed with other `output.fields`: what an increment's file lacks is not a number.
+/// Table `gauss_histories` of io/FORMAT.md, gathered from the increments' own files: a resumed run has them all. A run
+/// may be resumed with other `output.fields`: what an increment's file lacks is not a number.
 std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder) {
   struct Source {
     const char* field;
@@ -64,7 +64,8 @@ std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder
         if (field.name != source.field) continue;
         for (std::size_t k = 0; k < components; ++k) {
           const auto [at, is_new] = column_of.try_emplace(source.columns[k], table.size());
-          if (is_new) table.push_back({source.columns[k], field.unit, std::vector<double>(table[0].values.size(), missing)});
+          if (is_new)
+            table.push_back({source.columns[k], field.unit, std::vector<double>(table[0].values.size(), missing)});
           for (std::size_t p = 0; p < points; ++p) table[at->second].values.push_back(field.values[p * components + k]);
         }
       }
@@ -88,8 +89,8 @@ std::string cost_line(const std::filesystem::path& folder) {
     wall += info.wall_s;
   }
   const auto n = static_cast<double>(all.size());
-  return fmt::format("{} increments: {:.1f} evaluations, {:.3g} particle-steps and {:.3g} s each", all.size(), evaluations / n,
-                     work / n, wall / n);
+  return fmt::format("{} increments: {:.1f} evaluations, {:.3g} particle-steps and {:.3g} s each", all.size(),
+                     evaluations / n, work / n, wall / n);
 }
 
 Stage specimen_stage(const Ground& ground, SpecimenState& specimen) {
@@ -131,8 +132,8 @@ SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increm
   const auto x_before = [&](int node) { return state.coordinates(0, node) - increment.last_part[2 * node]; };
   specimen.axial_stress = specimen.axial_force / std::abs(x_before(top.front()) - x_before(top.back()));
   const double base = mesh.coordinates(1, mesh.node_set("base").front());
-  specimen.axial_strain =
-      -std::log((state.coordinates(1, top.front()) - base) / (mesh.coordinates(1, top.front()) - base));
+  specimen.axial_strain = -std::log((state.coordinates(1, top.front()) - base) /
+                                    (mesh.coordinates(1, top.front()) - base));
   const std::vector<double> now = fem::gauss_points(mesh, state.coordinates).volumes;
   const std::vector<double> first = fem::gauss_points(mesh, mesh.coordinates).volumes;
   double area = 0, first_area = 0;

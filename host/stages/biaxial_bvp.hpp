@@ -1,13 +1,12 @@
 #pragma once
-/// The case kind "biaxial_bvp": a drained biaxial test as a boundary-value problem, with an RVE at every Gauss point of a
-/// rectangle of elements.
+/// The case kind "biaxial_bvp": a drained biaxial test as a boundary-value problem, with an RVE at every Gauss point of
+/// a rectangle of elements.
 ///
-/// Smooth platens: the base is held vertically with its left corner fixed, the top moves down by `strain_step` of the first
-/// height an increment and is free sideways. A constant pressure acts on both sides. Updated Lagrangian: the pressure follows
-/// the deformed sides, integrated on the coordinates at the start of each increment (of each substep of a relaxed one), the same on which the
-/// internal forces are.
-/// No imperfection is put in; what breaks the symmetry is the mirror image at every second point (packing.mirrored) or, without
-/// it, rounding.
+/// Smooth platens: the base is held vertically with its left corner fixed, the top moves down by `strain_step` of the
+/// first height an increment and is free sideways. A constant pressure acts on both sides. Updated Lagrangian: the
+/// pressure follows the deformed sides, integrated on the coordinates at the start of each increment (of each substep
+/// of a relaxed one), the same on which the internal forces are. No imperfection is put in; what breaks the symmetry is
+/// the mirror image at every second point (packing.mirrored) or, without it, rounding.
 
 #include "host/case/case.hpp"
 #include "host/stages/ground.hpp"
@@ -30,6 +29,7 @@ struct SpecimenState {
   double p = 0;                  ///< of the stress averaged over the area, eq. (7) [Pa]
   double q = 0;                  ///< of the same, eq. (8) [Pa]
 };
-[[nodiscard]] SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increment, const fem::MeshState& state);
+[[nodiscard]] SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increment,
+                                           const fem::MeshState& state);
 
 }  // namespace voussoir::host

@@ -22,7 +22,8 @@ struct ColumnRow {
   double deflection = 0;  ///< of the principal axis from the vertical [rad], signed
 };
 
-/// Rows of Gauss points of a column one element wide: the points 0, 1 of an element are its lower row, 2, 3 its upper one.
+/// Rows of Gauss points of a column one element wide: the points 0, 1 of an element are its lower row, 2, 3 its upper
+/// one.
 std::vector<ColumnRow> averaged_rows(const std::vector<fem::Stress>& stress) {
   std::vector<ColumnRow> rows;
   for (std::size_t p = 0; p + 1 < stress.size(); p += 2) {

@@ -26,8 +26,8 @@ void add_stress_fields(std::vector<io::Field>& fields, const std::vector<fem::St
   fields.push_back(gauss_field("stress", "Pa", 3, n, [&](std::size_t p, double* out) {
     for (int k = 0; k < 3; ++k) out[k] = stress[p][k];
   }));
-  fields.push_back(gauss_field("mean_stress", "Pa", 1, n,
-                               [&](std::size_t p, double* out) { *out = mean_stress(stress[p]); }));
+  fields.push_back(
+      gauss_field("mean_stress", "Pa", 1, n, [&](std::size_t p, double* out) { *out = mean_stress(stress[p]); }));
   fields.push_back(gauss_field("deviatoric_stress", "Pa", 1, n,
                                [&](std::size_t p, double* out) { *out = deviatoric_stress(stress[p]); }));
 }

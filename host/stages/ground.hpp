@@ -3,11 +3,11 @@
 
 #include <vector>
 
+#include "fem/invariants.hpp"
 #include "fem/material_batch.hpp"
 #include "fem/mesh.hpp"
 #include "fem/mesh_state.hpp"
 #include "host/case/case.hpp"
-#include "fem/invariants.hpp"
 #include "io/checkpoint.hpp"
 #include "io/result_file.hpp"
 

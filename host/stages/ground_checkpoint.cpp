@@ -47,8 +47,7 @@ std::span<const double> numbers(const Eigen::VectorXd& v) { return {v.data(), st
 void save(const Ground& ground, io::Checkpoint& checkpoint) {
   const fem::MeshState& state = ground.state;
   checkpoint.put_doubles("displacement", numbers(state.displacement));
-  checkpoint.put_doubles("coordinates",
-                         {state.coordinates.data(), static_cast<std::size_t>(state.coordinates.size())});
+  checkpoint.put_doubles("coordinates", {state.coordinates.data(), static_cast<std::size_t>(state.coordinates.size())});
   put_list(checkpoint, "deformation", state.deformation);
   put_list(checkpoint, "initial_tangent", state.initial_tangent);
   put_list(checkpoint, "tangent", state.tangent);

@@ -19,7 +19,8 @@ struct Knot {
 
 /// Means of the samples over bins of equal width in log stress; empty bins give no knot.
 std::vector<Knot> bin(std::vector<K0Sample>& samples, double initial_stress) {
-  std::sort(samples.begin(), samples.end(), [](const K0Sample& a, const K0Sample& b) { return a.vertical < b.vertical; });
+  std::sort(samples.begin(), samples.end(),
+            [](const K0Sample& a, const K0Sample& b) { return a.vertical < b.vertical; });
   const double width = std::log(10.0) / bins_per_decade;
   const double origin = std::log(initial_stress);
   std::vector<Knot> knots;

@@ -20,8 +20,8 @@ class K0Table {
   /// K0 = 1 at every stress.
   K0Table() = default;
 
-  /// Fit to samples in any order: means over bins of equal width in log stress, then the nearest non-increasing sequence
-  /// (pool adjacent violators), with K0 = 1 at the initial stress [Pa] and below.
+  /// Fit to samples in any order: means over bins of equal width in log stress, then the nearest non-increasing
+  /// sequence (pool adjacent violators), with K0 = 1 at the initial stress [Pa] and below.
   [[nodiscard]] static K0Table fit(std::vector<K0Sample> samples, double initial_stress);
 
   /// A table with given knots [Pa], ascending, and their ratios (as a checkpoint stores them).

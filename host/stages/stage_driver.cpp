@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "host/material/snapshot_source.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/resources.hpp"
-#include "host/material/snapshot_source.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -22,8 +22,8 @@ double relative(double residual, const fem::NewtonReport& report, double toleran
   return reference > 0 ? residual / reference : residual;
 }
 
-/// Columns that say how hard the equilibrium was to find: `residual_bound` is what `residual` was held to, the tolerance
-/// and the noise floor of the points' stresses.
+/// Columns that say how hard the equilibrium was to find: `residual_bound` is what `residual` was held to, the
+/// tolerance and the noise floor of the points' stresses.
 void add_report_columns(const Ground& ground, const fem::NewtonReport& report, io::IncrementInfo& info) {
   const double tolerance = ground.input.newton.tolerance;
   info.extra["largest_nodal_ratio"] = {report.largest_nodal_ratio, "-"};
@@ -110,7 +110,8 @@ class StageRun {
     recorder_.stage_totals().wall += info_.wall_s;
   }
 
-  /// How many RVEs answered by their tangent, and the largest error that the increment's grains have shown of such answers.
+  /// How many RVEs answered by their tangent, and the largest error that the increment's grains have shown of such
+  /// answers.
   void add_deferral(const fem::NewtonReport& report) {
     info_.extra["deferred_points"] = {static_cast<double>(report.material.deferred), "-"};
     info_.extra["deferral_error"] = {deferral_error_, "-"};
@@ -151,7 +152,8 @@ class StageRun {
     if (last_target || done_ % ground_.input.output.every == 0) {
       record_ground(ground_, info_, step.increment.reactions, recorder_);
     }
-    if (last_target || stop || done_ % ground_.input.output.checkpoint_every == 0) checkpoint(stage_.last && last_target);
+    if (last_target || stop || done_ % ground_.input.output.checkpoint_every == 0)
+      checkpoint(stage_.last && last_target);
     recorder_.report(info_);
     close_increment();
   }
@@ -217,12 +219,13 @@ RunStatus advance_stage(Ground& ground, const Stage& stage, RunRecorder& recorde
   options.relaxation.max_substeps = ground.input.newton.relax_substeps;
   options.relaxation.max_attempts = ground.input.newton.relax_attempts;
   options.relaxation.near_residual = ground.input.newton.relax_near;
-  const fem::StepReport report =
-      fem::advance_load(solver, ground.state, stage.path, stage.targets, options,
-                        {.on_converged = [&](const fem::ConvergedStep& step) { return run.converged(step); },
-                         .on_failed = [&](const fem::FailedStep& step) { run.failed(step); }});
+  const fem::StepReport report = fem::advance_load(
+      solver, ground.state, stage.path, stage.targets, options,
+      {.on_converged = [&](const fem::ConvergedStep& step) { return run.converged(step); },
+       .on_failed = [&](const fem::FailedStep& step) { run.failed(step); }});
   run.end();
-  recorder.log().line(fmt::format("{}: {}, peak memory {:.0f} MB", stage.name, recorder.disk_use(), peak_memory() * 1e-6));
+  recorder.log().line(
+      fmt::format("{}: {}, peak memory {:.0f} MB", stage.name, recorder.disk_use(), peak_memory() * 1e-6));
   const std::string unsettled = unsettled_line(recorder.stage_totals(), ground.strain.size());
   if (!unsettled.empty()) recorder.log().line(unsettled);
   const std::string deferral = deferral_line(recorder.stage_totals(), ground.input.engine.defer);

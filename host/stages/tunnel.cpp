@@ -37,7 +37,8 @@ RunStatus run_stages(const Case& input, const RunOptions& options, const fem::Me
   Ground ground{input, mesh, *material, {}, {}};
   if (const io::Checkpoint* checkpoint = recorder.resumed()) {
     restore(ground, *checkpoint);
-    log.line(fmt::format("resumed behind increment {} of {}", recorder.resumed_stage_index(), recorder.resumed_stage()));
+    log.line(
+        fmt::format("resumed behind increment {} of {}", recorder.resumed_stage_index(), recorder.resumed_stage()));
   } else {
     begin_stage(ground);
   }

@@ -8,7 +8,8 @@ namespace voussoir::host {
 /// The half domain of the case. Throws std::invalid_argument where its sizes make no mesh.
 [[nodiscard]] fem::Mesh tunnel_mesh(const GroundCase& ground);
 
-/// Runs, or goes on with, the tunnel of the case in options.folder; the column's own results are in its folder `column`.
+/// Runs, or goes on with, the tunnel of the case in options.folder; the column's own results are in its folder
+/// `column`.
 [[nodiscard]] RunStatus run_tunnel(const Case& input, const RunOptions& options);
 
 }  // namespace voussoir::host

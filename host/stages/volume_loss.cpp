@@ -37,13 +37,15 @@ void add_tunnel_columns(const Ground& ground, io::IncrementInfo& info) {
 
 void record_at_rest(const GeostaticCheck& at_rest, RunRecorder& recorder) {
   constexpr double degree = 180.0 / std::numbers::pi;
-  recorder.log().line(fmt::format(
-      "after gravity: vertical stress within {:.3g} Pa of rest ({:.2f} of 5 % + 1 kPa), means of rows {:.2f} of 2 % + 0.5 kPa, "
-      "their scatter up to {:.2g} %; K0 {:.3f} to {:.3f}; principal axis off by {:.2g} deg (mean), {:.2g} deg (largest), {:.2g} "
-      "deg (largest from 100 kPa on)",
-      at_rest.vertical_error, at_rest.vertical_ratio, at_rest.row_ratio, 100 * at_rest.row_scatter, at_rest.k0_minimum,
-      at_rest.k0_maximum, at_rest.deflection_mean * degree, at_rest.deflection_max * degree,
-      at_rest.deflection_deep * degree));
+  recorder.log().line(
+      fmt::format("after gravity: vertical stress within {:.3g} Pa of rest ({:.2f} of 5 % + 1 kPa), means of rows "
+                  "{:.2f} of 2 % + 0.5 kPa, "
+                  "their scatter up to {:.2g} %; K0 {:.3f} to {:.3f}; principal axis off by {:.2g} deg (mean), {:.2g} "
+                  "deg (largest), {:.2g} "
+                  "deg (largest from 100 kPa on)",
+                  at_rest.vertical_error, at_rest.vertical_ratio, at_rest.row_ratio, 100 * at_rest.row_scatter,
+                  at_rest.k0_minimum, at_rest.k0_maximum, at_rest.deflection_mean * degree,
+                  at_rest.deflection_max * degree, at_rest.deflection_deep * degree));
   recorder.set_table("geostatic_check", {{"vertical_error", "Pa", {at_rest.vertical_error}},
                                          {"vertical_ratio", "-", {at_rest.vertical_ratio}},
                                          {"row_ratio", "-", {at_rest.row_ratio}},
@@ -53,8 +55,9 @@ void record_at_rest(const GeostaticCheck& at_rest, RunRecorder& recorder) {
                                          {"deflection_mean", "rad", {at_rest.deflection_mean}},
                                          {"deflection_max", "rad", {at_rest.deflection_max}},
                                          {"deflection_deep", "rad", {at_rest.deflection_deep}}});
-  std::vector<io::TableColumn> rows{{"depth", "m", {}}, {"vertical_stress", "Pa", {}}, {"error", "Pa", {}},
-                                    {"scatter", "Pa", {}}, {"ratio", "-", {}}, {"deflection", "rad", {}}};
+  std::vector<io::TableColumn> rows{{"depth", "m", {}},  {"vertical_stress", "Pa", {}},
+                                    {"error", "Pa", {}}, {"scatter", "Pa", {}},
+                                    {"ratio", "-", {}},  {"deflection", "rad", {}}};
   for (const GeostaticRow& row : at_rest.rows) {
     const std::array<double, 6> values{row.depth, row.vertical, row.error, row.scatter, row.k0, row.deflection};
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k].values.push_back(values[k]);
@@ -66,8 +69,8 @@ void record_at_rest(const GeostaticCheck& at_rest, RunRecorder& recorder) {
 void record_start(const Ground& ground, const K0Table& k0, RunRecorder& recorder) {
   record_at_rest(check_geostatic(ground), recorder);
   const OpeningCheck opening = check_opening(ground, k0);
-  recorder.log().line(fmt::format("V_l = 0: reactions of the opening differ from its tractions by {:.2e} of them",
-                                  opening.relative));
+  recorder.log().line(
+      fmt::format("V_l = 0: reactions of the opening differ from its tractions by {:.2e} of them", opening.relative));
   recorder.set_table("opening_check",
                      {{"difference", "N/m", {opening.difference}}, {"relative", "-", {opening.relative}}});
   io::IncrementInfo info;
@@ -91,8 +94,8 @@ OpeningCheck check_opening(const Ground& ground, const K0Table& k0) {
   std::vector<fem::Stress> stress(static_cast<std::size_t>(mesh.n_points()));
   ground.material.committed(stress, {});
   const fem::GaussPoints points = fem::gauss_points(mesh, mesh.coordinates);
-  const Eigen::VectorXd unbalanced =
-      fem::internal_force(mesh, points, stress).force - ground_weight(mesh, ground.input.ground, 1.0);
+  const Eigen::VectorXd unbalanced = fem::internal_force(mesh, points, stress).force -
+                                     ground_weight(mesh, ground.input.ground, 1.0);
   const Eigen::VectorXd tractions = opening_tractions(mesh, ground.input.ground, k0, 1.0);
   const fem::Constraints supports = ground_supports(mesh);
 

@@ -9,7 +9,7 @@ namespace voussoir::kernels {
 
 /// Periodic cell with its inverse, for nearest images.
 struct Cell {
-  Mat2 h;        ///< columns are the periodic vectors [m]
+  Mat2 h;  ///< columns are the periodic vectors [m]
   Mat2 inverse;
 
   KOKKOS_INLINE_FUNCTION explicit Cell(const Mat2& cell) : h(cell), inverse(cell.inverse()) {}
@@ -22,7 +22,8 @@ struct Cell {
     y -= h.yx * a + h.yy * b;
   }
 
-  /// The nearest image of a difference vector, in the cell's own (sheared) metric: exact for lengths below half a height.
+  /// The nearest image of a difference vector, in the cell's own (sheared) metric: exact for lengths below half a
+  /// height.
   KOKKOS_INLINE_FUNCTION void nearest(double& dx, double& dy) const {
     const double a = std::nearbyint(inverse.xx * dx + inverse.xy * dy);
     const double b = std::nearbyint(inverse.yx * dx + inverse.yy * dy);
@@ -43,7 +44,8 @@ struct Cell {
   return dx * dx + dy * dy < reach * reach;
 }
 
-/// The same lattice with its shortest vectors (Gauss' reduction): a cell never gets thin by shear alone, so shear is unlimited.
+/// The same lattice with its shortest vectors (Gauss' reduction): a cell never gets thin by shear alone, so shear is
+/// unlimited.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 reduced_lattice(Mat2 cell) {
   constexpr int most_swaps = 1000;  // each but the last shortens a vector; a bound for cells that are no numbers
   for (int k = 0; k < most_swaps; ++k) {

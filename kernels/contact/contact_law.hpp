@@ -1,6 +1,7 @@
 #pragma once
-/// The contact law as a value: named constants and one pure call (method.md §3; the rules are Yade's, so that the two codes
-/// can be compared grain by grain). No views, no indices: it is tested alone along a path before any packing exists.
+/// The contact law as a value: named constants and one pure call (method.md §3; the rules are Yade's, so that the two
+/// codes can be compared grain by grain). No views, no indices: it is tested alone along a path before any packing
+/// exists.
 ///
 /// A new law is a struct with this shape: `History` (what it remembers), `has_rolling`, constants, and `operator()`.
 
@@ -53,8 +54,8 @@ KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1,
           .rolling_arm = arm1 < arm2 ? arm1 : arm2};
 }
 
-/// Relative motion at a contact during one step. A law that is linear in the overlap answers to it in two units, which spares the sweep
-/// two products and every contact a wait: R = r_i + r_j, |b| the distance of the centres.
+/// Relative motion at a contact during one step. A law that is linear in the overlap answers to it in two units, which
+/// spares the sweep two products and every contact a wait: R = r_i + r_j, |b| the distance of the centres.
 template <class V>
 struct ContactMotion {
   V overlap;            ///< delta/R >= 0 [-]; 0 means no contact
@@ -84,19 +85,21 @@ struct LimitedForce {
   V by_closing;  ///< and by the contact's closing: 0 but at the cap
 };
 
-/// What a small motion changes in a contact's forces, and the slopes of that. Closing is the increase of the overlap over R.
+/// What a small motion changes in a contact's forces, and the slopes of that. Closing is the increase of the overlap
+/// over R.
 template <class V>
 struct ContactStep {
-  V closing;                            ///< as far as the contact follows it: an opening one does to its last touch [-]
-  V normal_stiffness;                   ///< k_n; 0 where it opens [N/m]
-  LimitedForce<V> tangential, moment;   ///< f_t [N], m [N m]
+  V closing;                           ///< as far as the contact follows it: an opening one does to its last touch [-]
+  V normal_stiffness;                  ///< k_n; 0 where it opens [N/m]
+  LimitedForce<V> tangential, moment;  ///< f_t [N], m [N m]
 };
 
-/// @param stiffness 0 where the contact opens; @param motion of the spring; @param held its force before, within its cap
+/// @param stiffness 0 where the contact opens; @param motion of the spring; @param held its force before, within its
+/// cap
 /// @param cap after the motion; @param cap_slope of it by closing
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION LimitedForce<V> limited_force(const V& stiffness, const V& motion, const V& held, const V& cap,
-                                                          const V& cap_slope) {
+KOKKOS_FORCEINLINE_FUNCTION LimitedForce<V> limited_force(const V& stiffness, const V& motion, const V& held,
+                                                          const V& cap, const V& cap_slope) {
   using Kokkos::Experimental::condition;
   const V zero(0), trial = stiffness * motion;
   const V lowest = -cap - held, highest = cap - held;
@@ -117,14 +120,14 @@ struct LinearContactLaw {
   };
 
   V normal_stiffness, tangential_stiffness, rolling_stiffness;  ///< as in PairConstants
-  V tangential_cap;  ///< mu k_n R, by overlap/R [N]
-  V moment_cap;      ///< min(eta_1 r_1, eta_2 r_2) k_n R, by overlap/R [N m]
+  V tangential_cap;                                             ///< mu k_n R, by overlap/R [N]
+  V moment_cap;                                                 ///< min(eta_1 r_1, eta_2 r_2) k_n R, by overlap/R [N m]
 
   /// Without contact every force and the history become zero: both caps are multiples of f_n.
   KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> operator()(const ContactMotion<V>& motion, History& history) const {
     const V fn = normal_stiffness * motion.overlap_to_branch;
-    history.tangential =
-        clamp_to(fused(tangential_stiffness, motion.sliding, history.tangential), tangential_cap * motion.overlap);
+    history.tangential = clamp_to(fused(tangential_stiffness, motion.sliding, history.tangential),
+                                  tangential_cap * motion.overlap);
     if constexpr (Rolling) {
       history.moment = clamp_to(fused(rolling_stiffness, motion.rolling, history.moment), moment_cap * motion.overlap);
       return {fn, history.tangential, history.moment};
@@ -133,8 +136,9 @@ struct LinearContactLaw {
     }
   }
 
-  /// Its derivative by the motion, with the springs that have yielded left out (their force follows f_n only, which has no
-  /// potential and is neglected). @param overlap over R [-]; @param history within the caps, as the call above leaves it
+  /// Its derivative by the motion, with the springs that have yielded left out (their force follows f_n only, which has
+  /// no potential and is neglected). @param overlap over R [-]; @param history within the caps, as the call above
+  /// leaves it
   /// @param elastic_share share of its cap below which a spring holds; above 1, all do that have a cap
   KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> stiffness(const V& overlap, const History& history,
                                                             const V& elastic_share) const {
@@ -151,7 +155,8 @@ struct LinearContactLaw {
     return k;
   }
 
-  /// What operator() changes in the forces of a contact that touches, without its cancellation; a contact that does not stays away.
+  /// What operator() changes in the forces of a contact that touches, without its cancellation; a contact that does not
+  /// stays away.
   /// @param overlap over R, and history, at rest, within the caps; @param closing increase of the overlap over R
   /// @param sliding, rolling as in ContactMotion
   KOKKOS_FORCEINLINE_FUNCTION ContactStep<V> step(const V& overlap, const History& history, const V& closing,
@@ -161,7 +166,8 @@ struct LinearContactLaw {
     const auto stays = (zero < overlap) && (zero < overlap + closing);
     const V followed = condition(stays, closing, -overlap), pressed = overlap + followed;
     const auto where_it_stays = [&](const V& x) { return condition(stays, x, zero); };
-    ContactStep<V> out{followed, where_it_stays(normal_stiffness),
+    ContactStep<V> out{followed,
+                       where_it_stays(normal_stiffness),
                        limited_force(where_it_stays(tangential_stiffness), sliding, history.tangential,
                                      tangential_cap * pressed, where_it_stays(tangential_cap)),
                        {zero, zero, zero}};

@@ -1,9 +1,9 @@
 #pragma once
 /// The value type of the engine: one number per RVE of a group, one RVE per SIMD lane.
 ///
-/// `WideLane<real>` is as wide as the build's instruction set allows, `SingleLane<real>` holds one RVE (unlike packings, and
-/// the GPU's threads). Every kernel is a template over this type and uses only what stands here.
-/// Lanes are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
+/// `WideLane<real>` is as wide as the build's instruction set allows, `SingleLane<real>` holds one RVE (unlike
+/// packings, and the GPU's threads). Every kernel is a template over this type and uses only what stands here. Lanes
+/// are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
 
 #include <Kokkos_Core.hpp>
 #include <Kokkos_SIMD.hpp>

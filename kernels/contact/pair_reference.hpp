@@ -1,5 +1,6 @@
 #pragma once
-/// A listed pair where its RVE's positions are known in double: the displacement form's reference, and the pair's constants.
+/// A listed pair where its RVE's positions are known in double: the displacement form's reference, and the pair's
+/// constants.
 
 #include "kernels/contact/cell.hpp"
 #include "kernels/contact/pair_state.hpp"
@@ -12,7 +13,8 @@ struct PairReference {
 };
 
 /// @param dx, dy x_j - x_i, any image [m]; @param sum_radii R [m]
-[[nodiscard]] KOKKOS_INLINE_FUNCTION PairReference pair_reference(double dx, double dy, double sum_radii, const Cell& cell) {
+[[nodiscard]] KOKKOS_INLINE_FUNCTION PairReference pair_reference(double dx, double dy, double sum_radii,
+                                                                  const Cell& cell) {
   cell.nearest(dx, dy);
   return {dx, dy, dx * dx + dy * dy - sum_radii * sum_radii};
 }

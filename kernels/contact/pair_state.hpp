@@ -1,8 +1,8 @@
 #pragma once
 /// Working state of one group: W RVEs cloned from one packing, one per lane, all lanes of a number side by side.
 ///
-/// Layout (grain, quantity, lane) and (pair, quantity, lane): everything one pair touches is a run of whole cache lines. One
-/// thread owns a group for a whole increment, so it stays in L1/L2.
+/// Layout (grain, quantity, lane) and (pair, quantity, lane): everything one pair touches is a run of whole cache
+/// lines. One thread owns a group for a whole increment, so it stays in L1/L2.
 
 #include <cstdint>
 #include <vector>
@@ -15,19 +15,19 @@ namespace voussoir::kernels {
 /// What moves of a grain, relative to the affine field and since the lane's last rebase; velocities are per step.
 template <class V>
 struct GrainLanes {
-  V u_x, u_y;      ///< displacement [m]
-  V w_x, w_y;      ///< velocity [m/step]
-  V spin;          ///< [rad/step]
+  V u_x, u_y;                  ///< displacement [m]
+  V w_x, w_y;                  ///< velocity [m/step]
+  V spin;                      ///< [rad/step]
   V force_x, force_y, torque;  ///< partial sums while a step runs, zero between steps [N], [N m]
-  V rotation;      ///< since the last commit [rad]
+  V rotation;                  ///< since the last commit [rad]
 };
 
 /// What a grain is, the same in all lanes.
 template <class real>
 struct GrainShape {
-  real radius;              ///< [m]
-  real mobility;            ///< dt^2/m [m/N]
-  real rotational_mobility; ///< dt^2/J [rad/(N m)]
+  real radius;                                   ///< [m]
+  real mobility;                                 ///< dt^2/m [m/N]
+  real rotational_mobility;                      ///< dt^2/J [rad/(N m)]
   real half_mobility, half_rotational_mobility;  ///< half of each
 };
 
@@ -44,11 +44,12 @@ template <class real>
 struct PairShape {
   std::int32_t other;
   std::int32_t other_bytes;  ///< where `other` stands among a group's grains
-  std::int32_t active;  ///< 1 while any lane may hold history; a pair is skipped only when no lane touches and this is 0
+  std::int32_t active;  ///< 1 while any lane may hold history; a pair is skipped only when no lane touches and this is
+                        ///< 0
   real inverse_sum;     ///< 1/R [1/m]
-  real minus_inverse_sum_squared;  ///< -1/R^2 [1/m^2]
-  real minus_half_sum;  ///< -R/2 [m]
-  real radius_other;    ///< [m]
+  real minus_inverse_sum_squared;                                  ///< -1/R^2 [1/m^2]
+  real minus_half_sum;                                             ///< -R/2 [m]
+  real radius_other;                                               ///< [m]
   real normal_stiffness, tangential_stiffness, rolling_stiffness;  ///< as in PairConstants
   real tangential_cap, moment_cap;                                 ///< as in PairCaps
 };
@@ -67,8 +68,8 @@ struct CellMotion {
 template <class V>
 struct SweepSums {
   V stress_xx = V(0), stress_xy = V(0), stress_yx = V(0), stress_yy = V(0);  ///< sum P_i b_j [N m]
-  V force_squared = V(0);    ///< sum |f|^2 over grains [N^2]
-  V largest_overlap = V(0);  ///< largest e = -g/R^2 over contacts [-]
+  V force_squared = V(0);                                                    ///< sum |f|^2 over grains [N^2]
+  V largest_overlap = V(0);                                                  ///< largest e = -g/R^2 over contacts [-]
 };
 
 inline constexpr int pairs_ahead = 2;  ///< how far a sweep looks ahead in the list
@@ -80,8 +81,8 @@ struct GroupState {
   double local_damping = 0.3;
   std::vector<GrainLanes<V>> grains;
   std::vector<GrainShape<real_of<V>>> shapes;
-  std::vector<int> row;  ///< pairs of grain i: row[i] .. row[i + 1]
-  std::vector<PairLanes<V>> pairs;  ///< the first row.back() are in use
+  std::vector<int> row;                            ///< pairs of grain i: row[i] .. row[i + 1]
+  std::vector<PairLanes<V>> pairs;                 ///< the first row.back() are in use
   std::vector<PairShape<real_of<V>>> pair_shapes;  ///< `pairs_ahead` more follow those in use, of grain 0
   CellMotion<V> motion;
 };

@@ -1,8 +1,8 @@
 #pragma once
 /// Stress and tangent of all lanes at rest: one law call per contact with zero motion.
 ///
-/// Love-Weber stress, eq. (3): sigma = (1/V) sum P (x) b. Contact tangent, eq. (4): D = (1/V) sum k_n n b n b + k_t t b t b,
-/// symmetrised for the FEM; it is affine (too stiff by 1.2 to 3) and neglects spins.
+/// Love-Weber stress, eq. (3): sigma = (1/V) sum P (x) b. Contact tangent, eq. (4): D = (1/V) sum k_n n b n b + k_t t b
+/// t b, symmetrised for the FEM; it is affine (too stiff by 1.2 to 3) and neglects spins.
 
 #include "kernels/lanes/sweep.hpp"
 
@@ -31,7 +31,8 @@ struct SpringTerms {
 };
 
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION SpringTerms<V> spring_terms(const V& k, const V& dx, const V& dy, const PairGeometry<V>& at) {
+KOKKOS_FORCEINLINE_FUNCTION SpringTerms<V> spring_terms(const V& k, const V& dx, const V& dy,
+                                                        const PairGeometry<V>& at) {
   const V xx = dx * at.branch_x;
   const V yy = dy * at.branch_y;
   const V xy = V(real_of<V>(0.5)) * fused(dx, at.branch_y, dy * at.branch_x);
@@ -49,8 +50,9 @@ struct RestingPair {
 
 /// The pair's history is limited by the caps of the final positions, as the next step would.
 template <class Law, class V, class real>
-KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<V>& pair, const PairShape<real>& shape, const PairGeometry<V>& at,
-                                                const CellMotion<V>& cell, const V& radius_i) {
+KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<V>& pair, const PairShape<real>& shape,
+                                                const PairGeometry<V>& at, const CellMotion<V>& cell,
+                                                const V& radius_i) {
   const V zero(0), one(1);
   CellMotion<V> still = cell;
   still.d_xy = still.d_difference = zero;
@@ -85,8 +87,8 @@ Homogenised<V> homogenise(GroupState<V>& group) {
     for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
       PairShape<real_of<V>>& shape = group.pair_shapes[p];
       const GrainLanes<V>& gj = grains[shape.other];
-      const PairGeometry<V> at =
-          geometry_of(group.pairs[p], group.motion, gj.u_x - grains[i].u_x, gj.u_y - grains[i].u_y);
+      const PairGeometry<V> at = geometry_of(group.pairs[p], group.motion, gj.u_x - grains[i].u_x,
+                                             gj.u_y - grains[i].u_y);
       add_pair(out, rest<Law>(group.pairs[p], shape, at, group.motion, radius), at);
     }
   }

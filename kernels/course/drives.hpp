@@ -1,27 +1,28 @@
 #pragma once
 /// How a lane's cell is driven: a given motion (the ground) or stresses (consolidation, element tests).
 ///
-/// A drive is a template argument of the time loop. `rate(step)` is the velocity gradient per step, `looks(step)` asks for
-/// a measuring step, `judge(step, ...)` sees what it measured and says whether the lane is done.
+/// A drive is a template argument of the time loop. `rate(step)` is the velocity gradient per step, `looks(step)` asks
+/// for a measuring step, `judge(step, ...)` sees what it measured and says whether the lane is done.
 
 #include <algorithm>
 #include <cmath>
 
-#include "kernels/state/rve_batch.hpp"
 #include "kernels/state/requests.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 
 /// What a measuring step saw of one lane.
 struct Measurement {
   double stress_xx = 0, stress_yy = 0, stress_xy = 0;  ///< tension positive [Pa]
-  double unbalanced = 0;                ///< rms|f| / (max(p, floor) t d) [-]
-  double width = 0, height = 0;         ///< of a rectangular cell [m]
+  double unbalanced = 0;                               ///< rms|f| / (max(p, floor) t d) [-]
+  double width = 0, height = 0;                        ///< of a rectangular cell [m]
 };
 
 enum class Verdict { running, converged, step_limit };
 
-/// Largest |L| per step at which lists keep up: within one list interval the cell then moves a pair by a tenth of the slack.
+/// Largest |L| per step at which lists keep up: within one list interval the cell then moves a pair by a tenth of the
+/// slack.
 [[nodiscard]] inline double largest_rate(const Packing& packing, const EngineSettings& settings) {
   const double skin = settings.skin * packing.mean_diameter();
   return 0.05 * skin / (settings.list_interval * (2.0 * packing.largest_radius() + skin));
@@ -46,7 +47,9 @@ class StrainDrive {
   /// False for a motion without a real logarithm (NaN, det F <= 0): the RVE is not run.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool possible() const { return std::isfinite(total_.norm()); }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 rate(int step) const { return step < strain_steps_ ? rate_ : Mat2{}; }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool looks(int step) const { return step >= strain_steps_ && (step % interval_ == 0 || step >= last_); }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION bool looks(int step) const {
+    return step >= strain_steps_ && (step % interval_ == 0 || step >= last_);
+  }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double strain_rate() const { return symmetric_norm(rate_); }
   [[nodiscard]] const Mat2& heading() const { return total_; }  ///< the motion that a loading tangent goes on with
 
@@ -107,16 +110,21 @@ class ServoControl {
     return request_.trace != nullptr && step % request_.trace_interval == 0;
   }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION ServoSample sample(int step, const Measurement& m) const {
-    return {step,        std::log(m.width / start_.width), std::log(m.height / start_.height), m.stress_xx, m.stress_yy,
-            m.stress_xy, m.unbalanced};
+    return {step,
+            std::log(m.width / start_.width),
+            std::log(m.height / start_.height),
+            m.stress_xx,
+            m.stress_yy,
+            m.stress_xy,
+            m.unbalanced};
   }
 
  protected:
   ServoRequest request_;
 
  private:
-  static constexpr double proportional = 0.02;                               ///< share of the error per step
-  static constexpr double integral = 0.25 * proportional * proportional;     ///< critical damping of the loop
+  static constexpr double proportional = 0.02;                            ///< share of the error per step
+  static constexpr double integral = 0.25 * proportional * proportional;  ///< critical damping of the loop
 
   struct Rate {
     double value = 0;
@@ -146,7 +154,8 @@ class ServoDrive : public ServoControl {
   static constexpr bool can_record = true;
   using ServoControl::ServoControl;
 
-  /// Whether `record` is wanted before the step's sweep; the sample that `judge` takes after it will hold what it was given.
+  /// Whether `record` is wanted before the step's sweep; the sample that `judge` takes after it will hold what it was
+  /// given.
   [[nodiscard]] bool records(int step) const { return request_.microstructure.any() && samples(step); }
   [[nodiscard]] const MicrostructureRequest& recorded_quantities() const { return request_.microstructure; }
   void record(const Microstructure& m) { recorded_ = m; }

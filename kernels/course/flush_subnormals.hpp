@@ -1,6 +1,6 @@
 #pragma once
-/// Subnormal numbers are flushed to zero while a worker advances RVEs: grains at rest decay into them, at ten times the cost a
-/// step on a CPU. Nothing on a GPU, where they cost nothing.
+/// Subnormal numbers are flushed to zero while a worker advances RVEs: grains at rest decay into them, at ten times the
+/// cost a step on a CPU. Nothing on a GPU, where they cost nothing.
 
 #include <Kokkos_Macros.hpp>
 

@@ -1,11 +1,11 @@
 #pragma once
-/// The course of one RVE from its committed to its trial state, in double, whatever runs it (a lane of a group, a team): how its
-/// cell moves, when its lists are renewed, when it is looked at, and how it ends.
+/// The course of one RVE from its committed to its trial state, in double, whatever runs it (a lane of a group, a
+/// team): how its cell moves, when its lists are renewed, when it is looked at, and how it ends.
 
 #include <cmath>
 
-#include "kernels/course/drives.hpp"
 #include "kernels/contact/pair_state.hpp"
+#include "kernels/course/drives.hpp"
 
 namespace voussoir::kernels {
 
@@ -105,8 +105,9 @@ KOKKOS_INLINE_FUNCTION void move_cell(RveCourse<Drive>& course, int step, CellMo
 /// What a look at displacements says of the list. The last two end the course.
 enum class ListState { valid, stale, not_finite, flown };
 
-/// Whether grains may meet someone who is not listed before the next look: with what comes until then, 2 max|u| + |F - I| (R + skin)
-/// reaches the skin. @param largest, fastest max |u| [m] and max |w| [m/step]; @param finite all of them are
+/// Whether grains may meet someone who is not listed before the next look: with what comes until then, 2 max|u| + |F -
+/// I| (R + skin) reaches the skin. @param largest, fastest max |u| [m] and max |w| [m/step]; @param finite all of them
+/// are
 template <class Drive>
 KOKKOS_INLINE_FUNCTION ListState look_at_list(RveCourse<Drive>& course, double largest, double fastest, bool finite,
                                               const RunScales& scales, int list_interval, int step) {
@@ -123,7 +124,9 @@ KOKKOS_INLINE_FUNCTION ListState look_at_list(RveCourse<Drive>& course, double l
 }
 
 /// overlap / (r_i + r_j) from e = -g/R^2.
-[[nodiscard]] KOKKOS_INLINE_FUNCTION double relative_overlap(double e) { return 1.0 - std::sqrt(1.0 - (e < 1.0 ? e : 1.0)); }
+[[nodiscard]] KOKKOS_INLINE_FUNCTION double relative_overlap(double e) {
+  return 1.0 - std::sqrt(1.0 - (e < 1.0 ? e : 1.0));
+}
 
 /// Looks at overlaps come on fixed steps, whatever runs beside.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION bool guards(const EngineSettings& settings, int step) {
@@ -138,8 +141,9 @@ template <class Drive>
 
 /// @param sums of lane `l` over one measuring sweep; @param cell the current one
 template <class V>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION Measurement measurement_of(const SweepSums<V>& sums, std::size_t l, const Mat2& cell,
-                                                                const RunScales& scales, double pressure_floor) {
+[[nodiscard]] KOKKOS_INLINE_FUNCTION Measurement measurement_of(const SweepSums<V>& sums, std::size_t l,
+                                                                const Mat2& cell, const RunScales& scales,
+                                                                double pressure_floor) {
   const double v = cell.det() * scales.thickness;
   Measurement m;
   m.stress_xx = sums.stress_xx[l] / v;
@@ -156,11 +160,12 @@ template <class V>
 /// What a measuring step decides: `ended` keeps the state, `lost` gives it up.
 enum class Outcome { running, ended, lost };
 
-/// Sets the status of a course that ends. @param reference cell at the last rebase; @param seen what the drive saw, where it looked
+/// Sets the status of a course that ends. @param reference cell at the last rebase; @param seen what the drive saw,
+/// where it looked
 template <class V, class Drive>
 KOKKOS_INLINE_FUNCTION Outcome judge(RveCourse<Drive>& course, int step, const EngineSettings& settings,
-                                     const SweepSums<V>& sums, std::size_t l, const Mat2& reference, const RunScales& scales,
-                                     Measurement& seen) {
+                                     const SweepSums<V>& sums, std::size_t l, const Mat2& reference,
+                                     const RunScales& scales, Measurement& seen) {
   if (guards(settings, step)) {
     course.overlap = relative_overlap(static_cast<double>(sums.largest_overlap[l]));
     if (!(course.overlap <= settings.overlap_limit)) {

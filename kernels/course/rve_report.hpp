@@ -18,11 +18,12 @@ KOKKOS_INLINE_FUNCTION void begin_report(const RveCourse<Drive>& course, RveRepo
   report.largest_overlap = course.overlap;
 }
 
-/// Stress, tangent and status from lane `l` of the sums. @param volume current [m^3]; @param finite all grains' motions are
+/// Stress, tangent and status from lane `l` of the sums. @param volume current [m^3]; @param finite all grains' motions
+/// are
 template <class V, class Drive>
-KOKKOS_INLINE_FUNCTION void fill_report(const RveCourse<Drive>& course, const Homogenised<V>& h, std::size_t l, double volume,
-                                        bool finite, const RunScales& scales, const EngineSettings& settings,
-                                        RveReport& report) {
+KOKKOS_INLINE_FUNCTION void fill_report(const RveCourse<Drive>& course, const Homogenised<V>& h, std::size_t l,
+                                        double volume, bool finite, const RunScales& scales,
+                                        const EngineSettings& settings, RveReport& report) {
   report.stress[0] = h.sums.stress_xx[l] / volume;
   report.stress[1] = h.sums.stress_xy[l] / volume;
   report.stress[2] = h.sums.stress_yx[l] / volume;

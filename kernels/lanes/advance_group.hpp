@@ -38,9 +38,14 @@ void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums)
     if (!lane.running) continue;
     Measurement seen;
     switch (judge(lane, step, run.settings, sums, l, run.lists[l].cell, run.scales, seen)) {
-      case Outcome::running: break;
-      case Outcome::ended: freeze(run, l, lane.status); break;
-      case Outcome::lost: discard(run, l, lane.status); break;
+      case Outcome::running:
+        break;
+      case Outcome::ended:
+        freeze(run, l, lane.status);
+        break;
+      case Outcome::lost:
+        discard(run, l, lane.status);
+        break;
     }
   }
 }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <span>
 
-#include "kernels/lanes/tangent.hpp"
 #include "kernels/course/rve_report.hpp"
+#include "kernels/lanes/tangent.hpp"
 
 namespace voussoir::kernels {
 

@@ -1,13 +1,14 @@
 #pragma once
-/// A group on its way from committed to trial states: its lanes, their lists and the working arrays. One per worker, reused.
+/// A group on its way from committed to trial states: its lanes, their lists and the working arrays. One per worker,
+/// reused.
 
 #include <array>
 #include <vector>
 
-#include "kernels/lanes/lists.hpp"
 #include "kernels/contact/resting_pair.hpp"
-#include "kernels/tangents/loading_tangent.hpp"
 #include "kernels/course/rve_course.hpp"
+#include "kernels/lanes/lists.hpp"
+#include "kernels/tangents/loading_tangent.hpp"
 
 namespace voussoir::kernels {
 
@@ -59,8 +60,8 @@ void discard(Run& run, std::size_t l, RveStatus status) {
   run.lists[l].pairs.clear();
 }
 
-/// Keeps the cell as wide as its lattice allows (a sheared cell flips back, with the same images); false when nearest images
-/// are not unique even so.
+/// Keeps the cell as wide as its lattice allows (a sheared cell flips back, with the same images); false when nearest
+/// images are not unique even so.
 template <class Run>
 [[nodiscard]] bool reduce_cell(const Run& run, LaneList<typename Run::real>& list) {
   list.cell = reduced_lattice(list.cell);

@@ -1,6 +1,6 @@
 #pragma once
-/// Neighbour lists of a group: each lane lists its own candidates (by its own displacement trigger), the group walks the
-/// union. A pair that only other lanes list is inert in a lane, so a lane's numbers never depend on its neighbours.
+/// Neighbour lists of a group: each lane lists its own candidates (by its own displacement trigger), the group walks
+/// the union. A pair that only other lanes list is inert in a lane, so a lane's numbers never depend on its neighbours.
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "kernels/contact/pair_reference.hpp"
 #include "kernels/contact/pair_state.hpp"
 #include "kernels/lanes/neighbours.hpp"
-#include "kernels/contact/pair_reference.hpp"
 #include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
@@ -38,8 +38,8 @@ struct LaneList {
   std::vector<ListedPair<real>> pairs;
 };
 
-/// Branches and gaps in double, rounded once; histories from `kept` (ascending keys; a kept contact that is no candidate has
-/// opened by more than the skin and is dropped).
+/// Branches and gaps in double, rounded once; histories from `kept` (ascending keys; a kept contact that is no
+/// candidate has opened by more than the skin and is dropped).
 template <class real>
 void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<const std::uint32_t> keys,
                 std::span<const KeptContact> kept) {
@@ -50,9 +50,11 @@ void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<c
   for (const std::uint32_t key : keys) {
     const auto i = static_cast<std::size_t>(first_of(key)), j = static_cast<std::size_t>(second_of(key));
     const PairReference at = pair_reference(lane.position[2 * j] - lane.position[2 * i],
-                                            lane.position[2 * j + 1] - lane.position[2 * i + 1], radii[i] + radii[j], cell);
-    ListedPair<real> pair{key,     static_cast<real>(at.branch_x), static_cast<real>(at.branch_y), static_cast<real>(at.gap),
-                          real(0), real(0)};
+                                            lane.position[2 * j + 1] - lane.position[2 * i + 1], radii[i] + radii[j],
+                                            cell);
+    ListedPair<real> pair{
+        key,    static_cast<real>(at.branch_x), static_cast<real>(at.branch_y), static_cast<real>(at.gap), real(0),
+        real(0)};
     while (from != kept.end() && from->key < key) ++from;
     if (from != kept.end() && from->key == key) {
       pair.tangential = static_cast<real>(from->tangential);
@@ -66,8 +68,8 @@ void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<c
 template <class V>
 PairShape<real_of<V>> shape_of(const Packing& packing, int i, int j) {
   const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
-  auto shape =
-      pair_shape<real_of<V>>(j, packing.material_of(si), packing.radii[si], packing.material_of(sj), packing.radii[sj]);
+  auto shape = pair_shape<real_of<V>>(j, packing.material_of(si), packing.radii[si], packing.material_of(sj),
+                                      packing.radii[sj]);
   shape.other_bytes = static_cast<std::int32_t>(sj * sizeof(GrainLanes<V>));
   return shape;
 }
@@ -154,8 +156,8 @@ void gather_lane(const GroupState<V>& group, std::size_t lane, std::vector<Liste
     for (auto p = static_cast<std::size_t>(group.row[si]); p < static_cast<std::size_t>(group.row[si + 1]); ++p) {
       const PairLanes<V>& from = group.pairs[p];
       if (from.branch_x[lane] == 0 && from.branch_y[lane] == 0) continue;
-      pairs.push_back({pair_key(i, group.pair_shapes[p].other), from.branch_x[lane], from.branch_y[lane], from.gap[lane],
-                       from.tangential[lane], from.moment[lane]});
+      pairs.push_back({pair_key(i, group.pair_shapes[p].other), from.branch_x[lane], from.branch_y[lane],
+                       from.gap[lane], from.tangential[lane], from.moment[lane]});
     }
   }
 }

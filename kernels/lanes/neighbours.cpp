@@ -17,10 +17,11 @@ namespace {
 using Lanes = WideLane<double>;
 constexpr std::size_t at_once = static_cast<std::size_t>(lane_count<Lanes>);
 
-/// Grains of one size level (radii within a factor 2) sorted into bins of the fractional cell by counting sort. A bin is as
-/// wide as the level's largest grain plus skin, so that whoever meets a member from outside or inside the level, being no
-/// larger, finds it within one bin. A frame of bins around the cell holds images of those inside, so that all neighbours of a point
-/// are three runs of members, without a look at the period: at least two bins fit across a cell that is wide enough.
+/// Grains of one size level (radii within a factor 2) sorted into bins of the fractional cell by counting sort. A bin
+/// is as wide as the level's largest grain plus skin, so that whoever meets a member from outside or inside the level,
+/// being no larger, finds it within one bin. A frame of bins around the cell holds images of those inside, so that all
+/// neighbours of a point are three runs of members, without a look at the period: at least two bins fit across a cell
+/// that is wide enough.
 struct Level {
   int nx = 2, ny = 2;
   std::vector<int> start;            ///< of each bin of (ny + 2) rows of (nx + 2)
@@ -30,8 +31,8 @@ struct Level {
   Level(std::span<const double> positions, std::span<const double> radii, const std::vector<int>& grains,
         const Cell& cell, double largest, double skin) {
     const double width = 2.0 * largest + skin;
-    const double most =
-        std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 2.0;  // more bins than grains find nothing
+    const double most = std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 2.0;  // more bins than grains find
+                                                                                         // nothing
     nx = static_cast<int>(std::clamp(cell.height(0) / width, 2.0, most));
     ny = static_cast<int>(std::clamp(cell.height(1) / width, 2.0, most));
     sort(images(positions, grains, cell), radii);
@@ -43,7 +44,8 @@ struct Level {
 
   /// The bin of a point in the cell.
   [[nodiscard]] std::pair<int, int> slots(const Cell& cell, double px, double py) const {
-    return {slot(cell.inverse.xx * px + cell.inverse.xy * py, nx), slot(cell.inverse.yx * px + cell.inverse.yy * py, ny)};
+    return {slot(cell.inverse.xx * px + cell.inverse.xy * py, nx),
+            slot(cell.inverse.yx * px + cell.inverse.yy * py, ny)};
   }
 
  private:
@@ -109,8 +111,8 @@ std::vector<std::vector<int>> sort_by_size(std::span<const double> radii, double
 std::size_t append_keys(unsigned near, int i, const int* members, std::uint32_t* to) {
 #if defined(VOUSSOIR_AVX512)  // without a branch, which would be mispredicted as often as not
   const __m256i own = _mm256_set1_epi32(i), other = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(members));
-  const __m256i key =
-      _mm256_or_si256(_mm256_slli_epi32(_mm256_min_epi32(own, other), 16), _mm256_max_epi32(own, other));
+  const __m256i key = _mm256_or_si256(_mm256_slli_epi32(_mm256_min_epi32(own, other), 16),
+                                      _mm256_max_epi32(own, other));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_maskz_compress_epi32(static_cast<__mmask8>(near), key));
   return static_cast<std::size_t>(std::popcount(near));
 #else

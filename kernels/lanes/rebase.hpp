@@ -63,8 +63,8 @@ template <class Run>
 [[nodiscard]] bool is_stale(Run& run, std::size_t l, const Motion<typename Run::Value>& m, int step) {
   const double largest = std::sqrt(static_cast<double>(m.largest[l]));
   const double fastest = std::sqrt(static_cast<double>(m.fastest[l]));
-  const ListState state =
-      look_at_list(run.lanes[l], largest, fastest, m.finite[l] == 0, run.scales, run.settings.list_interval, step);
+  const ListState state = look_at_list(run.lanes[l], largest, fastest, m.finite[l] == 0, run.scales,
+                                       run.settings.list_interval, step);
   if (state == ListState::not_finite) discard(run, l, RveStatus::not_finite);
   if (state == ListState::flown) discard(run, l, RveStatus::overlap_limit);
   return state != ListState::valid;

@@ -8,8 +8,8 @@
 
 namespace voussoir::kernels {
 
-/// Contacts of lane `l`; its cell and its grains must be at the same step. Only what depends on the positions: tangential
-/// forces follow with the sweep.
+/// Contacts of lane `l`; its cell and its grains must be at the same step. Only what depends on the positions:
+/// tangential forces follow with the sweep.
 template <class Law, class Run>
 [[nodiscard]] std::vector<NetworkContact> network_of(const Run& run, std::size_t l) {
   using V = typename Run::Value;
@@ -35,8 +35,8 @@ template <class Law, class Run>
   return out;
 }
 
-/// Hands the drives that record at this step their lane's microstructure; rotations count from the request's start. To be
-/// called where cell and grains are at the same step, before the sweep. Compiled out for drives that never record.
+/// Hands the drives that record at this step their lane's microstructure; rotations count from the request's start. To
+/// be called where cell and grains are at the same step, before the sweep. Compiled out for drives that never record.
 template <class Law, class Run>
 void record_microstructures(Run& run, int step) {
   if constexpr (Run::Drive::can_record) {

@@ -8,8 +8,8 @@
 
 namespace voussoir::kernels {
 
-/// The committed state of the lane's RVE as the lane's reference. False, with the reason as status, for a lane that cannot run;
-/// it stays empty.
+/// The committed state of the lane's RVE as the lane's reference. False, with the reason as status, for a lane that
+/// cannot run; it stays empty.
 template <class Run>
 [[nodiscard]] bool restore_lane(Run& run, std::size_t l) {
   auto& lane = run.lanes[l];
@@ -69,8 +69,8 @@ void restore(Run& run, const GroupMembers<static_cast<int>(Run::width)>& members
     run.lists[l].pairs.clear();
     if (members[l] < 0) continue;
     run.lanes[l].rve = members[l];
-    run.lanes[l].drive =
-        typename Run::Drive(requests[static_cast<std::size_t>(members[l])], *run.packing, run.settings);
+    run.lanes[l].drive = typename Run::Drive(requests[static_cast<std::size_t>(members[l])], *run.packing,
+                                             run.settings);
     run.lanes[l].running = restore_lane(run, l);
   }
   run.builder.build(run.group, run.lists, *run.packing);

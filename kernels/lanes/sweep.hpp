@@ -1,8 +1,8 @@
 #pragma once
 /// One step of all grains of a group: contacts, law, forces, integration; kernels/README.md, "One step".
 ///
-/// A half list sorted by i < j: grain i gathers its force in registers, and is integrated right after its last pair, since
-/// every pair (h, i) with h < i stands in an earlier row. No wrap, no square root, no division in the loop.
+/// A half list sorted by i < j: grain i gathers its force in registers, and is integrated right after its last pair,
+/// since every pair (h, i) with h < i stands in an earlier row. No wrap, no square root, no division in the loop.
 
 #include <cstddef>
 
@@ -24,9 +24,9 @@ struct PairDistance {
   V inverse_length;  ///< y/R = 1/|b| [1/m]
 };
 
-/// z/e as a polynomial in e, z = (1 - e)^(-1/2) - 1: the leading terms exact, the others fitted over 0 .. 0.51 to relative errors that
-/// grow with e. Up to 1, 10, 20 and 30 % overlap, where an RVE is given up: in float 3e-10, 9e-7, 5e-6 and 1.2e-5, in double 5e-15,
-/// 5e-9, 2e-7 and 1.4e-6; those of q, y and 1/|b| are smaller.
+/// z/e as a polynomial in e, z = (1 - e)^(-1/2) - 1: the leading terms exact, the others fitted over 0 .. 0.51 to
+/// relative errors that grow with e. Up to 1, 10, 20 and 30 % overlap, where an RVE is given up: in float 3e-10, 9e-7,
+/// 5e-6 and 1.2e-5, in double 5e-15, 5e-9, 2e-7 and 1.4e-6; those of q, y and 1/|b| are smaller.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V excess_over(const V& e, const V& e2) {
   using real = real_of<V>;
@@ -70,8 +70,8 @@ struct PairGeometry {
 };
 
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION PairGeometry<V> geometry_of(const PairLanes<V>& pair, const CellMotion<V>& cell, const V& du_x,
-                                                        const V& du_y) {
+KOKKOS_FORCEINLINE_FUNCTION PairGeometry<V> geometry_of(const PairLanes<V>& pair, const CellMotion<V>& cell,
+                                                        const V& du_x, const V& du_y) {
   const V dx = fused(cell.f_xx, pair.branch_x, fused(cell.f_xy, pair.branch_y, du_x));
   const V dy = fused(cell.f_yx, pair.branch_x, fused(cell.f_yy, pair.branch_y, du_y));
   const V two(2);
@@ -104,12 +104,13 @@ KOKKOS_FORCEINLINE_FUNCTION GrainRim<V> rim_of(const V& radius, const V& spin) {
   return {radius, spin, radius * spin};
 }
 
-/// Law and forces of a pair that touches in at least one lane. (dw_x, dw_y) is w_j - w_i. The branch is not made a unit vector: what
-/// is needed of n and t is a product with it over |b|. D b is taken less D_xx b, which has no part along t.
+/// Law and forces of a pair that touches in at least one lane. (dw_x, dw_y) is w_j - w_i. The branch is not made a unit
+/// vector: what is needed of n and t is a product with it over |b|. D b is taken less D_xx b, which has no part along
+/// t.
 template <class Law, class V, class real>
-KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShape<real>& shape, const PairGeometry<V>& at,
-                                              const CellMotion<V>& cell, const V& dw_x, const V& dw_y,
-                                              const GrainRim<V>& i, const V& spin_j) {
+KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<V>& pair, const PairShape<real>& shape,
+                                              const PairGeometry<V>& at, const CellMotion<V>& cell, const V& dw_x,
+                                              const V& dw_y, const GrainRim<V>& i, const V& spin_j) {
   const PairDistance<V> distance = distance_of(at.gap, shape);
   const V vx = fused(cell.d_xy, at.branch_y, dw_x);
   const V vy = fused(cell.d_xy, at.branch_x, fused(cell.d_difference, at.branch_y, dw_y));
@@ -149,8 +150,8 @@ KOKKOS_FORCEINLINE_FUNCTION void add_stress(SweepSums<V>& sums, const PairAction
   sums.stress_yy = fused(p.force_y, at.branch_y, sums.stress_yy);
 }
 
-/// A velocity component after the kick of one step. Local damping (Cundall): a force that works on the mid-step velocity is cut by
-/// lambda, the other raised.
+/// A velocity component after the kick of one step. Local damping (Cundall): a force that works on the mid-step
+/// velocity is cut by lambda, the other raised.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V kicked(const V& velocity, const V& force, const V& mobility, const V& half_mobility,
                                      const V& damping) {
@@ -160,8 +161,9 @@ KOKKOS_FORCEINLINE_FUNCTION V kicked(const V& velocity, const V& force, const V&
 
 /// Kick and drift of one grain under the summed force; clears the sums. A lane that is not alive stays where it is.
 template <class V, class real>
-KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShape<real>& shape, const CellMotion<V>& cell,
-                                           const V& damping, const V& fx, const V& fy, const V& torque) {
+KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShape<real>& shape,
+                                           const CellMotion<V>& cell, const V& damping, const V& fx, const V& fy,
+                                           const V& torque) {
   const V zero(0);
   const V a(shape.mobility), half_a(shape.half_mobility);
   const V wx = grain.w_x;
@@ -169,8 +171,8 @@ KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShap
   const V kept = choose_if_zero(fx, fy, torque, V(real(0.9)) * cell.alive, cell.alive);  // less of a rattler's velocity
   const V new_x = kept * fused(-cell.rotation, wy, kicked(wx, fx, a, half_a, damping));
   const V new_y = kept * fused(cell.rotation, wx, kicked(wy, fy, a, half_a, damping));
-  const V spin =
-      kept * kicked(grain.spin, torque, V(shape.rotational_mobility), V(shape.half_rotational_mobility), damping);
+  const V spin = kept *
+                 kicked(grain.spin, torque, V(shape.rotational_mobility), V(shape.half_rotational_mobility), damping);
   const V ux = grain.u_x;
   const V uy = grain.u_y;
   grain.u_x = ux + fused(cell.e_xx, ux, fused(cell.e_xy, uy, new_x));
@@ -184,7 +186,8 @@ KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShap
   grain.torque = zero;
 }
 
-/// Asks for what the sweep will read of a grain; its place in memory cannot be foreseen by the hardware. Measured: 4 % of a step.
+/// Asks for what the sweep will read of a grain; its place in memory cannot be foreseen by the hardware. Measured: 4 %
+/// of a step.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION void fetch_ahead([[maybe_unused]] const GrainLanes<V>& grain) {
 #if defined(__GNUC__) && !defined(__CUDA_ARCH__)

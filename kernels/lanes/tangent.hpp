@@ -56,8 +56,8 @@ inline void replace_tangent(RveReport& report, const FoundTangent& found, const 
   report.tangent_kind = found.kind;
 }
 
-/// The static tangents into the reports of the lanes that have an answer; eq. (4) stays where they cannot be used, and the elastic
-/// one where a loading one is not found.
+/// The static tangents into the reports of the lanes that have an answer; eq. (4) stays where they cannot be used, and
+/// the elastic one where a loading one is not found.
 template <class Law, class Run>
 void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
   const bool loads = run.settings.tangent == TangentKind::loading;

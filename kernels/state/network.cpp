@@ -20,14 +20,14 @@ void describe_fabric(std::span<const NetworkContact> contacts, Microstructure& o
     cosine += c.normal_x * c.normal_x - c.normal_y * c.normal_y;
     sine += 2.0 * c.normal_x * c.normal_y;
   }
-  out.fabric_anisotropy =
-      contacts.empty() ? 0.0 : 2.0 * std::hypot(cosine, sine) / static_cast<double>(contacts.size());
+  out.fabric_anisotropy = contacts.empty() ? 0.0
+                                           : 2.0 * std::hypot(cosine, sine) / static_cast<double>(contacts.size());
   const double direction = 0.5 * std::atan2(sine, cosine);
   out.fabric_direction = direction <= -0.5 * std::numbers::pi ? 0.5 * std::numbers::pi : direction;
 }
 
-/// Eq. (23), (2 N_c - N_1)/(N_p - N_0 - N_1), of the contacts that carry at least `least` [N]: N_p - N_0 - N_1 are the grains
-/// with two of them or more, whether N_p counts all grains or those involved.
+/// Eq. (23), (2 N_c - N_1)/(N_p - N_0 - N_1), of the contacts that carry at least `least` [N]: N_p - N_0 - N_1 are the
+/// grains with two of them or more, whether N_p counts all grains or those involved.
 double mechanical_coordination(std::span<const NetworkContact> contacts, double least, std::vector<int>& contacts_of) {
   std::fill(contacts_of.begin(), contacts_of.end(), 0);
   int total = 0;

@@ -1,5 +1,6 @@
 #pragma once
-/// What the contact network of an RVE looks like: fabric and connectivity (method.md, eqs. 22 and 23). Computed for those who ask.
+/// What the contact network of an RVE looks like: fabric and connectivity (method.md, eqs. 22 and 23). Computed for
+/// those who ask.
 
 #include <array>
 #include <span>
@@ -37,7 +38,8 @@ struct Microstructure {
   std::array<double, strong_thresholds.size()> strong_coordination{};  ///< the same of the strong networks
 };
 
-/// The quantities of `wanted` that follow from the contacts (and `coordination`) of a packing of `grains` grains into `out`.
+/// The quantities of `wanted` that follow from the contacts (and `coordination`) of a packing of `grains` grains into
+/// `out`.
 void describe_network(std::span<const NetworkContact> contacts, int grains, const MicrostructureRequest& wanted,
                       Microstructure& out);
 

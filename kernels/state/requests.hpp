@@ -12,30 +12,31 @@ namespace voussoir::kernels {
 enum class Precision { float32, float64 };
 
 /// Contact tangent, eq. (4), or the packing's own static one (static_tangent.hpp): with every contact stuck, or without
-/// the springs that have yielded; or the response to small strains that go on as the last motion did, contacts reaching their
-/// caps on the way (loading_tangent.hpp).
+/// the springs that have yielded; or the response to small strains that go on as the last motion did, contacts reaching
+/// their caps on the way (loading_tangent.hpp).
 enum class TangentKind { contact, elastic, static_, loading };
 
-/// Who advances the RVEs: one SIMD lane each (CPUs), or one team of threads each (GPUs; on a CPU the same bits, more slowly).
-/// `automatic`: teams where Kokkos' default execution space is a device of its own.
+/// Who advances the RVEs: one SIMD lane each (CPUs), or one team of threads each (GPUs; on a CPU the same bits, more
+/// slowly). `automatic`: teams where Kokkos' default execution space is a device of its own.
 enum class Backend { automatic, lanes, teams };
 
 /// Numerical settings of a run. The case file's [engine] table sets them for a mesh; packings are made with these.
 struct EngineSettings {
   Precision precision = Precision::float32;
-  double skin = 0.08;              ///< list skin / mean diameter [-]
-  double hold_tolerance = 1e-3;    ///< unbalanced ratio that ends a hold [-]
-  double pressure_floor = 100.0;   ///< ratios use max(p, floor) [Pa]
-  double overlap_limit = 0.3;      ///< overlap / (r_i + r_j) at which an RVE is given up [-]
-  int look_interval = 16;          ///< steps between looks at stress and unbalanced force
-  int list_interval = 8;           ///< steps between looks at displacements
-  int guard_interval = 256;        ///< steps between looks at overlaps while straining
+  double skin = 0.08;             ///< list skin / mean diameter [-]
+  double hold_tolerance = 1e-3;   ///< unbalanced ratio that ends a hold [-]
+  double pressure_floor = 100.0;  ///< ratios use max(p, floor) [Pa]
+  double overlap_limit = 0.3;     ///< overlap / (r_i + r_j) at which an RVE is given up [-]
+  int look_interval = 16;         ///< steps between looks at stress and unbalanced force
+  int list_interval = 8;          ///< steps between looks at displacements
+  int guard_interval = 256;       ///< steps between looks at overlaps while straining
   Backend backend = Backend::automatic;
-  int team_size = 0;               ///< threads of a team; 0: Kokkos chooses, one on CPUs, where several starve on shared cores
+  int team_size = 0;  ///< threads of a team; 0: Kokkos chooses, one on CPUs, where several starve on shared cores
   TangentKind tangent = TangentKind::contact;
-  double tangent_tolerance = 2e-3; ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
-  int tangent_iterations = 800;    ///< limit
-  double tangent_strain = 1e-6;    ///< of a loading tangent, the strain it is the secant of; negative: against the last motion [-]
+  double tangent_tolerance = 2e-3;  ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
+  int tangent_iterations = 800;     ///< limit
+  double tangent_strain = 1e-6;  ///< of a loading tangent, the strain it is the secant of; negative: against the last
+                                 ///< motion [-]
 };
 
 /// Given motion of one RVE: F_rel reached in `strain_steps` equal steps, then at most `hold_cap` steps of rest.
@@ -54,22 +55,22 @@ struct ServoAxis {
 /// What a stress-controlled cell did, seen at one step.
 struct ServoSample {
   int step;
-  double strain_x, strain_y;                   ///< logarithmic since the request's start, extension positive [-]
-  double stress_xx, stress_yy, stress_xy;      ///< tension positive [Pa]
-  double unbalanced;                           ///< [-]
-  Microstructure microstructure = {};          ///< as far as the request asks for it; rotation since the request's start
+  double strain_x, strain_y;               ///< logarithmic since the request's start, extension positive [-]
+  double stress_xx, stress_yy, stress_xy;  ///< tension positive [Pa]
+  double unbalanced;                       ///< [-]
+  Microstructure microstructure = {};      ///< as far as the request asks for it; rotation since the request's start
 };
 
 /// Rectangular cell whose axes follow a stress (PI control) or a rate.
 struct ServoRequest {
   ServoAxis x, y;
-  double max_rate = 1e-5;        ///< largest |strain| per step [-]
-  double stress_tolerance = 1e-3;///< |sigma - target| / max(|target|, floor) that counts as reached [-]
-  int max_steps = 100000;        ///< ends as step_limit
-  int settle_steps = 200;        ///< steps that stress and unbalanced ratio must stay within tolerance
+  double max_rate = 1e-5;          ///< largest |strain| per step [-]
+  double stress_tolerance = 1e-3;  ///< |sigma - target| / max(|target|, floor) that counts as reached [-]
+  int max_steps = 100000;          ///< ends as step_limit
+  int settle_steps = 200;          ///< steps that stress and unbalanced ratio must stay within tolerance
   double end_strain_y = std::numeric_limits<double>::infinity();  ///< |strain_y| at which the request is done [-]
-  std::vector<ServoSample>* trace = nullptr;  ///< the caller's, one per RVE; samples are appended
-  int trace_interval = 100;                   ///< steps between samples
+  std::vector<ServoSample>* trace = nullptr;                      ///< the caller's, one per RVE; samples are appended
+  int trace_interval = 100;                                       ///< steps between samples
   MicrostructureRequest microstructure = {};  ///< of the samples; nothing is computed unless asked for
 };
 

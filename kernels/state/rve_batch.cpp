@@ -52,7 +52,8 @@ double mobility_of(const GrainMaterial& m, double radius) {
 double rotational_mobility_of(const GrainMaterial& m, double radius, double largest_radius) {
   const double kt = m.stiffness_ratio * m.modulus * radius;
   const double ratio = largest_radius / radius;
-  const double rolling = m.rolling_stiffness * 2.0 * ratio * ratio / (1.0 + ratio);  // k_r / (k_t r^2) on the largest grain
+  const double rolling = m.rolling_stiffness * 2.0 * ratio * ratio / (1.0 + ratio);  // k_r / (k_t r^2) on the largest
+                                                                                     // grain
   return step_safety * step_safety * 4.0 / (neighbours * (4.0 + 2.0 * rolling) * kt * radius * radius);
 }
 
@@ -83,22 +84,32 @@ void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size
 
 const char* name_of(RveStatus s) {
   switch (s) {
-    case RveStatus::converged: return "converged";
-    case RveStatus::step_limit: return "step_limit";
-    case RveStatus::open: return "open";
-    case RveStatus::neighbour_overflow: return "neighbour_overflow";
-    case RveStatus::overlap_limit: return "overlap_limit";
-    case RveStatus::not_finite: return "not_finite";
+    case RveStatus::converged:
+      return "converged";
+    case RveStatus::step_limit:
+      return "step_limit";
+    case RveStatus::open:
+      return "open";
+    case RveStatus::neighbour_overflow:
+      return "neighbour_overflow";
+    case RveStatus::overlap_limit:
+      return "overlap_limit";
+    case RveStatus::not_finite:
+      return "not_finite";
   }
   return "unknown";
 }
 
 const char* name_of(TangentKind kind) {
   switch (kind) {
-    case TangentKind::contact: return "contact";
-    case TangentKind::elastic: return "elastic";
-    case TangentKind::static_: return "static";
-    case TangentKind::loading: return "loading";
+    case TangentKind::contact:
+      return "contact";
+    case TangentKind::elastic:
+      return "elastic";
+    case TangentKind::static_:
+      return "static";
+    case TangentKind::loading:
+      return "loading";
   }
   return "unknown";
 }

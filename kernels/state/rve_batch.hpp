@@ -2,8 +2,8 @@
 /// All RVEs of a run: what they are (packings), where they stand (committed state), and where the last evaluation left
 /// them (trial state). Data only; verbs are in advance_rves.hpp.
 ///
-/// Layout (RVE, grain, component), LayoutRight: one thread walks one group, one RVE is contiguous. State is double, whatever
-/// the lanes compute in, and complete: neighbour lists derive from it.
+/// Layout (RVE, grain, component), LayoutRight: one thread walks one group, one RVE is contiguous. State is double,
+/// whatever the lanes compute in, and complete: neighbour lists derive from it.
 
 #include <Kokkos_Core.hpp>
 #include <cmath>
@@ -20,11 +20,11 @@ namespace voussoir::kernels {
 
 /// What all RVEs cloned from one packing share.
 struct Packing {
-  std::vector<double> radii;                   ///< [m]
+  std::vector<double> radii;                                             ///< [m]
   std::vector<GrainMaterial> materials = std::vector<GrainMaterial>(1);  ///< the classes of grains (Table 1)
-  std::vector<std::uint8_t> class_of;          ///< by grain, index into `materials`; empty: all of class 0
-  double thickness = 0.1;      ///< out of plane [m]
-  double local_damping = 0.3;  ///< Cundall's lambda [-]
+  std::vector<std::uint8_t> class_of;  ///< by grain, index into `materials`; empty: all of class 0
+  double thickness = 0.1;              ///< out of plane [m]
+  double local_damping = 0.3;          ///< Cundall's lambda [-]
 
   [[nodiscard]] int size() const { return static_cast<int>(radii.size()); }
   [[nodiscard]] const GrainMaterial& material_of(std::size_t grain) const {
@@ -32,15 +32,15 @@ struct Packing {
   }
   [[nodiscard]] double mean_diameter() const;
   [[nodiscard]] double largest_radius() const;
-  [[nodiscard]] double solid_area() const;     ///< sum of pi r^2 [m^2]
-  [[nodiscard]] double mean_mobility() const;  ///< mean of dt^2/m [m/N], see kernels/README.md "Mobilities"
+  [[nodiscard]] double solid_area() const;      ///< sum of pi r^2 [m^2]
+  [[nodiscard]] double mean_mobility() const;   ///< mean of dt^2/m [m/N], see kernels/README.md "Mobilities"
   [[nodiscard]] double mean_stiffness() const;  ///< mean of E r [N/m], the normal stiffness of a grain against its like
 
   [[nodiscard]] double inertial_time(double pressure) const;  ///< as below, of the packing's mean mobility
 };
 
-/// Inertial number per strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| * inertial_time(p) for |D| in
-/// strain per step. @param mean_mobility [m/N]; @param thickness [m]; @param pressure [Pa]
+/// Inertial number per strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| * inertial_time(p) for
+/// |D| in strain per step. @param mean_mobility [m/N]; @param thickness [m]; @param pressure [Pa]
 [[nodiscard]] KOKKOS_INLINE_FUNCTION double inertial_time(double mean_mobility, double thickness, double pressure) {
   return 1.0 / std::sqrt(mean_mobility * pressure * thickness);
 }
@@ -55,12 +55,12 @@ struct RveStates {
   template <class T>
   using Array = Kokkos::View<T, Kokkos::LayoutRight, Kokkos::HostSpace>;
 
-  Array<double** [2]> position;        ///< [m], wrapped into the cell
-  Array<double**> rotation;            ///< absolute [rad]
-  Array<double* [4]> cell;             ///< H row-major; columns are the periodic vectors [m]
+  Array<double** [2]> position;  ///< [m], wrapped into the cell
+  Array<double**> rotation;      ///< absolute [rad]
+  Array<double* [4]> cell;       ///< H row-major; columns are the periodic vectors [m]
   Array<int*> contact_count;
-  Array<std::uint32_t**> contact_key;  ///< pair_key(i, j), ascending
-  Array<double** [2]> contact_history; ///< tangential force [N], rolling moment [N m]
+  Array<std::uint32_t**> contact_key;   ///< pair_key(i, j), ascending
+  Array<double** [2]> contact_history;  ///< tangential force [N], rolling moment [N m]
 
   RveStates() = default;
   RveStates(std::string_view label, std::size_t n, int grains);
@@ -72,29 +72,34 @@ struct RveStates {
   return (static_cast<std::uint32_t>(i) << 16) | static_cast<std::uint32_t>(j);
 }
 [[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr int first_of(std::uint32_t key) { return static_cast<int>(key >> 16); }
-[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr int second_of(std::uint32_t key) { return static_cast<int>(key & 0xffffU); }
+[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr int second_of(std::uint32_t key) {
+  return static_cast<int>(key & 0xffffU);
+}
 
 inline constexpr int max_grains = 65535;  ///< indices of a pair fit one word
 
-/// How an evaluation of one RVE ended. The last three make the increment unusable; `open` and `step_limit` are reported.
-/// `neighbour_overflow` also stands for a cell too narrow for its largest grains.
+/// How an evaluation of one RVE ended. The last three make the increment unusable; `open` and `step_limit` are
+/// reported. `neighbour_overflow` also stands for a cell too narrow for its largest grains.
 enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, overlap_limit, not_finite };
 
-[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr bool is_failure(RveStatus s) { return s >= RveStatus::neighbour_overflow; }
+[[nodiscard]] KOKKOS_INLINE_FUNCTION constexpr bool is_failure(RveStatus s) {
+  return s >= RveStatus::neighbour_overflow;
+}
 [[nodiscard]] const char* name_of(RveStatus s);
 [[nodiscard]] const char* name_of(TangentKind kind);  ///< as a case file has it
 
 /// Answer of one RVE.
 struct RveReport {
   RveStatus status = RveStatus::converged;
-  int steps = 0;                ///< executed, hold included
+  int steps = 0;  ///< executed, hold included
   int contacts = 0;
   double stress[4] = {};        ///< Love-Weber, xx xy yx yy, tension positive [Pa]
   double tangent[6] = {};       ///< symmetrised, xxxx xxyy xxxy yyyy yyxy xyxy [Pa]
   double tangent_skew[3] = {};  ///< of a loading tangent, (D_ab - D_ba)/2 of xxyy xxxy yyxy [Pa]
   TangentKind tangent_kind = TangentKind::contact;
   int tangent_iterations = 0;   ///< of a static tangent
-  bool tangent_capped = false;  ///< they reached their limit: too stiff, by less than eq. (4); of `loading`: `elastic` instead
+  bool tangent_capped = false;  ///< they reached their limit: too stiff, by less than eq. (4); of `loading`: `elastic`
+                                ///< instead
   double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
   double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
   double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]
@@ -117,7 +122,9 @@ struct RveBatch {
   CandidateCache candidates;
 
   [[nodiscard]] std::size_t size() const { return packing_of.size(); }
-  [[nodiscard]] const Packing& packing(std::size_t rve) const { return packings[static_cast<std::size_t>(packing_of[rve])]; }
+  [[nodiscard]] const Packing& packing(std::size_t rve) const {
+    return packings[static_cast<std::size_t>(packing_of[rve])];
+  }
 };
 
 /// One RVE's state from one set of states to another of the same shape.

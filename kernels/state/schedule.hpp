@@ -1,8 +1,8 @@
 #pragma once
 /// What decides how RVEs are run: how much work they ask for, and which parts of the law they need.
 
-#include "kernels/state/rve_batch.hpp"
 #include "kernels/state/requests.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 

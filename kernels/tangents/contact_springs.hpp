@@ -117,9 +117,7 @@ KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull(const SpringLanes<V>& s, const Spr
 }
 
 /// Share of its cap at which a spring counts as yielded; above 1, none does.
-[[nodiscard]] inline double elastic_share(TangentKind kind) {
-  return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0;
-}
+[[nodiscard]] inline double elastic_share(TangentKind kind) { return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0; }
 
 /// The springs of every pair that touches in some lane.
 template <class Law, class V>
@@ -144,8 +142,8 @@ void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<
       if (!Kokkos::Experimental::any_of(at.gap < zero)) continue;
       const PairDistance<V> distance = distance_of(at.gap, shape);
       const V to_unit = distance.inverse_length;
-      const ContactStiffness<V> k =
-          law_of<Law, V>(shape).stiffness(distance.overlap, {pair.tangential, pair.moment}, share);
+      const ContactStiffness<V> k = law_of<Law, V>(shape).stiffness(distance.overlap, {pair.tangential, pair.moment},
+                                                                    share);
       const V y = V(1) + distance.excess;
       system.springs.push_back(
           {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling});
@@ -204,7 +202,8 @@ void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
 }
 
 /// Adds to forces(i) what the contacts do to grain i under the motions(i), both StrainDofs of all grains.
-/// act(c, a, strain, radius_i, radius_j, on_i, on_j) is contact c under motion a. Rows gather grain i's part in registers.
+/// act(c, a, strain, radius_i, radius_j, on_i, on_j) is contact c under motion a. Rows gather grain i's part in
+/// registers.
 template <class V, class Motions, class Forces, class Act>
 void respond(const SpringSystem<V>& system, const Motions& motions, const Forces& forces, const Act& act) {
   for (std::size_t i = 0; i + 1 < system.row.size(); ++i) {
@@ -232,7 +231,7 @@ struct SpringsAct {
   const SpringSystem<V>& system;
 
   VOUSSOIR_LANES_INLINE void operator()(std::size_t c, std::size_t, const SpringStrain<V>& e, const V& radius_i,
-                                              const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
+                                        const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
     pull(system.springs[c], force_of(system.springs[c], e), radius_i, radius_j, on_i, on_j);
   }
 };
@@ -248,8 +247,7 @@ void apply_springs(SpringSystem<V>& system) {
 /// Total strain of spring c under unit strain `a` and the grains' motion in answer to it.
 template <class V>
 VOUSSOIR_LANES_INLINE SpringStrain<V> strain_of(const SpringLanes<V>& s, std::size_t a, const SolverGrain<V>& gi,
-                                                      const SolverGrain<V>& gj, const V& ri, const V& rj, V& dx,
-                                                      V& dy) {
+                                                const SolverGrain<V>& gj, const V& ri, const V& rj, V& dx, V& dy) {
   dx = gj.motion[a].x - gi.motion[a].x;
   dy = gj.motion[a].y - gi.motion[a].y;
   add_unit_strain(static_cast<int>(a), s, dx, dy);

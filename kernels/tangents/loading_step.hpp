@@ -1,9 +1,10 @@
 #pragma once
-/// A small step of strain on the contacts at rest, with the law's caps: what it does to the forces, and the slopes of that.
+/// A small step of strain on the contacts at rest, with the law's caps: what it does to the forces, and the slopes of
+/// that.
 ///
-/// The geometry is linear, the law is not: a contact whose spring would pass its cap follows mu f_n (or arm f_n) instead, an opening
-/// one loses its forces (LinearContactLaw::step). Forces that are carried already turn with their contacts. All motions and forces
-/// are per strain of the step, so that they have the size of static_tangent.hpp's.
+/// The geometry is linear, the law is not: a contact whose spring would pass its cap follows mu f_n (or arm f_n)
+/// instead, an opening one loses its forces (LinearContactLaw::step). Forces that are carried already turn with their
+/// contacts. All motions and forces are per strain of the step, so that they have the size of static_tangent.hpp's.
 
 #include "kernels/tangents/contact_springs.hpp"
 
@@ -48,8 +49,8 @@ VOUSSOIR_LANES_INLINE SpringForce<V> force_of(const StepSlope<V>& k, const Sprin
 /// As `pull`, with the carried force turned. Returns the change of the force on i.
 template <class V>
 VOUSSOIR_LANES_INLINE GrainDofs<V> pull_and_turn(const SpringLanes<V>& s, const StepSpring<V>& carried,
-                                                       const SpringForce<V>& f, const V& across, const V& radius_i,
-                                                       const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) {
+                                                 const SpringForce<V>& f, const V& across, const V& radius_i,
+                                                 const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) {
   const GrainDofs<V> change = pull(s, f, radius_i, radius_j, on_i, on_j);
   const V tx = across * carried.turned_x, ty = across * carried.turned_y;
   on_i.x = on_i.x + tx;
@@ -77,8 +78,8 @@ void prepare_step(const GroupState<V>& group, const SpringSystem<V>& system, Ste
 /// The law's answer for contact c under strain `e` of column `a`, per strain of the step; its slopes are kept.
 template <class Law, class V>
 VOUSSOIR_LANES_INLINE SpringForce<V> answer(const GroupState<V>& group, const SpringSystem<V>& system,
-                                                  StepSystem<V>& step, std::size_t c, std::size_t a,
-                                                  const SpringStrain<V>& e) {
+                                            StepSystem<V>& step, std::size_t c, std::size_t a,
+                                            const SpringStrain<V>& e) {
   const auto p = static_cast<std::size_t>(system.shapes[c].pair);
   const V& size = step.size[a];
   const V over_size = V(1) / size, over_ratio = V(1) / system.springs[c].ratio;
@@ -92,11 +93,11 @@ VOUSSOIR_LANES_INLINE SpringForce<V> answer(const GroupState<V>& group, const Sp
   return {-(fn * over_size), now.tangential.change * over_ratio * over_size, now.moment.change * over_size};
 }
 
-/// Adds what a contact contributes to the change of the stress. @param force change of that on i; @param dx, dy of the far end
+/// Adds what a contact contributes to the change of the stress. @param force change of that on i; @param dx, dy of the
+/// far end
 template <class V>
-VOUSSOIR_LANES_INLINE void add_change(const SpringLanes<V>& s, const StepSpring<V>& carried,
-                                            const GrainDofs<V>& force, const V& dx, const V& dy,
-                                            std::array<V, 3>& sum) {
+VOUSSOIR_LANES_INLINE void add_change(const SpringLanes<V>& s, const StepSpring<V>& carried, const GrainDofs<V>& force,
+                                      const V& dx, const V& dy, std::array<V, 3>& sum) {
   const V bx = s.branch * s.normal_x, by = s.branch * s.normal_y, half(real_of<V>(0.5));
   const V px = s.branch * carried.turned_y, py = -(s.branch * carried.turned_x);
   sum[0] = fused(force.x, bx, fused(px, dx, sum[0]));
@@ -130,7 +131,7 @@ struct SlopesAct {
   const StepSystem<V>& step;
 
   VOUSSOIR_LANES_INLINE void operator()(std::size_t c, std::size_t a, const SpringStrain<V>& e, const V& radius_i,
-                                              const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
+                                        const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
     const StepSpring<V>& now = step.springs[c];
     pull_and_turn(system.springs[c], now, force_of(now.slope[a], e), e.across, radius_i, radius_j, on_i, on_j);
   }

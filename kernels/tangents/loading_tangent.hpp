@@ -1,14 +1,16 @@
 #pragma once
-/// Loading tangent of all lanes at rest: column a is the change of stress under a small strain in direction a over its size, with
-/// the contacts that stick and those that reach their caps on the way told apart column by column.
+/// Loading tangent of all lanes at rest: column a is the change of stress under a small strain in direction a over its
+/// size, with the contacts that stick and those that reach their caps on the way told apart column by column.
 ///
-/// The direction's sign is that of the last motion, so it is the secant of going on (loading_step.hpp has the step's physics).
-/// Newton on the step's residual, whose slopes are piecewise constant: the contacts at their caps are those of the last residual.
-/// Its systems are nonsymmetric (f_t = +- mu f_n has no potential) and solved by biconjugate gradients, stabilised (van der Vorst
-/// 1992), with the elastic diagonal as preconditioner, to a tenth each. It starts from the elastic tangent's motions.
+/// The direction's sign is that of the last motion, so it is the secant of going on (loading_step.hpp has the step's
+/// physics). Newton on the step's residual, whose slopes are piecewise constant: the contacts at their caps are those
+/// of the last residual. Its systems are nonsymmetric (f_t = +- mu f_n has no potential) and solved by biconjugate
+/// gradients, stabilised (van der Vorst 1992), with the elastic diagonal as preconditioner, to a tenth each. It starts
+/// from the elastic tangent's motions.
 ///
-/// A packing may have no equilibrium within the step (a limit state), and contacts may alternate for ever: a lane with a column that
-/// has not converged at the limit of iterations, or whose residual grows, keeps its elastic tangent and says so.
+/// A packing may have no equilibrium within the step (a limit state), and contacts may alternate for ever: a lane with
+/// a column that has not converged at the limit of iterations, or whose residual grows, keeps its elastic tangent and
+/// says so.
 
 #include "kernels/tangents/loading_step.hpp"
 #include "kernels/tangents/static_tangent.hpp"
@@ -16,8 +18,8 @@
 namespace voussoir::kernels {
 
 inline constexpr int most_rounds = 12;  ///< of Newton; those that converge take 2 to 12
-/// Of a column, if settings.tangent_iterations are not fewer; 99 of 100 that converge take fewer than 100 (biaxial_bvp past its peak,
-/// strains of 1e-6 to 1e-4).
+/// Of a column, if settings.tangent_iterations are not fewer; 99 of 100 that converge take fewer than 100 (biaxial_bvp
+/// past its peak, strains of 1e-6 to 1e-4).
 inline constexpr int most_step_iterations = 150;
 inline constexpr double round_reduction = 0.1;  ///< of the residual by one round's linear solution
 
@@ -66,8 +68,8 @@ void begin_round(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<V>& s
   solver.rho = solver.alpha = solver.omega = {one, one, one};
 }
 
-/// direction = preconditioned residual + beta (direction + omega preconditioned image); clears the images. Images are those of
-/// the contacts' forces, which are minus the matrix.
+/// direction = preconditioned residual + beta (direction + omega preconditioned image); clears the images. Images are
+/// those of the contacts' forces, which are minus the matrix.
 template <class V>
 void turn_step_directions(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<V>& solver) {
   const V zero(0);

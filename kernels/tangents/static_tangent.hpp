@@ -20,8 +20,8 @@
 namespace voussoir::kernels {
 
 inline constexpr int tangent_look_interval = 16;  ///< iterations between looks at the energies
-inline constexpr double softest =
-    1e-2;  ///< energies are resolved down to this share of the affine one: mechanisms have none
+inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine one: mechanisms
+                                         ///< have none
 
 /// Answer of a group: sums over contacts, to be divided by the volume.
 template <class V>

@@ -12,8 +12,9 @@ template <class Drive, class real>
 Work choose(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
             std::span<RveReport> reports, std::span<const int> rves) {
   using V = SingleLane<real>;
-  return rolls(batch) ? launch_teams<LinearContactLaw<V, true>, Drive, Space>(batch, requests, settings, reports, rves)
-                      : launch_teams<LinearContactLaw<V, false>, Drive, Space>(batch, requests, settings, reports, rves);
+  return rolls(batch)
+             ? launch_teams<LinearContactLaw<V, true>, Drive, Space>(batch, requests, settings, reports, rves)
+             : launch_teams<LinearContactLaw<V, false>, Drive, Space>(batch, requests, settings, reports, rves);
 }
 
 template <class Drive>

@@ -1,6 +1,7 @@
 #pragma once
-/// The engine's verbs with one RVE per team of threads: what a GPU runs. The time loop is inside the kernel and every team ends
-/// with its RVE. An RVE's answer has the bits of `EngineSettings::backend = lanes` on the same processor, whatever the team's size.
+/// The engine's verbs with one RVE per team of threads: what a GPU runs. The time loop is inside the kernel and every
+/// team ends with its RVE. An RVE's answer has the bits of `EngineSettings::backend = lanes` on the same processor,
+/// whatever the team's size.
 ///
 /// Called through `advance` (advance_rves.hpp).
 
@@ -11,8 +12,8 @@
 namespace voussoir::kernels {
 
 /// Given motions of some RVEs (their numbers, each once), on Kokkos' default execution space.
-/// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team the space cannot form, or packings
-/// whose list does not fit the scratch
+/// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team the space cannot form,
+/// or packings whose list does not fit the scratch
 Work advance_teams(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
                    std::span<RveReport> reports, std::span<const int> rves);
 

@@ -1,6 +1,6 @@
 #pragma once
-/// What teams read and write: packings, states and requests in the memory of the space that runs them. Where that is the host's,
-/// states are the batch's own.
+/// What teams read and write: packings, states and requests in the memory of the space that runs them. Where that is
+/// the host's, states are the batch's own.
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
@@ -39,7 +39,9 @@ template <class real, class Space>
   const std::size_t n = batch.packings.size();
   std::size_t grains = 0;
   for (const Packing& p : batch.packings) grains = std::max(grains, p.radii.size());
-  const auto unset = [](const char* label) { return Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)); };
+  const auto unset = [](const char* label) {
+    return Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label));
+  };
   using Packings = TeamPackings<real, Space>;
   const Packings out{.scales = decltype(Packings::scales)(unset("voussoir::team_batch::scales"), n),
                      .radii = decltype(Packings::radii)(unset("voussoir::team_batch::radii"), n, grains),
@@ -101,13 +103,13 @@ template <class real, class Drive, class Space>
 struct TeamBatch {
   TeamPackings<real, Space> packings;
   TeamStates<Space> committed, trial;
-  TeamArray<int*, Space> packing_of;   ///< by RVE
-  TeamArray<int*, Space> order;        ///< RVEs, most work first
-  TeamArray<Drive*, Space> drives;     ///< by RVE
-  TeamArray<RveReport*, Space> reports;         ///< by RVE
-  TeamArray<ServoSample**, Space> samples;      ///< (RVE, sample), of stress-controlled cells
-  TeamArray<int*, Space> sample_count;          ///< by RVE
-  int most_grains = 0;                 ///< of all packings
+  TeamArray<int*, Space> packing_of;        ///< by RVE
+  TeamArray<int*, Space> order;             ///< RVEs, most work first
+  TeamArray<Drive*, Space> drives;          ///< by RVE
+  TeamArray<RveReport*, Space> reports;     ///< by RVE
+  TeamArray<ServoSample**, Space> samples;  ///< (RVE, sample), of stress-controlled cells
+  TeamArray<int*, Space> sample_count;      ///< by RVE
+  int most_grains = 0;                      ///< of all packings
 };
 
 }  // namespace voussoir::kernels

@@ -58,8 +58,8 @@ template <class Run>
   each(run, run.grains, [&](int i) {
     to.position(rve, i, 0) = at.position(i, 0);
     to.position(rve, i, 1) = at.position(i, 1);
-    to.rotation(rve, i) =
-        run.batch.committed.rotation(rve, i) + run.course().rotation + static_cast<double>(at.grains(i).rotation[0]);
+    to.rotation(rve, i) = run.batch.committed.rotation(rve, i) + run.course().rotation +
+                          static_cast<double>(at.grains(i).rotation[0]);
   });
   pack(
       run, run.listed(), [&](int p) { return at.springs(p).weight[0] > 0; },

@@ -1,5 +1,6 @@
 #pragma once
-/// The team kernel and its launch. Only advance_teams.cpp and the programs of tests/cuda include it: it is long to compile.
+/// The team kernel and its launch. Only advance_teams.cpp and the programs of tests/cuda include it: it is long to
+/// compile.
 
 #include <stdexcept>
 #include <type_traits>
@@ -17,7 +18,8 @@ template <class Run>
 KOKKOS_FUNCTION void judge_team(const Run& run, int step) {
   auto& course = run.course();
   Measurement seen;
-  const Outcome outcome = judge(course, step, run.settings, run.shared().sums, 0, run.shared().cell, run.scales(), seen);
+  const Outcome outcome = judge(course, step, run.settings, run.shared().sums, 0, run.shared().cell, run.scales(),
+                                seen);
   course.running = outcome == Outcome::running;
   if constexpr (std::is_same_v<typename Run::Drive, ServoControl>) {
     if (outcome == Outcome::lost || !course.drive.samples(step)) return;
@@ -104,7 +106,8 @@ void make_sample_room(Batch& batch, std::span<const ServoRequest> requests) {
     if (r.microstructure.any()) throw std::invalid_argument("teams: no microstructure is recorded along a path");
     if (r.trace != nullptr) room = std::max(room, (r.max_steps - 1) / r.trace_interval + 1);
   }
-  batch.samples = decltype(batch.samples)("voussoir::team_launch::samples", requests.size(), static_cast<std::size_t>(room));
+  batch.samples = decltype(batch.samples)("voussoir::team_launch::samples", requests.size(),
+                                          static_cast<std::size_t>(room));
   batch.sample_count = decltype(batch.sample_count)("voussoir::team_launch::sample_count", requests.size());
 }
 template <class Batch>
@@ -122,11 +125,13 @@ template <class Batch>
 void append_samples(const Batch&, std::span<const StrainRequest>) {}
 
 template <class Space, class real, class Drive>
-[[nodiscard]] TeamBatch<real, Drive, Space> team_batch(const RveBatch& batch, std::span<const typename Drive::Request> requests,
+[[nodiscard]] TeamBatch<real, Drive, Space> team_batch(const RveBatch& batch,
+                                                       std::span<const typename Drive::Request> requests,
                                                        const EngineSettings& settings, std::span<const int> rves) {
   std::vector<int> order(rves.begin(), rves.end());
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return predicted_steps(requests[static_cast<std::size_t>(a)]) > predicted_steps(requests[static_cast<std::size_t>(b)]);
+    return predicted_steps(requests[static_cast<std::size_t>(a)]) >
+           predicted_steps(requests[static_cast<std::size_t>(b)]);
   });
   std::vector<Drive> drives;
   for (std::size_t k = 0; k < batch.size(); ++k) drives.emplace_back(requests[k], batch.packing(k), settings);
@@ -164,7 +169,8 @@ Work launch_teams(RveBatch& batch, std::span<const typename Drive::Request> requ
   for (const int rve : rves) {
     const auto k = static_cast<std::size_t>(rve);
     reports[k] = answers(k);
-    work.particle_steps += static_cast<std::size_t>(batch.packing(k).size()) * static_cast<std::size_t>(reports[k].steps);
+    work.particle_steps += static_cast<std::size_t>(batch.packing(k).size()) *
+                           static_cast<std::size_t>(reports[k].steps);
   }
   work.lane_steps = work.particle_steps;  // a team ends with its RVE
   return work;

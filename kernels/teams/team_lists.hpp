@@ -1,6 +1,6 @@
 #pragma once
-/// A team lists the pairs of its RVE: all pairs are tried, N (N - 1) / 2 distances shared by its threads. Rows come out in
-/// ascending order without a sort.
+/// A team lists the pairs of its RVE: all pairs are tried, N (N - 1) / 2 distances shared by its threads. Rows come out
+/// in ascending order without a sort.
 
 #include "kernels/contact/pair_reference.hpp"
 #include "kernels/teams/team_run.hpp"
@@ -85,8 +85,8 @@ template <class Run>
   return true;
 }
 
-/// The list at the RVE's positions; branches and gaps in double, rounded once. A kept contact that is no candidate has opened by
-/// more than the skin and is dropped. False where there is no room.
+/// The list at the RVE's positions; branches and gaps in double, rounded once. A kept contact that is no candidate has
+/// opened by more than the skin and is dropped. False where there is no room.
 template <class Run, class Kept>
 [[nodiscard]] KOKKOS_FUNCTION bool list_pairs(const Run& run, const Kept& kept) {
   using V = typename Run::V;
@@ -97,9 +97,9 @@ template <class Run, class Kept>
   each(run, run.listed(), [&](int p) {
     const int i = at.first(p), j = at.shapes(p).other;
     at.shapes(p) = pair_shape<real>(j, run.material(i), run.radius(i), run.material(j), run.radius(j));
-    const PairReference reference =
-        pair_reference(at.position(j, 0) - at.position(i, 0), at.position(j, 1) - at.position(i, 1),
-                       run.radius(i) + run.radius(j), cell);
+    const PairReference reference = pair_reference(at.position(j, 0) - at.position(i, 0),
+                                                   at.position(j, 1) - at.position(i, 1), run.radius(i) + run.radius(j),
+                                                   cell);
     const int k = kept.find(pair_key(i, j));
     at.pairs(p) = {V(static_cast<real>(reference.branch_x)), V(static_cast<real>(reference.branch_y)),
                    V(static_cast<real>(reference.gap)), V(k < 0 ? real(0) : static_cast<real>(kept.histories(k, 0))),

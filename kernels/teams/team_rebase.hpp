@@ -98,8 +98,8 @@ KOKKOS_FUNCTION void check_list(const Run& run, int step) {
   using real = typename Run::real;
   const auto& grains = run.at.grains;
   const auto squared = [&](const V& x, const V& y) { return static_cast<real>(fused(x, x, y * y)); };
-  const int unknown =
-      count(run, run.grains, [&](int i) { return !std::isfinite(squared(grains(i).u_x, grains(i).u_y)); });
+  const int unknown = count(run, run.grains,
+                            [&](int i) { return !std::isfinite(squared(grains(i).u_x, grains(i).u_y)); });
   const real moved = largest<real>(run, run.grains, [&](int i) { return squared(grains(i).u_x, grains(i).u_y); });
   const real fastest = largest<real>(run, run.grains, [&](int i) { return squared(grains(i).w_x, grains(i).w_y); });
   alone(run, [&] {
@@ -108,10 +108,17 @@ KOKKOS_FUNCTION void check_list(const Run& run, int step) {
                                      run.settings.list_interval, step);
   });
   switch (run.shared().list) {
-    case ListState::valid: break;
-    case ListState::stale: rebase(run); break;
-    case ListState::not_finite: end_course(run, RveStatus::not_finite); break;
-    case ListState::flown: end_course(run, RveStatus::overlap_limit); break;
+    case ListState::valid:
+      break;
+    case ListState::stale:
+      rebase(run);
+      break;
+    case ListState::not_finite:
+      end_course(run, RveStatus::not_finite);
+      break;
+    case ListState::flown:
+      end_course(run, RveStatus::overlap_limit);
+      break;
   }
 }
 

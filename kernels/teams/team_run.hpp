@@ -1,8 +1,9 @@
 #pragma once
-/// One team at work on one RVE: where its numbers are, and the three ways its threads share a loop. All three end in a barrier.
+/// One team at work on one RVE: where its numbers are, and the three ways its threads share a loop. All three end in a
+/// barrier.
 ///
-/// Results do not depend on the number of threads: a loop's body writes only what is its own, maxima and counts have no order,
-/// and sums of real numbers are taken by one thread each, in the order of the list.
+/// Results do not depend on the number of threads: a loop's body writes only what is its own, maxima and counts have no
+/// order, and sums of real numbers are taken by one thread each, in the order of the list.
 
 #include "kernels/teams/team_batch.hpp"
 #include "kernels/teams/team_scratch.hpp"
@@ -40,7 +41,9 @@ struct TeamRun {
   [[nodiscard]] KOKKOS_FUNCTION RveCourse<Drive>& course() const { return at.shared(0).course; }
   [[nodiscard]] KOKKOS_FUNCTION double radius(int i) const { return batch.packings.radii(packing, i); }
   [[nodiscard]] KOKKOS_FUNCTION const GrainShape<real>& shape(int i) const { return batch.packings.shapes(packing, i); }
-  [[nodiscard]] KOKKOS_FUNCTION const GrainMaterial& material(int i) const { return batch.packings.materials(packing, i); }
+  [[nodiscard]] KOKKOS_FUNCTION const GrainMaterial& material(int i) const {
+    return batch.packings.materials(packing, i);
+  }
   /// Pairs in the list.
   [[nodiscard]] KOKKOS_FUNCTION int listed() const { return at.row(grains); }
 };

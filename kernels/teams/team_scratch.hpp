@@ -1,6 +1,7 @@
 #pragma once
-/// Working state of one RVE in its team's scratch. A GPU's fast memory (level 0) holds what every pair reads, the grains, if it
-/// fits; the list and what rebases need are in level 1, of which there is one per team that runs, not one per RVE.
+/// Working state of one RVE in its team's scratch. A GPU's fast memory (level 0) holds what every pair reads, the
+/// grains, if it fits; the list and what rebases need are in level 1, of which there is one per team that runs, not one
+/// per RVE.
 
 #include <Kokkos_Core.hpp>
 
@@ -9,8 +10,8 @@
 
 namespace voussoir::kernels {
 
-/// Room of a team's list. Discs in contact have at most 3 pairs each, a skin lists more. An RVE that needs more room ends as
-/// `neighbour_overflow`.
+/// Room of a team's list. Discs in contact have at most 3 pairs each, a skin lists more. An RVE that needs more room
+/// ends as `neighbour_overflow`.
 inline constexpr int listed_per_grain = 8;
 
 /// What all threads of a team share.
@@ -62,18 +63,18 @@ struct TeamScratch {
 
   Shared shared;  ///< one
   Grains grains;
-  Positions position;    ///< at the last rebase [m]
-  Counts row;            ///< pairs of grain i: row(i) .. row(i + 1)
-  Counts first;          ///< i of a pair; j is shapes(p).other
-  Counts incoming_end;   ///< pairs (h, i), h < i: incoming(incoming_end(i - 1) .. incoming_end(i)), ascending
+  Positions position;   ///< at the last rebase [m]
+  Counts row;           ///< pairs of grain i: row(i) .. row(i + 1)
+  Counts first;         ///< i of a pair; j is shapes(p).other
+  Counts incoming_end;  ///< pairs (h, i), h < i: incoming(incoming_end(i - 1) .. incoming_end(i)), ascending
   Counts incoming;
   Pairs pairs;
   Shapes shapes;
-  Actions actions;       ///< of the step that runs
+  Actions actions;  ///< of the step that runs
   Branches branches;
   Forces forces;
-  Springs springs;       ///< at the end
-  Keys kept_key;         ///< of a rebase: contacts with history
+  Springs springs;  ///< at the end
+  Keys kept_key;    ///< of a rebase: contacts with history
   Histories kept_history;
 
   template <class Member>

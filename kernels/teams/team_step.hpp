@@ -1,8 +1,9 @@
 #pragma once
 /// One step of a team's RVE, kernels/README.md "One step": all pairs at once, then all grains at once.
 ///
-/// A pair is computed once, in the lanes' orientation i < j, and keeps what it does to both grains; a grain then gathers its
-/// pairs, those with smaller neighbours first. That is the order of the lanes' sweep: same bits, and no atomics.
+/// A pair is computed once, in the lanes' orientation i < j, and keeps what it does to both grains; a grain then
+/// gathers its pairs, those with smaller neighbours first. That is the order of the lanes' sweep: same bits, and no
+/// atomics.
 
 #include "kernels/teams/team_run.hpp"
 
@@ -96,7 +97,8 @@ KOKKOS_FUNCTION void sum_step(const Run& run) {
     if (q == 5) sums.largest_overlap = V(overlap);
     if (q != 4) return;
     V sum(0);
-    for (int i = 0; i < run.grains; ++i) sum = fused(at.forces(i).x, at.forces(i).x, fused(at.forces(i).y, at.forces(i).y, sum));
+    for (int i = 0; i < run.grains; ++i)
+      sum = fused(at.forces(i).x, at.forces(i).x, fused(at.forces(i).y, at.forces(i).y, sum));
     sums.force_squared = sum;
   });
 }

@@ -21,7 +21,7 @@
 namespace voussoir::kernels {
 namespace {
 
-constexpr double pressure = 1.0e5;  ///< [Pa]
+constexpr double pressure = 1.0e5;    ///< [Pa]
 constexpr double increment = 1.0e-3;  ///< shear strain eps_q of an evaluation [-]
 constexpr int strain_steps = 400;
 constexpr int groups = 4;  ///< more than one, so that a group finds the caches as in a run
@@ -53,7 +53,8 @@ const host::PackedRve& gravel() {
 }
 
 std::size_t lanes_of(Precision precision) {
-  return static_cast<std::size_t>(precision == Precision::float32 ? lane_count<WideLane<float>> : lane_count<WideLane<double>>);
+  return static_cast<std::size_t>(precision == Precision::float32 ? lane_count<WideLane<float>>
+                                                                  : lane_count<WideLane<double>>);
 }
 
 /// Pure shear of eps_q = `shear` whose major axis stands at `angle` to x, with `dilation` of every length.
@@ -70,17 +71,14 @@ Scene clones(const host::PackedRve& rve, std::size_t n, Precision precision) {
   return scene;
 }
 
-Scene alike(Precision precision) {
-  return clones(sand(), groups * lanes_of(precision), precision);
-}
+Scene alike(Precision precision) { return clones(sand(), groups * lanes_of(precision), precision); }
 
-Scene grading(Precision precision) {
-  return clones(gravel(), groups * lanes_of(precision), precision);
-}
+Scene grading(Precision precision) { return clones(gravel(), groups * lanes_of(precision), precision); }
 
 Scene without_rolling(Precision precision) {
   Scene scene = alike(precision);
-  for (GrainMaterial& material : scene.batch.packings[0].materials) material.rolling_stiffness = material.rolling_limit = 0.0;
+  for (GrainMaterial& material : scene.batch.packings[0].materials)
+    material.rolling_stiffness = material.rolling_limit = 0.0;
   return scene;
 }
 
@@ -106,7 +104,8 @@ double dilation_of(const RveReport& report) {
   return bulk > 0 ? 0.5 * (report.pressure() - pressure) / bulk : 0.0;
 }
 
-/// The lanes of every group sheared to eps_q = 10 % in W equally spaced directions at constant pressure, then one increment more.
+/// The lanes of every group sheared to eps_q = 10 % in W equally spaced directions at constant pressure, then one
+/// increment more.
 Scene apart(Precision precision) {
   Scene scene = alike(precision);
   const std::size_t width = lanes_of(precision);
@@ -153,7 +152,8 @@ void measure(benchmark::State& state, Scene& scene) {
   std::size_t particle_steps = 0;
   for (auto _ : state) {
     forget_candidates(scene.batch);  // lists are part of what is timed
-    particle_steps += advance(scene.batch, std::span<const StrainRequest>(scene.requests), scene.settings, reports).particle_steps;
+    particle_steps += advance(scene.batch, std::span<const StrainRequest>(scene.requests), scene.settings, reports)
+                          .particle_steps;
   }
   double contacts = 0, listed = 0, steps = 0, contact_steps = 0, listed_steps = 0;
   for (std::size_t k = 0; k < reports.size(); ++k) {
@@ -168,7 +168,8 @@ void measure(benchmark::State& state, Scene& scene) {
   }
   const auto cells = static_cast<double>(scene.batch.size());
   const double grains = scene.batch.packings[0].size();
-  state.counters["particle_steps/s"] = benchmark::Counter(static_cast<double>(particle_steps), benchmark::Counter::kIsRate);
+  state.counters["particle_steps/s"] = benchmark::Counter(static_cast<double>(particle_steps),
+                                                          benchmark::Counter::kIsRate);
   const auto rate = [&](double each) {
     return benchmark::Counter(each * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
   };
@@ -183,11 +184,17 @@ void measure(benchmark::State& state, Scene& scene) {
 }
 
 void add(const std::string& name, int iterations, Scene (*make)(Precision)) {
-  for (const auto& [text, precision] : {std::pair{"float", Precision::float32}, std::pair{"double", Precision::float64}}) {
+  for (const auto& [text, precision] :
+       {std::pair{"float", Precision::float32}, std::pair{"double", Precision::float64}}) {
     const std::string full = name + "/" + text;
-    benchmark::RegisterBenchmark(full.c_str(), [=, precision = precision](benchmark::State& state) {
-      measure(state, scene_of(full, [=] { return make(precision); }));
-    })->Iterations(iterations)->Repetitions(5)->UseRealTime()->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(full.c_str(),
+                                 [=, precision = precision](benchmark::State& state) {
+                                   measure(state, scene_of(full, [=] { return make(precision); }));
+                                 })
+        ->Iterations(iterations)
+        ->Repetitions(5)
+        ->UseRealTime()
+        ->Unit(benchmark::kMillisecond);
   }
 }
 

@@ -12,7 +12,8 @@ using namespace voussoir::kernels;
 
 constexpr std::size_t n_rves = 64;
 
-std::vector<RveReport> run_on(Backend backend, Precision precision, const voussoir::reference::Rve& start, RveBatch& batch) {
+std::vector<RveReport> run_on(Backend backend, Precision precision, const voussoir::reference::Rve& start,
+                              RveBatch& batch) {
   batch = clones(start, n_rves);
   std::vector<StrainRequest> requests(n_rves);
   for (std::size_t k = 0; k < n_rves; ++k) {

@@ -44,8 +44,8 @@ struct ShearRow {
 
   PairShape<real> pair_shape;
   GrainShape<real> grain_shape;
-  Kokkos::View<double***, Kokkos::LayoutRight, typename Space::memory_space>
-      result;  ///< (RVE, grain, u_x u_y rotation)
+  Kokkos::View<double***, Kokkos::LayoutRight, typename Space::memory_space> result;  ///< (RVE, grain, u_x u_y
+                                                                                      ///< rotation)
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
     const Scratch<V, Space> state(team);
@@ -125,7 +125,8 @@ auto shear_row() {
   pair.tangential_cap = real(caps.tangential);
   pair.moment_cap = real(caps.moment);
   const double a = 0.1 / k.normal_stiffness;  // a tenth of the squared stable step
-  const GrainShape<real> grain{real(radius), real(a), real(2.0 * a / (radius * radius)), real(0.5 * a), real(a / (radius * radius))};
+  const GrainShape<real> grain{real(radius), real(a), real(2.0 * a / (radius * radius)), real(0.5 * a),
+                               real(a / (radius * radius))};
 
   using Functor = ShearRow<V, Rolling, Space>;
   const Functor functor{.pair_shape = pair,

@@ -32,8 +32,7 @@ inline Mat2 operator+(const Mat2& a, const Mat2& b) { return {a.xx + b.xx, a.xy 
 inline Mat2 operator-(const Mat2& a, const Mat2& b) { return {a.xx - b.xx, a.xy - b.xy, a.yx - b.yx, a.yy - b.yy}; }
 inline Mat2 operator*(double s, const Mat2& a) { return {s * a.xx, s * a.xy, s * a.yx, s * a.yy}; }
 inline Vec2 operator*(const Mat2& a, Vec2 v) { return {a.xx * v.x + a.xy * v.y, a.yx * v.x + a.yy * v.y}; }
-inline Mat2 operator*(const Mat2& a, const Mat2& b)
-{
+inline Mat2 operator*(const Mat2& a, const Mat2& b) {
   return {a.xx * b.xx + a.xy * b.yx, a.xx * b.xy + a.xy * b.yy, a.yx * b.xx + a.yy * b.yx, a.yx * b.xy + a.yy * b.yy};
 }
 inline double det(const Mat2& a) { return a.xx * a.yy - a.xy * a.yx; }
@@ -41,7 +40,8 @@ inline Mat2 inverse(const Mat2& a) { return (1.0 / det(a)) * Mat2{a.yy, -a.xy, -
 inline Mat2 transpose(const Mat2& a) { return {a.xx, a.yx, a.xy, a.yy}; }
 inline Mat2 symmetric_part(const Mat2& a) { return 0.5 * (a + transpose(a)); }
 
-/// log F = 2^k log F^(1/2^k), the latter by its power series: slow, and shares nothing with the closed form of the engine.
+/// log F = 2^k log F^(1/2^k), the latter by its power series: slow, and shares nothing with the closed form of the
+/// engine.
 /// @throws std::invalid_argument unless det F > 0 and no eigenvalue lies on the negative real axis
 Mat2 logarithm(const Mat2& f);
 

@@ -9,8 +9,7 @@ namespace voussoir::reference {
 namespace {
 
 /// Whether the next grain of a growing packing fits at `place` without touching those already placed (square cell).
-bool is_free(const Rve& rve, Vec2 place)
-{
+bool is_free(const Rve& rve, Vec2 place) {
   const double side = rve.cell.xx;
   const double radius = rve.radii[rve.positions.size()];
   for (std::size_t k = 0; k < rve.positions.size(); ++k) {
@@ -23,8 +22,8 @@ bool is_free(const Rve& rve, Vec2 place)
 
 }  // namespace
 
-Rve two_grains(double radius_i, double radius_j, double overlap, double angle, double cell_size, const Material& material)
-{
+Rve two_grains(double radius_i, double radius_j, double overlap, double angle, double cell_size,
+               const Material& material) {
   const Vec2 centre{0.5 * cell_size, 0.5 * cell_size};
   const double distance = radius_i + radius_j - overlap;
   const Vec2 normal{std::cos(angle), std::sin(angle)};
@@ -36,9 +35,9 @@ Rve two_grains(double radius_i, double radius_j, double overlap, double angle, d
   return rve;
 }
 
-Rve hexagonal_packing(int columns, int rows, double radius, double overlap, const Material& material)
-{
-  if (rows % 2 != 0 || columns < 5 || rows < 6) throw std::invalid_argument("hexagonal_packing: at least 5 x 6, rows even");
+Rve hexagonal_packing(int columns, int rows, double radius, double overlap, const Material& material) {
+  if (rows % 2 != 0 || columns < 5 || rows < 6)
+    throw std::invalid_argument("hexagonal_packing: at least 5 x 6, rows even");
   const double d = 2.0 * radius - overlap;
   const double height = 0.5 * std::sqrt(3.0) * d;
   Rve rve;
@@ -53,8 +52,7 @@ Rve hexagonal_packing(int columns, int rows, double radius, double overlap, cons
   return rve;
 }
 
-Rve loose_packing(int grain_count, double radius_min, double radius_max, std::uint64_t seed, const Material& material)
-{
+Rve loose_packing(int grain_count, double radius_min, double radius_max, std::uint64_t seed, const Material& material) {
   std::mt19937_64 random(seed);
   // Not std::uniform_real_distribution: its numbers depend on the library.
   const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1.0p-53; };
@@ -75,8 +73,7 @@ Rve loose_packing(int grain_count, double radius_min, double radius_max, std::ui
   return rve;
 }
 
-void compress_to(Rve& rve, double target, double tolerance)
-{
+void compress_to(Rve& rve, double target, double tolerance) {
   const StrainOptions coarse{.steps = 60, .hold_steps = 200, .tolerance = 1e-2};
   const StrainOptions fine{.steps = 100, .hold_steps = 4000, .tolerance = 1e-5};
   double strain_step = 0.01;
@@ -101,15 +98,13 @@ void compress_to(Rve& rve, double target, double tolerance)
   throw std::runtime_error("compress_to: the pressure was not reached");
 }
 
-void switch_friction(Rve& rve, double friction, int hold_steps)
-{
+void switch_friction(Rve& rve, double friction, int hold_steps) {
   rve.material.friction = friction;
   strain(rve, identity, {.steps = 1, .hold_steps = hold_steps, .tolerance = 1e-6});
 }
 
 Rve consolidated_packing(int grain_count, std::uint64_t seed, double pressure, double consolidation_friction,
-                         const Material& material)
-{
+                         const Material& material) {
   Material slippery = material;
   slippery.friction = consolidation_friction;
   Rve rve = loose_packing(grain_count, 1.0e-3, 2.375e-3, seed, slippery);

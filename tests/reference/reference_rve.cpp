@@ -13,8 +13,7 @@ struct Forces {
   std::vector<Contact> contacts;
 };
 
-void complete(Rve& rve)
-{
+void complete(Rve& rve) {
   const std::size_t n = rve.positions.size();
   if (rve.rotations.empty()) rve.rotations.assign(n, 0.0);
   if (rve.velocities.empty()) rve.velocities.assign(n, Vec2{});
@@ -24,10 +23,10 @@ void complete(Rve& rve)
   }
 }
 
-/// While the largest contact distance is below half of both heights of the cell, a grain has at most one image of another
-/// within reach, and rounding the fractional coordinates finds it (all of |f| < 1/2), however sheared the cell is.
-void check_cell(const Rve& rve)
-{
+/// While the largest contact distance is below half of both heights of the cell, a grain has at most one image of
+/// another within reach, and rounding the fractional coordinates finds it (all of |f| < 1/2), however sheared the cell
+/// is.
+void check_cell(const Rve& rve) {
   const double radius = *std::max_element(rve.radii.begin(), rve.radii.end());
   const double area = det(rve.cell);
   const double longest = std::max(norm({rve.cell.xx, rve.cell.yx}), norm({rve.cell.xy, rve.cell.yy}));
@@ -36,8 +35,7 @@ void check_cell(const Rve& rve)
   }
 }
 
-Vec2 nearest_image(const Mat2& cell, const Mat2& inverse_cell, Vec2 difference)
-{
+Vec2 nearest_image(const Mat2& cell, const Mat2& inverse_cell, Vec2 difference) {
   const Vec2 f = inverse_cell * difference;
   return cell * Vec2{f.x - std::round(f.x), f.y - std::round(f.y)};
 }
@@ -45,8 +43,7 @@ Vec2 nearest_image(const Mat2& cell, const Mat2& inverse_cell, Vec2 difference)
 double clamped(double value, double bound) { return std::max(-bound, std::min(value, bound)); }
 
 /// The law, kernels/README.md step 3, for one touching pair whose motion in this step is D, w and theta of `rve`.
-Contact call_law(const Rve& rve, const Mat2& d, int i, int j, Vec2 branch, History& history)
-{
+Contact call_law(const Rve& rve, const Mat2& d, int i, int j, Vec2 branch, History& history) {
   const Material& material = rve.material;
   const double ri = rve.radii[i];
   const double rj = rve.radii[j];
@@ -64,8 +61,7 @@ Contact call_law(const Rve& rve, const Mat2& d, int i, int j, Vec2 branch, Histo
   return {i, j, n, distance, overlap, k.normal, k.tangential, fn, history.tangential, history.moment};
 }
 
-void add_contact(Forces& sum, const Contact& c, double ri, double rj)
-{
+void add_contact(Forces& sum, const Contact& c, double ri, double rj) {
   const Vec2 p = -c.normal_force * c.normal + c.tangential_force * left_of(c.normal);
   sum.force[c.i] = sum.force[c.i] + p;
   sum.force[c.j] = sum.force[c.j] - p;
@@ -75,8 +71,7 @@ void add_contact(Forces& sum, const Contact& c, double ri, double rj)
 }
 
 /// One pass over all pairs: histories are advanced, those of open pairs dropped.
-Forces pass(Rve& rve, const Mat2& d)
-{
+Forces pass(Rve& rve, const Mat2& d) {
   const int n = static_cast<int>(rve.positions.size());
   const Mat2 inverse_cell = inverse(rve.cell);
   Forces sum{std::vector<Vec2>(n), std::vector<double>(n, 0.0), {}};
@@ -96,14 +91,12 @@ Forces pass(Rve& rve, const Mat2& d)
 }
 
 /// Cundall's local damping of one force component; `velocity` is that before the step, `a` the mobility.
-double damped(double force, double velocity, double a, double lambda)
-{
+double damped(double force, double velocity, double a, double lambda) {
   const double sign = velocity + 0.5 * a * force < 0 ? -1.0 : 1.0;
   return force - lambda * std::abs(force) * sign;
 }
 
-void accelerate(Rve& rve, const Forces& sum, double rigid_spin)
-{
+void accelerate(Rve& rve, const Forces& sum, double rigid_spin) {
   const double lambda = rve.material.damping;
   const double largest = *std::max_element(rve.radii.begin(), rve.radii.end());
   for (std::size_t i = 0; i < rve.positions.size(); ++i) {
@@ -122,8 +115,7 @@ void accelerate(Rve& rve, const Forces& sum, double rigid_spin)
   }
 }
 
-double mean_diameter(const Rve& rve)
-{
+double mean_diameter(const Rve& rve) {
   double sum = 0;
   for (const double r : rve.radii) sum += 2.0 * r;
   return sum / static_cast<double>(rve.radii.size());
@@ -131,8 +123,7 @@ double mean_diameter(const Rve& rve)
 
 Voigt voigt(const Mat2& s) { return {s.xx, s.yy, 0.5 * (s.xy + s.yx)}; }
 
-StepTrace trace_of(const Rve& rve, const Forces& sum)
-{
+StepTrace trace_of(const Rve& rve, const Forces& sum) {
   StepTrace trace{voigt(love_weber(rve, sum.contacts)), 0, static_cast<int>(sum.contacts.size())};
   double square = 0;
   for (const Vec2 f : sum.force) square += dot(f, f);
@@ -143,8 +134,7 @@ StepTrace trace_of(const Rve& rve, const Forces& sum)
 
 double spin_of(const Mat2& rate) { return 0.5 * (rate.yx - rate.xy); }
 
-void move(Rve& rve, const Mat2& rate)
-{
+void move(Rve& rve, const Mat2& rate) {
   const Mat2 increment = exponential_minus_identity(rate);
   for (std::size_t i = 0; i < rve.positions.size(); ++i) {
     rve.positions[i] = rve.positions[i] + increment * rve.positions[i] + rve.velocities[i];
@@ -153,32 +143,29 @@ void move(Rve& rve, const Mat2& rate)
   rve.cell = rve.cell + increment * rve.cell;
 }
 
-void stop(Rve& rve)
-{
+void stop(Rve& rve) {
   std::fill(rve.velocities.begin(), rve.velocities.end(), Vec2{});
   std::fill(rve.spins.begin(), rve.spins.end(), 0.0);
 }
 
 }  // namespace
 
-PairStiffness pair_stiffness(const Material& material, double radius_i, double radius_j)
-{
+PairStiffness pair_stiffness(const Material& material, double radius_i, double radius_j) {
   const double kn = 2.0 * material.modulus * radius_i * radius_j / (radius_i + radius_j);
   const double kt = material.stiffness_ratio * kn;
   return {kn, kt, material.rolling_stiffness * kt * radius_i * radius_j};
 }
 
-Mobility mobility(const Material& material, double radius, double largest_radius)
-{
+Mobility mobility(const Material& material, double radius, double largest_radius) {
   const double kn = material.modulus * radius;
   const double kt = material.stiffness_ratio * kn;
   const double c2 = material.step_safety * material.step_safety;
-  const double worst_rolling = pair_stiffness(material, radius, largest_radius).rolling;  // beta kt r^2 against its like
+  const double worst_rolling = pair_stiffness(material, radius, largest_radius).rolling;  // beta kt r^2 against its
+                                                                                          // like
   return {4.0 * c2 / (6.0 * kn + 12.0 * kt), 4.0 * c2 / (24.0 * kt * radius * radius + 12.0 * worst_rolling)};
 }
 
-std::vector<Contact> contacts(const Rve& rve)
-{
+std::vector<Contact> contacts(const Rve& rve) {
   Rve copy = rve;
   complete(copy);
   check_cell(copy);
@@ -186,8 +173,7 @@ std::vector<Contact> contacts(const Rve& rve)
   return pass(copy, Mat2{}).contacts;
 }
 
-Mat2 love_weber(const Rve& rve, const std::vector<Contact>& contacts)
-{
+Mat2 love_weber(const Rve& rve, const std::vector<Contact>& contacts) {
   Mat2 s;
   for (const Contact& c : contacts) {
     const Vec2 p = -c.normal_force * c.normal + c.tangential_force * left_of(c.normal);
@@ -201,8 +187,7 @@ Voigt stress(const Rve& rve) { return voigt(love_weber(rve, contacts(rve))); }
 
 double pressure(const Voigt& stress) { return -0.5 * (stress[0] + stress[1]); }
 
-VoigtMatrix tangent(const Rve& rve)
-{
+VoigtMatrix tangent(const Rve& rve) {
   VoigtMatrix d{};
   const double volume = det(rve.cell) * rve.material.thickness;
   for (const Contact& c : contacts(rve)) {
@@ -220,20 +205,17 @@ VoigtMatrix tangent(const Rve& rve)
   return d;
 }
 
-double coordination_number(const Rve& rve)
-{
+double coordination_number(const Rve& rve) {
   return 2.0 * static_cast<double>(contacts(rve).size()) / static_cast<double>(rve.radii.size());
 }
 
-double mean_rotation(const Rve& rve)
-{
+double mean_rotation(const Rve& rve) {
   double sum = 0;
   for (const double angle : rve.rotations) sum += angle;
   return sum / static_cast<double>(rve.radii.size());
 }
 
-double energy(const Rve& rve)
-{
+double energy(const Rve& rve) {
   double sum = 0;
   for (const Contact& c : contacts(rve)) {
     const double kr = pair_stiffness(rve.material, rve.radii[c.i], rve.radii[c.j]).rolling;
@@ -249,8 +231,7 @@ double energy(const Rve& rve)
   return sum;
 }
 
-StepTrace step(Rve& rve, const Mat2& rate, const Mat2& next_rate)
-{
+StepTrace step(Rve& rve, const Mat2& rate, const Mat2& next_rate) {
   complete(rve);
   move(rve, rate);
   check_cell(rve);
@@ -260,8 +241,7 @@ StepTrace step(Rve& rve, const Mat2& rate, const Mat2& next_rate)
   return trace;
 }
 
-StrainReport strain(Rve& rve, const Mat2& f, const StrainOptions& options)
-{
+StrainReport strain(Rve& rve, const Mat2& f, const StrainOptions& options) {
   if (options.steps < 1) throw std::invalid_argument("strain: at least one step");
   const Mat2 rate = (1.0 / options.steps) * logarithm(f);
   StrainReport report;
@@ -277,8 +257,7 @@ StrainReport strain(Rve& rve, const Mat2& f, const StrainOptions& options)
   return report;
 }
 
-void commit(Rve& rve)
-{
+void commit(Rve& rve) {
   complete(rve);
   move(rve, Mat2{});
   check_cell(rve);

@@ -1,7 +1,8 @@
 #pragma once
-/// The oracle: one periodic packing, computed the plain way. Serial, double, every pair looked at in every step, positions
-/// advanced directly, real square roots. The equations are those of kernels/README.md; no line of kernels/ is used.
-/// Tension positive, Voigt order (xx, yy, xy) with engineering shear strain; velocities and spins are per step (dt = 1).
+/// The oracle: one periodic packing, computed the plain way. Serial, double, every pair looked at in every step,
+/// positions advanced directly, real square roots. The equations are those of kernels/README.md; no line of kernels/ is
+/// used. Tension positive, Voigt order (xx, yy, xy) with engineering shear strain; velocities and spins are per step
+/// (dt = 1).
 
 #include <array>
 #include <map>
@@ -46,11 +47,11 @@ struct Rve {
 
 struct Contact {
   int i, j;
-  Vec2 normal;                                     ///< from i to j
-  double distance;                                 ///< |b|, length of the branch [m]
-  double overlap;                                  ///< > 0 [m]
-  double normal_stiffness, tangential_stiffness;   ///< k_n, k_t [N/m]
-  double normal_force, tangential_force, moment;   ///< f_n, f_t, m as they act on i [N, N, N m]
+  Vec2 normal;                                    ///< from i to j
+  double distance;                                ///< |b|, length of the branch [m]
+  double overlap;                                 ///< > 0 [m]
+  double normal_stiffness, tangential_stiffness;  ///< k_n, k_t [N/m]
+  double normal_force, tangential_force, moment;  ///< f_n, f_t, m as they act on i [N, N, N m]
 };
 
 using Voigt = std::array<double, 3>;
@@ -69,8 +70,8 @@ struct Mobility {
 /// A small grain that rolls on the packing's largest one is the stiffest rotation.
 Mobility mobility(const Material& material, double radius, double largest_radius);
 
-/// Contacts at the current positions with the law called once with zero motion (as at the end of an evaluation); the state
-/// is not changed. Ordered by (i, j).
+/// Contacts at the current positions with the law called once with zero motion (as at the end of an evaluation); the
+/// state is not changed. Ordered by (i, j).
 std::vector<Contact> contacts(const Rve& rve);
 
 /// Love-Weber stress, method.md (3), before symmetrisation [Pa].
@@ -94,8 +95,9 @@ struct StepTrace {
   int contact_count;
 };
 
-/// One time step. Cell and grains move by E = exp(rate) - I and by the velocities, the law acts with D = sym(rate), grains are
-/// accelerated, and their velocities turned for the coming motion, W = skew(next_rate). Rates are velocity gradients per step.
+/// One time step. Cell and grains move by E = exp(rate) - I and by the velocities, the law acts with D = sym(rate),
+/// grains are accelerated, and their velocities turned for the coming motion, W = skew(next_rate). Rates are velocity
+/// gradients per step.
 /// @throws std::invalid_argument when sizes do not match or a grain could touch two images of another
 StepTrace step(Rve& rve, const Mat2& rate, const Mat2& next_rate);
 
@@ -110,14 +112,14 @@ struct StrainOptions {
 };
 
 struct StrainReport {
-  int steps = 0;                 ///< strain and hold together
+  int steps = 0;  ///< strain and hold together
   bool met_tolerance = false;
   double unbalanced_ratio = 0;   ///< of the last step
   std::vector<StepTrace> trace;  ///< one per step, empty unless asked for
 };
 
-/// Deforms the packing by `f` and holds it, then commits: last positions reached, law called once with zero motion, histories
-/// of open contacts dropped, velocities zeroed.
+/// Deforms the packing by `f` and holds it, then commits: last positions reached, law called once with zero motion,
+/// histories of open contacts dropped, velocities zeroed.
 StrainReport strain(Rve& rve, const Mat2& f, const StrainOptions& options);
 
 /// The end of an evaluation alone, see `strain`.

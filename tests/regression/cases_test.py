@@ -8,49 +8,127 @@ from program import PROGRAM, ROOT, check, check_expected, command, draw_and_read
 
 # Settings that shorten a case; columns of expected.csv that it cannot be held to then (None: nothing is known of the
 # case); figures.
-FIGURES = ["settlement_troughs.png", "displacement.png", "deviatoric_strain.png", "ground_reaction.png",
-           "geostatic_stress.png", "convergence.png", "trough_widths.png", "settlement_growth.png", "stress_profiles.png",
-           "stress_rotation.png", "trends.md"]
+FIGURES = [
+    "settlement_troughs.png",
+    "displacement.png",
+    "deviatoric_strain.png",
+    "ground_reaction.png",
+    "geostatic_stress.png",
+    "convergence.png",
+    "trough_widths.png",
+    "settlement_growth.png",
+    "stress_profiles.png",
+    "stress_rotation.png",
+    "trends.md",
+]
 ONE_PACKING = ["packing.candidates=1", "packing.folder=packings"]
 RUNS = {
     "tunnel_elastic": ([], (), FIGURES),
-    "tunnel_quick": (["packing.folder=packings", "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m",
-                      "gravity.uniform_step=0.1", "volume_loss.total=1 %", "volume_loss.increments=4", "output.rves=[0, 5]",
-                      'output.microstructure=["fabric", "coordination", "strong_networks"]'],
-                     ("load_parameter", "area_loss", "crown_settlement", "surface_settlement"),
-                     [*FIGURES, "void_ratio.png", "grain_rotation.png", "localisation.png", "rve_paths.png", "rve_network.png",
-                      "force_chains.png"]),
+    "tunnel_quick": (
+        [
+            "packing.folder=packings",
+            "ground.mesh_size_opening=2.5 m",
+            "ground.mesh_size_far=8 m",
+            "gravity.uniform_step=0.1",
+            "volume_loss.total=1 %",
+            "volume_loss.increments=4",
+            "output.rves=[0, 5]",
+            'output.microstructure=["fabric", "coordination", "strong_networks"]',
+        ],
+        ("load_parameter", "area_loss", "crown_settlement", "surface_settlement"),
+        [
+            *FIGURES,
+            "void_ratio.png",
+            "grain_rotation.png",
+            "localisation.png",
+            "rve_paths.png",
+            "rve_network.png",
+            "force_chains.png",
+        ],
+    ),
     "column": (["packing.grains=300", *ONE_PACKING, "column.elements=6"], (), []),
-    "biaxial": (["packing.grains=300", "packing.seeds=[1]", "packing.folder=packings", 'biaxial.pressures=["100 kPa"]',
-                 "biaxial.strain=6 %"], ("peak_angle", "peak_strain", "contraction"), []),
-    "biaxial_bvp": (["packing.grains=100", "packing.folder=packings", "biaxial_bvp.columns=1", "biaxial_bvp.rows=2",
-                     "biaxial_bvp.strain=4 %"], ("q_over_p", "volumetric_strain"), []),
+    "biaxial": (
+        [
+            "packing.grains=300",
+            "packing.seeds=[1]",
+            "packing.folder=packings",
+            'biaxial.pressures=["100 kPa"]',
+            "biaxial.strain=6 %",
+        ],
+        ("peak_angle", "peak_strain", "contraction"),
+        [],
+    ),
+    "biaxial_bvp": (
+        [
+            "packing.grains=100",
+            "packing.folder=packings",
+            "biaxial_bvp.columns=1",
+            "biaxial_bvp.rows=2",
+            "biaxial_bvp.strain=4 %",
+        ],
+        ("q_over_p", "volumetric_strain"),
+        [],
+    ),
     "pack_gravel": (["packing.grains=300", "packing.folder=packings"], None, []),
     "probe": (["packing.grains=60", "packing.folder=packings"], None, []),
     "pack": (["packing.grains=100", "packing.seeds=[1]", "packing.folder=packings"], None, []),
 }
 # Calibrations: two sets, one of them confirmed, in one pressure and to 6 %; the wide grading, which so few grains hold badly, to 4 %.
-RUNS |= {f"calibrate_{soil}": ([f"packing.grains={grains}", "packing.seeds=[1]", "packing.folder=packings",
-                                f"biaxial.strain={strain} %", 'biaxial.pressures=["200 kPa"]',
-                                "calibrate.rolling_stiffness=[0.03, 0.12]", "calibrate.thickness=[]", "calibrate.rounds=0",
-                                f"calibrate.confirm_grains={grains}", "calibrate.confirm_seeds=[1, 2]",
-                                "calibrate.confirm_inertial_number=3e-4"], None, [])
-         for soil, grains, strain in (("cps_d", 150, 6), ("cps_md", 150, 6), ("cpg_d", 300, 4))}
+RUNS |= {
+    f"calibrate_{soil}": (
+        [
+            f"packing.grains={grains}",
+            "packing.seeds=[1]",
+            "packing.folder=packings",
+            f"biaxial.strain={strain} %",
+            'biaxial.pressures=["200 kPa"]',
+            "calibrate.rolling_stiffness=[0.03, 0.12]",
+            "calibrate.thickness=[]",
+            "calibrate.rounds=0",
+            f"calibrate.confirm_grains={grains}",
+            "calibrate.confirm_seeds=[1, 2]",
+            "calibrate.confirm_inertial_number=3e-4",
+        ],
+        None,
+        [],
+    )
+    for soil, grains, strain in (("cps_d", 150, 6), ("cps_md", 150, 6), ("cpg_d", 300, 4))
+}
 # The study's tunnels: few grains and elements and a first step of the volume loss, those of other depths in elastic ground;
 # their meshes are counted in full size.
-STUDY = [*ONE_PACKING, "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=17 m", "ground.width=8 m", "column.elements=5",
-         "gravity.uniform_step=0.2", "volume_loss.total=0.25 %", "volume_loss.increments=1", "output.rves=[0]"]
-STUDY_ELEMENTS = {"tunnel_cps_d_cd2": 821, "tunnel_cps_d_cd3": 836, "tunnel_cps_d_cd4": 892, "tunnel_cps_md_cd3": 836,
-                  "tunnel_cpg_d_cd3": 836}
+STUDY = [
+    *ONE_PACKING,
+    "ground.mesh_size_opening=2.5 m",
+    "ground.mesh_size_far=17 m",
+    "ground.width=8 m",
+    "column.elements=5",
+    "gravity.uniform_step=0.2",
+    "volume_loss.total=0.25 %",
+    "volume_loss.increments=1",
+    "output.rves=[0]",
+]
+STUDY_ELEMENTS = {
+    "tunnel_cps_d_cd2": 821,
+    "tunnel_cps_d_cd3": 836,
+    "tunnel_cps_d_cd4": 892,
+    "tunnel_cps_md_cd3": 836,
+    "tunnel_cpg_d_cd3": 836,
+}
 RUNS |= {case: ([*STUDY, "material=linear_elastic"], None, []) for case in ("tunnel_cps_d_cd2", "tunnel_cps_d_cd4")}
-RUNS |= {case: ([*STUDY, f"packing.grains={grains}"], None, [])
-         for case, grains in (("tunnel_cps_d_cd3", 150), ("tunnel_cps_md_cd3", 150), ("tunnel_cpg_d_cd3", 400))}
+RUNS |= {
+    case: ([*STUDY, f"packing.grains={grains}"], None, [])
+    for case, grains in (("tunnel_cps_d_cd3", 150), ("tunnel_cps_md_cd3", 150), ("tunnel_cpg_d_cd3", 400))
+}
 ESTIMATE = 3  # factor within which `check` must foretell a shrunk run's work; 2 is what it promises of whole ones
 
 
 def particle_steps(folder):
-    return sum(row["particle_steps"] for path in (folder, folder / "column") if (path / "run.h5").exists()
-               for row in table(path))
+    return sum(
+        row["particle_steps"]
+        for path in (folder, folder / "column")
+        if (path / "run.h5").exists()
+        for row in table(path)
+    )
 
 
 for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml")):
@@ -58,13 +136,20 @@ for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml"
     check((folder / "README.md").exists(), f"cases/{case} has no README.md")
     check(case in RUNS, f"cases/{case} is run by no test")
     settings, without, figures = RUNS[case]
-    words = [PROGRAM, "check", str(folder / "case.toml"), *(word for setting in settings for word in ("--set", setting))]
+    words = [
+        PROGRAM,
+        "check",
+        str(folder / "case.toml"),
+        *(word for setting in settings for word in ("--set", setting)),
+    ]
     checked = subprocess.run(words, capture_output=True, text=True, timeout=60)
     check(checked.returncode == 0, f"check of cases/{case}: {checked.stderr}")
     if case in STUDY_ELEMENTS:
         whole = run([PROGRAM, "check", str(folder / "case.toml")]).stdout
         points = int(re.search(r"# (\d+) Gauss points", whole)[1])
-        check(abs(points / 4 - STUDY_ELEMENTS[case]) <= 5, f"cases/{case}: {points / 4} elements, not those of the study")
+        check(
+            abs(points / 4 - STUDY_ELEMENTS[case]) <= 5, f"cases/{case}: {points / 4} elements, not those of the study"
+        )
     results = fresh(f"results_{case}")
     run(command(case, results, settings))
     if without is not None:

@@ -11,7 +11,13 @@ import numpy as np
 from program import PROGRAM, check, check_same, command, fresh, run, start_and_signal, table
 
 BOUND = 1e-2
-OFF = ["packing.grains=100", "packing.candidates=1", "packing.folder=packings", "column.elements=6", "gravity.uniform_step=0.1"]
+OFF = [
+    "packing.grains=100",
+    "packing.candidates=1",
+    "packing.folder=packings",
+    "column.elements=6",
+    "gravity.uniform_step=0.1",
+]
 ON = OFF + [f"engine.defer={BOUND}"]
 
 
@@ -38,11 +44,16 @@ difference = (np.linalg.norm(last_stress(on) - stress, axis=-1) / pressure).rave
 check(difference.max() < 0.03 * BOUND, f"stresses differ by up to {difference.max()} p, the bound is {BOUND}")
 log = (on / "run.log").read_text()
 check(f"off by up to {error:.1e} of their pressure" in log, "the log does not say by how much deferral was off")
-print(f"deferred {deferred:.0f} points, work {work[0] / work[1]:.3f}, error {error:.1e} p, stress "
-      f"{np.median(difference):.1e} p (median), {difference.max():.1e} p (largest)")
+print(
+    f"deferred {deferred:.0f} points, work {work[0] / work[1]:.3f}, error {error:.1e} p, stress "
+    f"{np.median(difference):.1e} p (median), {difference.max():.1e} p (largest)"
+)
 
 stopped = fresh("stopped")
-check(start_and_signal(command("column", stopped, ON), stopped / "increments/0004.h5", signal.SIGTERM) == 130, "not stopped")
+check(
+    start_and_signal(command("column", stopped, ON), stopped / "increments/0004.h5", signal.SIGTERM) == 130,
+    "not stopped",
+)
 run(command("column", stopped, ON, "--resume"))
 check_same(on, stopped)
 

@@ -10,13 +10,21 @@ done = run(command("tunnel_elastic", failed, TOO_STRICT), code=3)
 check(done.stderr.count("\n") == 1 and "run.log" in done.stderr, f"not one line on stderr: {done.stderr}")
 log = (failed / "run.log").read_text()
 check("failed: max_iterations in the increment from" in log, f"the log does not say what failed where: {log[-500:]}")
-check(all(row["converged"] == 1 for row in table(failed)), "an increment that did not converge is recorded as one that did")
+check(
+    all(row["converged"] == 1 for row in table(failed)),
+    "an increment that did not converge is recorded as one that did",
+)
 run(command("tunnel_elastic", failed, TOO_STRICT, "--resume"), code=3)
 
 # A step too large for its iterations, in the middle of a run: what was reached before it stays, and is gone on from.
 large = fresh("large")
-STEP = ["volume_loss.total=90 %", "volume_loss.increments=1", "newton.smallest_cut=1", "newton.maximum_iterations=4",
-        "newton.relax_substeps=0"]
+STEP = [
+    "volume_loss.total=90 %",
+    "volume_loss.increments=1",
+    "newton.smallest_cut=1",
+    "newton.maximum_iterations=4",
+    "newton.relax_substeps=0",
+]
 run(command("tunnel_elastic", large, STEP), code=3)
 last = table(large)[-1]
 check(last["stage"] == "volume_loss" and last["volume_loss"] == 0, f"the last record is {last}")

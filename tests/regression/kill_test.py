@@ -7,11 +7,27 @@ import time
 
 from program import check, check_same, command, fresh, run
 
-ELASTIC = ["volume_loss.increments=15", "volume_loss.total=2 %", "ground.mesh_size_opening=2.5 m",
-           "ground.mesh_size_far=8 m", "output.checkpoint_every=4"]
-GRAINS = ["packing.grains=100", "packing.candidates=1", "ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m",
-          "column.elements=4", "gravity.ratio=2", "gravity.uniform_step=0.3", "volume_loss.total=0.5 %",
-          "volume_loss.increments=2", "newton.tolerance=0.01", "output.rves=[3, 4]", "packing.folder=packings"]
+ELASTIC = [
+    "volume_loss.increments=15",
+    "volume_loss.total=2 %",
+    "ground.mesh_size_opening=2.5 m",
+    "ground.mesh_size_far=8 m",
+    "output.checkpoint_every=4",
+]
+GRAINS = [
+    "packing.grains=100",
+    "packing.candidates=1",
+    "ground.mesh_size_opening=2.5 m",
+    "ground.mesh_size_far=8 m",
+    "column.elements=4",
+    "gravity.ratio=2",
+    "gravity.uniform_step=0.3",
+    "volume_loss.total=0.5 %",
+    "volume_loss.increments=2",
+    "newton.tolerance=0.01",
+    "output.rves=[3, 4]",
+    "packing.folder=packings",
+]
 
 seed = random.randrange(10**6)
 chance = random.Random(seed)
@@ -28,8 +44,12 @@ def kill_at_random(case, settings, kills):
     killed = fresh(f"killed_{case}")
     hits = 0
     for _ in range(kills):
-        process = subprocess.Popen(command(case, killed, settings, "--threads", "2", "--resume"), stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            command(case, killed, settings, "--threads", "2", "--resume"),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         try:
             said = process.communicate(timeout=chance.uniform(0.05, 0.4) * whole)[1]
             check(process.returncode == 0, f"seed {seed}: a resumed run ended with {process.returncode}: {said}")

@@ -30,7 +30,10 @@ def command(case, folder, settings=(), *further):
 def run(words, code=0, timeout=280):
     """Runs to the end and checks the exit code."""
     done = subprocess.run(words, capture_output=True, text=True, timeout=timeout)
-    check(done.returncode == code, f"{' '.join(words)}: exit {done.returncode} instead of {code}\n{done.stdout}{done.stderr}")
+    check(
+        done.returncode == code,
+        f"{' '.join(words)}: exit {done.returncode} instead of {code}\n{done.stdout}{done.stderr}",
+    )
     return done
 
 
@@ -52,8 +55,9 @@ def draw_and_read_back(folder, figures):
     for name in figures:
         file, least = Path(folder) / name, 10000 if name.endswith(".png") else 500
         check(file.exists() and file.stat().st_size > least, f"{folder}: {name} was not drawn: {drawn.stdout}")
-    read = subprocess.run([sys.executable, str(ROOT / "tools/xdmf_check.py"), str(folder)], capture_output=True, text=True,
-                          timeout=120)
+    read = subprocess.run(
+        [sys.executable, str(ROOT / "tools/xdmf_check.py"), str(folder)], capture_output=True, text=True, timeout=120
+    )
     check(read.returncode in (0, 77), f"{folder}: {read.stderr}")
     print((read.stdout.splitlines() or [""])[-1])
 
@@ -138,5 +142,7 @@ def check_expected(folder, expected, without=()):
         value = measured(folder, rows, line)
         holds = abs(value - float(line["value"])) <= float(line["tolerance"])  # false for a NaN
         check(holds, f"{folder}: {line} but it is {value}")
-        print(f"{line['stage']} {line['stage_index']} {line['column']}: {value:.6g}, "
-              f"expected {line['value']} +- {line['tolerance']}")
+        print(
+            f"{line['stage']} {line['stage_index']} {line['column']}: {value:.6g}, "
+            f"expected {line['value']} +- {line['tolerance']}"
+        )

@@ -17,9 +17,20 @@ if "no MPI" in version or shutil.which("mpirun") is None:
 
 # The container of a test has few cores and knows no user but root.
 os.environ |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-SETTINGS = ["packing.grains=100", "packing.candidates=1", "packing.folder=packings", "ground.mesh_size_opening=2.5 m",
-            "ground.mesh_size_far=8 m", "column.elements=4", "gravity.ratio=2", "gravity.uniform_step=0.3", "volume_loss.total=0.5 %",
-            "volume_loss.increments=1", "newton.tolerance=0.01", "output.rves=[3, 4]"]
+SETTINGS = [
+    "packing.grains=100",
+    "packing.candidates=1",
+    "packing.folder=packings",
+    "ground.mesh_size_opening=2.5 m",
+    "ground.mesh_size_far=8 m",
+    "column.elements=4",
+    "gravity.ratio=2",
+    "gravity.uniform_step=0.3",
+    "volume_loss.total=0.5 %",
+    "volume_loss.increments=1",
+    "newton.tolerance=0.01",
+    "output.rves=[3, 4]",
+]
 
 
 def ranks(n, folder, *further, settings=SETTINGS):
@@ -82,7 +93,10 @@ said = end(process, 2)
 check(len(said) == 1 and "packing.grains" in said[0] and not wrong.exists(), f"wrong input: {said}")
 failed = fresh("failed")
 settings = [*SETTINGS, "newton.tolerance=1e-15", "newton.maximum_iterations=2", "newton.smallest_cut=1"]
-said = end(subprocess.Popen(ranks(2, failed, settings=settings), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True), 3)
+said = end(
+    subprocess.Popen(ranks(2, failed, settings=settings), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True),
+    3,
+)
 check(len(said) == 1 and "no equilibrium" in said[0], f"no equilibrium: {said}")
 
 # A rank that has no memory says so through the first one; a rank that is killed takes the others with it. Results stay usable.
@@ -106,4 +120,9 @@ check(time.monotonic() - begun < 60, "the other ranks went on without the one th
 run(ranks(2, killed, "--resume"))
 check_same(straight, killed)
 
-end(subprocess.Popen(["mpirun", "--oversubscribe", "-n", "2", PROGRAM, "sweep", "none.toml"], stderr=subprocess.PIPE, text=True), 2)
+end(
+    subprocess.Popen(
+        ["mpirun", "--oversubscribe", "-n", "2", PROGRAM, "sweep", "none.toml"], stderr=subprocess.PIPE, text=True
+    ),
+    2,
+)

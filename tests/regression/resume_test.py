@@ -41,7 +41,10 @@ with h5py.File(killed / "run.h5", "r") as result:
 before = (straight / "run.h5").read_bytes(), (straight / "run.h5").stat().st_mtime_ns
 again = run(command(CASE, straight, SETTINGS, "--resume"))
 check("finished already" in again.stdout, "a finished run does not say so")
-check(before == ((straight / "run.h5").read_bytes(), (straight / "run.h5").stat().st_mtime_ns), "a finished run was written anew")
+check(
+    before == ((straight / "run.h5").read_bytes(), (straight / "run.h5").stat().st_mtime_ns),
+    "a finished run was written anew",
+)
 check_same(straight, killed)
 run(command(CASE, straight, SETTINGS), code=2)
 run(command(CASE, straight, [*SETTINGS, "elastic.poisson=0.2"], "--resume"), code=2)
@@ -62,9 +65,18 @@ run(command("column", started, ["material=linear_elastic"], "--replace"))
 check(not (started / "column").exists(), "a replaced run left its column")
 
 # The same with grains, and on another number of threads.
-GRAINS = ["packing.grains=100", "packing.candidates=1", "packing.folder=packings", "ground.mesh_size_opening=2.5 m",
-          "ground.mesh_size_far=8 m", "gravity.uniform_step=0.1", "volume_loss.total=1 %", "volume_loss.increments=2",
-          "newton.tolerance=0.01", "output.rves=[3, 4]"]
+GRAINS = [
+    "packing.grains=100",
+    "packing.candidates=1",
+    "packing.folder=packings",
+    "ground.mesh_size_opening=2.5 m",
+    "ground.mesh_size_far=8 m",
+    "gravity.uniform_step=0.1",
+    "volume_loss.total=1 %",
+    "volume_loss.increments=2",
+    "newton.tolerance=0.01",
+    "output.rves=[3, 4]",
+]
 straight = fresh("straight_grains")
 run(command("tunnel_quick", straight, GRAINS, "--threads", "2"))
 for folder, expected in ((straight, 2), (straight / "column", 0)):  # output.rves are points of the tunnel alone
@@ -73,8 +85,9 @@ for folder, expected in ((straight, 2), (straight / "column", 0)):  # output.rve
         check(written == expected, f"{folder}: {written} snapshots instead of {expected}")
 stopped = fresh("stopped_grains")
 for wait_for, resume in (("column/increments/0010.h5", []), ("increments/0006.h5", ["--resume"])):
-    code = start_and_signal(command("tunnel_quick", stopped, GRAINS, *resume, "--threads", "1"), stopped / wait_for,
-                            signal.SIGTERM)
+    code = start_and_signal(
+        command("tunnel_quick", stopped, GRAINS, *resume, "--threads", "1"), stopped / wait_for, signal.SIGTERM
+    )
     check(code == 130, f"a run of grains stopped by SIGTERM ended with {code} instead of 130")
 run(command("tunnel_quick", stopped, GRAINS, "--resume", "--threads", "1"))
 check_same(straight, stopped)
@@ -96,19 +109,33 @@ run(command("biaxial_bvp", other, [*SPECIMEN, 'output.fields=["stress"]'], "--re
 with h5py.File(other / "run.h5", "r") as result:
     columns = {name: column[:] for name, column in result["tables/gauss_histories"].items()}
 check(len({len(column) for column in columns.values()}) == 1, "columns of different lengths")
-check(not np.isnan(columns["stress_yy"]).any() and np.isnan(columns["strain_yy"][-1]) and not np.isnan(columns["strain_yy"][0]),
-      "the histories of a run resumed with other fields")
+check(
+    not np.isnan(columns["stress_yy"]).any()
+    and np.isnan(columns["strain_yy"][-1])
+    and not np.isnan(columns["strain_yy"][0]),
+    "the histories of a run resumed with other fields",
+)
 
 # A specimen of grains whose every increment is relaxed, some cut, stopped behind each few: the factor is kept as well.
-GRAINS = ["packing.grains=60", "packing.candidates=1", "packing.folder=packings", "biaxial_bvp.columns=1", "biaxial_bvp.rows=2",
-          "biaxial_bvp.strain=10 %", "biaxial_bvp.strain_step=0.5 %"]
+GRAINS = [
+    "packing.grains=60",
+    "packing.candidates=1",
+    "packing.folder=packings",
+    "biaxial_bvp.columns=1",
+    "biaxial_bvp.rows=2",
+    "biaxial_bvp.strain=10 %",
+    "biaxial_bvp.strain_step=0.5 %",
+]
 straight = fresh("straight_relaxed")
 run(command("biaxial_bvp", straight, GRAINS, "--threads", "1"))
 check(min(row["relaxations"] for row in table(straight)) > 0, "an increment was not relaxed: the test tests nothing")
 stopped = fresh("stopped_relaxed")
 for wait_for, resume in (("0003.h5", []), ("0008.h5", ["--resume"]), ("0014.h5", ["--resume"])):
-    code = start_and_signal(command("biaxial_bvp", stopped, GRAINS, *resume, "--threads", "1"), stopped / "increments" / wait_for,
-                            signal.SIGTERM)
+    code = start_and_signal(
+        command("biaxial_bvp", stopped, GRAINS, *resume, "--threads", "1"),
+        stopped / "increments" / wait_for,
+        signal.SIGTERM,
+    )
     check(code == 130, f"a relaxed specimen stopped by SIGTERM ended with {code}")
 run(command("biaxial_bvp", stopped, GRAINS, "--resume", "--threads", "1"))
 check_same(straight, stopped)

@@ -59,9 +59,15 @@ class Bands(unittest.TestCase):
         self.assertEqual(trends.band_height(height, x, 0 * strain, 1.25, 0.05), (0.0, 0.0))
 
     def test_verdicts_by_cover(self):
-        for ratio, reach, expected in ((2, (0.95, 1.0), trends.SEEN), (2, (0.6, 0.5), trends.NOT_SEEN), (3, (0.5, 0.6), trends.SEEN),
-                                       (3, (1.0, 1.0), trends.NOT_SEEN), (3, (0.5, 0.0), trends.NOT_SEEN),
-                                       (4, (0.4, 0.3), trends.SEEN), (4, (0.9, 0.3), trends.NOT_SEEN)):
+        for ratio, reach, expected in (
+            (2, (0.95, 1.0), trends.SEEN),
+            (2, (0.6, 0.5), trends.NOT_SEEN),
+            (3, (0.5, 0.6), trends.SEEN),
+            (3, (1.0, 1.0), trends.NOT_SEEN),
+            (3, (0.5, 0.0), trends.NOT_SEEN),
+            (4, (0.4, 0.3), trends.SEEN),
+            (4, (0.9, 0.3), trends.NOT_SEEN),
+        ):
             self.assertEqual(trends.bands({0.1: (0.1, 0.1), 0.2: reach}, ratio, 0.05).verdict, expected, (ratio, reach))
         self.assertEqual(trends.bands({0.1: (0.1, 0.1)}, 2, 0.05).verdict, trends.NOT_REACHED)
 
@@ -91,7 +97,9 @@ class Stresses(unittest.TestCase):
         self.assertAlmostEqual(abs(float(tensors.major_from_vertical(horizontal))), np.pi / 2)
         # Tension positive: +xy shear compresses the other diagonal, the one from upper left to lower right.
         self.assertAlmostEqual(float(tensors.major_from_vertical(shear)), np.pi / 4)
-        np.testing.assert_allclose(tensors.axis_angle(np.radians([95, -95, 90, -90])), np.radians([-85, 85, 90, 90]), atol=1e-12)
+        np.testing.assert_allclose(
+            tensors.axis_angle(np.radians([95, -95, 90, -90])), np.radians([-85, 85, 90, 90]), atol=1e-12
+        )
 
     def test_fabric_is_an_axis(self):
         angles = np.radians([88.0, 10, -89])
@@ -133,13 +141,17 @@ class Paths(unittest.TestCase):
         self.assertEqual(trends.softening_order(LOSS, mixed).where(False, "elsewhere").verdict, trends.NOT_APPLICABLE)
         self.assertEqual(trends.no_softening(LOSS, ordered, "gravel").verdict, trends.NOT_SEEN)
         self.assertEqual(trends.no_softening(LOSS, {"Aa": self.path(0.05, False)}, "gravel").verdict, trends.SEEN)
-        self.assertEqual(trends.no_softening(LOSS[:9], {"Aa": self.path(0.05, False)[:9]}, "gravel").verdict, trends.NOT_REACHED)
+        self.assertEqual(
+            trends.no_softening(LOSS[:9], {"Aa": self.path(0.05, False)[:9]}, "gravel").verdict, trends.NOT_REACHED
+        )
 
     def test_contraction_at_the_end(self):
         contracts, dilates = {"Ab": LOSS, "Ac": 2 * LOSS}, {"Ab": LOSS, "Ac": 0.02 - LOSS}
         self.assertEqual(trends.ends_contracted(LOSS, contracts).verdict, trends.SEEN)
         self.assertEqual(trends.ends_contracted(LOSS, dilates).verdict, trends.NOT_SEEN)
-        self.assertEqual(trends.ends_contracted(LOSS[:9], {n: v[:9] for n, v in contracts.items()}).verdict, trends.NOT_REACHED)
+        self.assertEqual(
+            trends.ends_contracted(LOSS[:9], {n: v[:9] for n, v in contracts.items()}).verdict, trends.NOT_REACHED
+        )
 
     def test_soil_as_the_case_tells(self):
         soil_of = lambda **case: Result.soil.fget(SimpleNamespace(case=case))  # noqa: E731
@@ -159,7 +171,9 @@ class Paths(unittest.TestCase):
         random = np.random.default_rng(1)
         strain = random.random(1000)
         self.assertEqual(trends.localise_together(strain, -strain, strain**3).verdict, trends.SEEN)
-        self.assertEqual(trends.localise_together(strain, random.random(1000), random.random(1000)).verdict, trends.NOT_SEEN)
+        self.assertEqual(
+            trends.localise_together(strain, random.random(1000), random.random(1000)).verdict, trends.NOT_SEEN
+        )
 
 
 class Places(unittest.TestCase):

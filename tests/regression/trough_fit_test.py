@@ -15,22 +15,26 @@ class ModifiedGauss(unittest.TestCase):
     def test_inflection_is_at_i(self):
         inflection, step = 4.0, 1e-3
         for alpha in (0.1, 0.3, 0.5, 1.0, 2.0, 5.0):
+
             def curvature(x):
                 s = trough_fit.modified_gauss(x + step * np.array([-1, 0, 1]), 1.0, inflection, alpha)
                 return (s[0] - 2 * s[1] + s[2]) / step**2
+
             # Differences of second order: curvature is exact to about 1e-6, its slope here is above 1e-3.
             self.assertLess(curvature(inflection - 0.05), 0)
             self.assertGreater(curvature(inflection + 0.05), 0)
 
     def test_half_is_the_gauss_curve(self):
         x = np.linspace(0, 20, 50)
-        np.testing.assert_allclose(trough_fit.modified_gauss(x, 0.2, 6.0, 0.5), 0.2 * np.exp(-x**2 / 72), rtol=1e-12)
+        np.testing.assert_allclose(trough_fit.modified_gauss(x, 0.2, 6.0, 0.5), 0.2 * np.exp(-(x**2) / 72), rtol=1e-12)
 
     def test_fit_finds_known_troughs_on_uneven_points(self):
-        x = 35 * np.linspace(0, 1, 40)**1.7
+        x = 35 * np.linspace(0, 1, 40) ** 1.7
         for largest, inflection, alpha in ((0.3, 6.0, 0.5), (0.05, 9.0, 0.2), (1.2, 2.5, 3.0), (-0.01, 5.0, 1.0)):
             fit = trough_fit.fit(x, trough_fit.modified_gauss(x, largest, inflection, alpha))
-            np.testing.assert_allclose((fit.largest, fit.inflection, fit.alpha), (largest, inflection, alpha), rtol=1e-3)
+            np.testing.assert_allclose(
+                (fit.largest, fit.inflection, fit.alpha), (largest, inflection, alpha), rtol=1e-3
+            )
             self.assertLess(fit.misfit, 1e-5)
 
     def test_a_plug_with_a_foot_is_told(self):
@@ -53,10 +57,13 @@ class Q8(unittest.TestCase):
     connectivity = np.arange(8)[None]
 
     def test_linear_fields_are_sampled_exactly(self):
-        values = (3 + 2 * self.coordinates[:, :1] - self.coordinates[:, 1:])
+        values = 3 + 2 * self.coordinates[:, :1] - self.coordinates[:, 1:]
         points = np.array([[1.0, 1.0], [0.1, 0.2], [2.0, 0.3]])
-        np.testing.assert_allclose(q8.sample(self.coordinates, self.connectivity, values, points)[:, 0],
-                                   3 + 2 * points[:, 0] - points[:, 1], atol=1e-9)
+        np.testing.assert_allclose(
+            q8.sample(self.coordinates, self.connectivity, values, points)[:, 0],
+            3 + 2 * points[:, 0] - points[:, 1],
+            atol=1e-9,
+        )
 
     def test_outside_is_nan(self):
         outside = np.array([[-0.15, 0.1], [5.0, 5.0]])
@@ -65,6 +72,7 @@ class Q8(unittest.TestCase):
     def test_patches_cover_the_element_and_hold_their_points(self):
         def area(p):
             return 0.5 * np.sum(p[:, 0] * np.roll(p[:, 1], -1) - np.roll(p[:, 0], -1) * p[:, 1])
+
         patches = q8.gauss_patches(self.coordinates, self.connectivity)[0]
         self.assertAlmostEqual(sum(area(p) for p in patches), area(self.corners), places=12)
         points = q8.gauss_coordinates(self.coordinates, self.connectivity)[0]

@@ -121,8 +121,8 @@ TEST_F(ElasticTunnel, ReactionsTakeOverTheTractionsAndTheLossRemovesItsArea) {
   const StepReport report = advance_load(solver, state, path, targets, {},
                                          {.on_converged =
                                               [&](const ConvergedStep& step) {
-                                                const double area =
-                                                    area_left_of(step.state.coordinates, mesh.edge_set("opening"));
+                                                const double area = area_left_of(step.state.coordinates,
+                                                                                 mesh.edge_set("opening"));
                                                 worst = std::max(worst, std::abs(area / before - (1 - step.to)));
                                                 return true;
                                               },

@@ -1,4 +1,5 @@
-/// Kirsch's plate with a circular hole under uniaxial tension, plane strain: order of convergence of Q8 with 2x2 points.
+/// Kirsch's plate with a circular hole under uniaxial tension, plane strain: order of convergence of Q8 with 2x2
+/// points.
 #include <gtest/gtest.h>
 
 #include "fem/newton.hpp"

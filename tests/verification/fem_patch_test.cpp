@@ -1,5 +1,5 @@
-/// Patch tests: a constant stress state is reproduced exactly on distorted and curved elements, in both geometries, and a
-/// rigid rotation turns it and does nothing else.
+/// Patch tests: a constant stress state is reproduced exactly on distorted and curved elements, in both geometries, and
+/// a rigid rotation turns it and does nothing else.
 #include <gtest/gtest.h>
 
 #include "fem/newton.hpp"

@@ -1,4 +1,5 @@
-// The drained biaxial test of Yade's packing, step for step another integrator, against Yade's own curve (tests/data/yade).
+// The drained biaxial test of Yade's packing, step for step another integrator, against Yade's own curve
+// (tests/data/yade).
 
 #include <gtest/gtest.h>
 
@@ -59,7 +60,8 @@ TEST(YadeBiaxial, CurveUpToThePeakAndPeakAngle) {
 
   const std::vector<Row> reference = reference_curve();
   ASSERT_EQ(reference.size(), 393U);
-  const auto peak = std::max_element(reference.begin(), reference.end(), [](const Row& a, const Row& b) { return a.ratio < b.ratio; });
+  const auto peak = std::max_element(reference.begin(), reference.end(),
+                                     [](const Row& a, const Row& b) { return a.ratio < b.ratio; });
   for (auto row = reference.begin() + 1; row <= peak; ++row) {
     const Row ours = at(curve, row->strain);
     EXPECT_NEAR(ours.ratio, row->ratio, std::max(0.02 * row->ratio, 0.01)) << row->strain;

@@ -1,8 +1,9 @@
 #pragma once
 /// Kokkos 4.5.1 on CUDA 13, force-included (-include) into Kokkos and into code that uses it.
 ///
-/// CUDA 13 replaced the signatures of three calls that Kokkos 4.5.1 makes in their CUDA 12 form. These overloads forward
-/// the old form to the new one. They can go once Kokkos 4.7 or newer is required, which calls the new form itself.
+/// CUDA 13 replaced the signatures of three calls that Kokkos 4.5.1 makes in their CUDA 12 form. These overloads
+/// forward the old form to the new one. They can go once Kokkos 4.7 or newer is required, which calls the new form
+/// itself.
 
 #if defined(__CUDACC__)
 #include <cuda_runtime.h>

@@ -31,7 +31,9 @@ def grain_count(path):
 
 def read_packing(folder, grains):
     """The packing of that many grains that the benchmark made last (wide gradings have one of their own)."""
-    path = max((p for p in Path(folder).glob("packing_*.h5") if grain_count(p) == grains), key=lambda p: p.stat().st_mtime)
+    path = max(
+        (p for p in Path(folder).glob("packing_*.h5") if grain_count(p) == grains), key=lambda p: p.stat().st_mtime
+    )
     with h5py.File(path) as file:
         cell = file["cell"][()].ravel()
         if cell[1] != 0 or cell[2] != 0:
@@ -42,8 +44,11 @@ def read_packing(folder, grains):
 def our_rates(path):
     """{benchmark: (median particle-steps/s, contacts per grain, grains)}."""
     runs = json.loads(Path(path).read_text())["benchmarks"]
-    return {b["run_name"].split("/iterations")[0]: (b["particle_steps/s"], b["coordination"], int(b["grains"]))
-            for b in runs if b.get("aggregate_name") == "median"}
+    return {
+        b["run_name"].split("/iterations")[0]: (b["particle_steps/s"], b["coordination"], int(b["grains"]))
+        for b in runs
+        if b.get("aggregate_name") == "median"
+    }
 
 
 def yade(packing):
@@ -51,8 +56,12 @@ def yade(packing):
     with tempfile.TemporaryDirectory() as folder:
         settings = {"settle": 5000, "steps": 4000, "repetitions": 5}
         (Path(folder) / "packing.json").write_text(json.dumps(asdict(packing) | settings))
-        done = subprocess.run(["yade", "-j1", "-x", "-n", str(Path(__file__).parent / "yade_packing.py"), folder],
-                              capture_output=True, text=True, cwd=folder)
+        done = subprocess.run(
+            ["yade", "-j1", "-x", "-n", str(Path(__file__).parent / "yade_packing.py"), folder],
+            capture_output=True,
+            text=True,
+            cwd=folder,
+        )
         result = Path(folder) / "yade.json"
         if not result.exists():
             raise RuntimeError("Yade failed: " + " ".join((done.stdout + done.stderr).strip().splitlines()[-2:]))

@@ -54,19 +54,41 @@ def run(packing, skin, newton, steps, repetitions):
     """(particle-steps/s of each repetition, contacts per grain at the end)."""
     mean = statistics.fmean(packing.radius)
     kn = MODULUS * mean
-    lightest = 4.0 / 3.0 * 3.14159265 * min(packing.radius) ** 3 * DENSITY  # discs weigh as spheres here; no rate depends on it
+    lightest = (
+        4.0 / 3.0 * 3.14159265 * min(packing.radius) ** 3 * DENSITY
+    )  # discs weigh as spheres here; no rate depends on it
     dt = 0.1 * (lightest / kn) ** 0.5
     eta = 0.2 * (lightest * kn) ** 0.5
     with tempfile.TemporaryDirectory() as folder:
         data, script = Path(folder) / "packing.data", Path(folder) / "in.packing"
         write_data(data, packing)
         # R_eff = r/2 in LAMMPS' rolling: k_r = beta k_t r1 r2 and M <= eta r f_n become these.
-        script.write_text(SCRIPT.format(newton=newton, data=data, skin=skin * 2 * mean, kn=kn, eta=eta, kt=RATIO * kn,
-                                        friction=FRICTION, kr=4 * ROLLING * RATIO * kn, eta_r=eta, limit=2 * LIMIT, dt=dt,
-                                        viscous=0.1 * lightest / dt, settle=5000, rate=1e-3 / (steps * repetitions * dt),
-                                        runs=f"run {steps}\n" * repetitions))
-        done = subprocess.run(["lmp", "-in", script.name, "-log", "none"], cwd=folder, capture_output=True, text=True,
-                              env={"OMP_NUM_THREADS": "1", "PATH": "/usr/bin:/bin"})
+        script.write_text(
+            SCRIPT.format(
+                newton=newton,
+                data=data,
+                skin=skin * 2 * mean,
+                kn=kn,
+                eta=eta,
+                kt=RATIO * kn,
+                friction=FRICTION,
+                kr=4 * ROLLING * RATIO * kn,
+                eta_r=eta,
+                limit=2 * LIMIT,
+                dt=dt,
+                viscous=0.1 * lightest / dt,
+                settle=5000,
+                rate=1e-3 / (steps * repetitions * dt),
+                runs=f"run {steps}\n" * repetitions,
+            )
+        )
+        done = subprocess.run(
+            ["lmp", "-in", script.name, "-log", "none"],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            env={"OMP_NUM_THREADS": "1", "PATH": "/usr/bin:/bin"},
+        )
     if done.returncode != 0:
         raise RuntimeError("LAMMPS failed: " + " ".join(done.stdout.strip().splitlines()[-2:]))
     times = [float(t) for t in re.findall(r"Loop time of ([\d.eE+-]+)", done.stdout)][1:]
@@ -76,8 +98,11 @@ def run(packing, skin, newton, steps, repetitions):
 
 def best(packing):
     """(particle-steps/s, contacts per grain, how) with the best of the skins and newton settings."""
-    tries = [(statistics.median(run(packing, skin, newton, 3000, 3)[0]), skin, newton)
-             for skin in (0.03, 0.06, 0.1, 0.2) for newton in ("on", "off")]
+    tries = [
+        (statistics.median(run(packing, skin, newton, 3000, 3)[0]), skin, newton)
+        for skin in (0.03, 0.06, 0.1, 0.2)
+        for newton in ("on", "off")
+    ]
     _, skin, newton = max(tries)
     rates, contacts = run(packing, skin, newton, 10000, 5)
     return statistics.median(rates), contacts, f"skin {skin} d, newton {newton}"

@@ -14,8 +14,22 @@ settle, steps, repetitions = packing["settle"], packing["steps"], packing["repet
 O.periodic = True
 O.cell.hSize = Matrix3(packing["width"], 0, 0, 0, packing["height"], 0, 0, 0, 0.1)
 friction = math.radians(25)
-O.materials.append(CohFrictMat(young=3e9, poisson=0.5, density=2650, frictionAngle=friction, isCohesive=False, momentRotationLaw=True,
-                               alphaKr=1.0, alphaKtw=0.0, etaRoll=0.6, etaTwist=0.0, normalCohesion=0, shearCohesion=0))
+O.materials.append(
+    CohFrictMat(
+        young=3e9,
+        poisson=0.5,
+        density=2650,
+        frictionAngle=friction,
+        isCohesive=False,
+        momentRotationLaw=True,
+        alphaKr=1.0,
+        alphaKtw=0.0,
+        etaRoll=0.6,
+        etaTwist=0.0,
+        normalCohesion=0,
+        shearCohesion=0,
+    )
+)
 for radius, x, y in zip(packing["radius"], packing["x"], packing["y"]):
     body = O.bodies[O.bodies.append(sphere((x, y, 0.05), radius))]
     body.state.blockedDOFs = "zXY"
@@ -29,9 +43,11 @@ newton = NewtonIntegrator(damping=0.3)
 O.engines = [
     ForceResetter(),
     collider,
-    InteractionLoop([Ig2_Sphere_Sphere_ScGeom6D()],
-                    [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys()],
-                    [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(always_use_moment_law=True, useIncrementalForm=True)]),
+    InteractionLoop(
+        [Ig2_Sphere_Sphere_ScGeom6D()],
+        [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys()],
+        [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(always_use_moment_law=True, useIncrementalForm=True)],
+    ),
     newton,
 ]
 

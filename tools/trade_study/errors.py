@@ -13,10 +13,12 @@ import csv
 import numpy as np
 
 DIRECTIONS = ("xx", "yy", "xy", "-xx", "-yy")
-NORM = np.sqrt(np.array([1.0, 1.0, 2.0]) / 2)   # (xx, yy, xy): |.| / sqrt(2)
-TANGENT_NORM = np.sqrt(np.array([1.0, 2.0, 4.0, 1.0, 4.0, 4.0]))   # xxxx xxyy xxxy yyyy yyxy xyxy: how often each stands in the sum
+NORM = np.sqrt(np.array([1.0, 1.0, 2.0]) / 2)  # (xx, yy, xy): |.| / sqrt(2)
+TANGENT_NORM = np.sqrt(
+    np.array([1.0, 2.0, 4.0, 1.0, 4.0, 4.0])
+)  # xxxx xxyy xxxy yyyy yyxy xyxy: how often each stands in the sum
 TANGENT = tuple(f"tangent_after_{name}_Pa" for name in ("xxxx", "xxyy", "xxxy", "yyyy", "yyxy", "xyxy"))
-STRAINS = 0.005 * np.arange(1, 6)               # axial; all increment sizes of the plan meet there
+STRAINS = 0.005 * np.arange(1, 6)  # axial; all increment sizes of the plan meet there
 
 
 def read(file):
@@ -60,8 +62,14 @@ def probes(folders):
         for seed in np.unique(table["seed"]):
             for direction in DIRECTIONS:
                 rows = (table["seed"] == seed) & (table["probe"] == direction)
-                found[int(seed), direction] = (stress[rows], change[rows], table["steps"][rows], table["unbalanced_ratio"][rows],
-                                               np.isin(table["status"][rows], ("converged", "open")), tangent[rows])
+                found[int(seed), direction] = (
+                    stress[rows],
+                    change[rows],
+                    table["steps"][rows],
+                    table["unbalanced_ratio"][rows],
+                    np.isin(table["status"][rows], ("converged", "open")),
+                    tangent[rows],
+                )
     return found
 
 
@@ -88,15 +96,24 @@ def evaluation_error(ours, reference):
         bias.append(np.linalg.norm(off.mean(axis=0)))
         step = their_change.mean(axis=0) * NORM / p
         along.append(off.mean(axis=0) @ step / max(np.linalg.norm(step), 1e-12))
-        if their_tangent.any():   # an open packing has none
+        if their_tangent.any():  # an open packing has none
             tangents.append(tangent_error(tangent, their_tangent.mean(axis=0)))
         scatter.append(rms(np.linalg.norm((theirs - mean) * NORM / p, axis=1)))
     if not total:
         return {}
-    return {"error": 100 * rms(total), "median": 100 * median(total), "bias": 100 * rms(bias), "along": 100 * float(np.mean(along)),
-            "scatter": 100 * rms(scatter), "tangent": 100 * rms(tangents), "tangent_median": 100 * median(tangents),
-            "worst": 100 * max(total), "steps": float(np.mean(steps)),
-            "flagged": 100 * float(np.mean(flagged)), "samples": len(total)}
+    return {
+        "error": 100 * rms(total),
+        "median": 100 * median(total),
+        "bias": 100 * rms(bias),
+        "along": 100 * float(np.mean(along)),
+        "scatter": 100 * rms(scatter),
+        "tangent": 100 * rms(tangents),
+        "tangent_median": 100 * median(tangents),
+        "worst": 100 * max(total),
+        "steps": float(np.mean(steps)),
+        "flagged": 100 * float(np.mean(flagged)),
+        "samples": len(total),
+    }
 
 
 def tangent_error(tangent, reference):
@@ -116,7 +133,7 @@ def path(folders):
 def path_of(table, seed):
     stress = stresses(table)
     ratio = np.hypot(0.5 * (stress[:, 1] - stress[:, 0]), stress[:, 2]) / pressure(stress)
-    volume = -(table["strain_xx"] + table["strain_yy"])   # compression positive
+    volume = -(table["strain_xx"] + table["strain_yy"])  # compression positive
     curves, volumes, steps = [], [], []
     for replica in np.unique(table["replica"]):
         rows = (table["seed"] == seed) & (table["replica"] == replica)
@@ -125,8 +142,13 @@ def path_of(table, seed):
         volumes.append(np.interp(STRAINS, axial, volume[rows], right=np.nan))
         steps.append(np.sum((table["steps"] * table["evaluations"])[rows]))
     rows = (table["seed"] == seed) & (table["increment"] > 0)
-    return {"ratio": np.array(curves), "volume": np.array(volumes), "steps": float(np.mean(steps)),
-            "evaluations": float(table["evaluations"][rows].mean()), "capped": float(np.mean(table["status"][rows] == "step_limit"))}
+    return {
+        "ratio": np.array(curves),
+        "volume": np.array(volumes),
+        "steps": float(np.mean(steps)),
+        "evaluations": float(table["evaluations"][rows].mean()),
+        "capped": float(np.mean(table["status"][rows] == "step_limit")),
+    }
 
 
 def path_error(ours, reference):
@@ -138,12 +160,19 @@ def path_error(ours, reference):
     each = np.array([rms(ours[s]["ratio"] - reference[s]["ratio"].mean(axis=0)) for s in seeds])
     volume = np.array([ours[s]["volume"].mean(axis=0) - reference[s]["volume"].mean(axis=0) for s in seeds])
     systematic = off.mean(axis=1)
-    return {"error": 100 * rms(each), "median": 100 * median(each), "worst": 100 * each.max(), "bias": 100 * systematic.mean(),
-            "bias_error": 100 * systematic.std(ddof=1) / np.sqrt(len(seeds)) if len(seeds) > 1 else np.nan,
-            "volume": 100 * volume[:, -1].mean(), "volume_rms": 100 * rms(volume[:, -1]),
-            "steps": float(np.mean([ours[s]["steps"] for s in seeds])),
-            "evaluations": float(np.mean([ours[s]["evaluations"] for s in seeds])),
-            "capped": float(np.mean([ours[s]["capped"] for s in seeds])), "samples": len(seeds)}
+    return {
+        "error": 100 * rms(each),
+        "median": 100 * median(each),
+        "worst": 100 * each.max(),
+        "bias": 100 * systematic.mean(),
+        "bias_error": 100 * systematic.std(ddof=1) / np.sqrt(len(seeds)) if len(seeds) > 1 else np.nan,
+        "volume": 100 * volume[:, -1].mean(),
+        "volume_rms": 100 * rms(volume[:, -1]),
+        "steps": float(np.mean([ours[s]["steps"] for s in seeds])),
+        "evaluations": float(np.mean([ours[s]["evaluations"] for s in seeds])),
+        "capped": float(np.mean([ours[s]["capped"] for s in seeds])),
+        "samples": len(seeds),
+    }
 
 
 def path_scatter(curves):
@@ -151,9 +180,14 @@ def path_scatter(curves):
     chaos = rms([rms(c["ratio"] - c["ratio"].mean(axis=0)) for c in curves.values()])
     means = np.array([c["ratio"].mean(axis=0) for c in curves.values()])
     volumes = np.array([c["volume"].mean(axis=0)[-1] for c in curves.values()])
-    return {"chaos": 100 * chaos, "packings": 100 * rms(means.std(axis=0, ddof=1)) if len(means) > 1 else np.nan,
-            "ratio": float(means.mean(axis=0)[-1]), "cov": float(np.nanmean(means.std(axis=0, ddof=1) / means.mean(axis=0))) if len(means) > 1 else np.nan,
-            "volume": 100 * float(volumes.mean()), "steps": float(np.mean([c["steps"] for c in curves.values()]))}
+    return {
+        "chaos": 100 * chaos,
+        "packings": 100 * rms(means.std(axis=0, ddof=1)) if len(means) > 1 else np.nan,
+        "ratio": float(means.mean(axis=0)[-1]),
+        "cov": float(np.nanmean(means.std(axis=0, ddof=1) / means.mean(axis=0))) if len(means) > 1 else np.nan,
+        "volume": 100 * float(volumes.mean()),
+        "steps": float(np.mean([c["steps"] for c in curves.values()])),
+    }
 
 
 def noise_share(ours, at_rest):

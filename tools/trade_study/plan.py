@@ -9,24 +9,31 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 # At 1 kPa a path costs thirty times its steps at 100 kPa: only the presets are run with every packing there.
-FEWER_SEEDS_AT = {1: 4}   # one packing of so many, for the other knobs
-REPLICAS = {True: 8, False: 2}   # of a path, which may be chaotic, and of an evaluation, which is hardly
+FEWER_SEEDS_AT = {1: 4}  # one packing of so many, for the other knobs
+REPLICAS = {True: 8, False: 2}  # of a path, which may be chaotic, and of an evaluation, which is hardly
 PRESSURES = {1: "1 kPa", 100: "100 kPa", 800: "800 kPa"}
 PROBE_STRAIN = {1: 1e-4, 100: 1e-3, 800: 1e-3}
-PATH_STRAIN = 0.025   # axial, at constant lateral stress: a shear strain of 4 to 6 %
+PATH_STRAIN = 0.025  # axial, at constant lateral stress: a shear strain of 4 to 6 %
 INCREMENTS = 25
 # Far beyond the preset of that name, which is one of the settings measured.
-REFERENCE = {"precision": "double", "inertial_number": 1e-5, "hold_tolerance": 1e-4, "hold_cap": 20000,
-             "minimum_steps": 500, "maximum_steps": 1000000}
-REFERENCE_AT = {1: {"inertial_number": 3e-5}}   # a path at 1 kPa needs ten times the steps
+REFERENCE = {
+    "precision": "double",
+    "inertial_number": 1e-5,
+    "hold_tolerance": 1e-4,
+    "hold_cap": 20000,
+    "minimum_steps": 500,
+    "maximum_steps": 1000000,
+}
+REFERENCE_AT = {1: {"inertial_number": 3e-5}}  # a path at 1 kPa needs ten times the steps
 
 
 @dataclass(frozen=True)
 class Setting:
     """One column of the study."""
+
     knob: str
     label: str
-    keys: dict = field(default_factory=dict, hash=False, compare=False)   # of [engine]; "table.key" for others
+    keys: dict = field(default_factory=dict, hash=False, compare=False)  # of [engine]; "table.key" for others
     increments: int = INCREMENTS
 
     @property
@@ -43,14 +50,31 @@ def settings():
     """The presets, and around `standard` each knob by itself. A bound on steps shows where it binds: the least number in small
     increments, the largest in big ones."""
     every = [Setting("preset", name, {"preset": name}) for name in ("fast", "standard", "reference")]
-    knobs = {"inertial_number": (3e-3, 1e-3, 3e-4, 1e-4, 3e-5), "hold_tolerance": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4),
-             "precision": ("float", "double"), "hold_cap": (0, 100, 1000, 4000), "skin": (0.05, 0.1, 0.2)}
-    every += [Setting(knob, f"{value:g}" if not isinstance(value, str) else value, {"preset": "standard", knob: value})
-              for knob, values in knobs.items() for value in values]
-    every += [Setting("minimum_steps", str(n), {"preset": "standard", "minimum_steps": n}, 100) for n in (10, 20, 50, 100, 200)]
-    every += [Setting("maximum_steps", str(n), {"preset": "standard", "maximum_steps": n}, 5) for n in (500, 1000, 2000, 10000)]
+    knobs = {
+        "inertial_number": (3e-3, 1e-3, 3e-4, 1e-4, 3e-5),
+        "hold_tolerance": (1e-2, 3e-3, 1e-3, 3e-4, 1e-4),
+        "precision": ("float", "double"),
+        "hold_cap": (0, 100, 1000, 4000),
+        "skin": (0.05, 0.1, 0.2),
+    }
+    every += [
+        Setting(knob, f"{value:g}" if not isinstance(value, str) else value, {"preset": "standard", knob: value})
+        for knob, values in knobs.items()
+        for value in values
+    ]
+    every += [
+        Setting("minimum_steps", str(n), {"preset": "standard", "minimum_steps": n}, 100)
+        for n in (10, 20, 50, 100, 200)
+    ]
+    every += [
+        Setting("maximum_steps", str(n), {"preset": "standard", "maximum_steps": n}, 5)
+        for n in (500, 1000, 2000, 10000)
+    ]
     every += [Setting("increments", str(n), {"preset": "standard"}, n) for n in (5, 10, 25, 100)]
-    every += [Setting("modulus", text, {"preset": "standard", "soil.modulus": text}) for text in ("0.3 GPa", "3 GPa", "30 GPa")]
+    every += [
+        Setting("modulus", text, {"preset": "standard", "soil.modulus": text})
+        for text in ("0.3 GPa", "3 GPa", "30 GPa")
+    ]
     every += [Setting("grains", str(n), {"preset": "standard", "packing.grains": n}) for n in (100, 200, 300, 400, 700)]
     return every
 
@@ -60,8 +84,12 @@ def toml(value):
 
 
 def case_text(setting, kpa, seed, packings, *, path, file=None):
-    tables = {"packing": {"grains": 300, "folder": str(packings)}, "engine": {}, "soil": {},
-              "probe": {"pressure": PRESSURES[kpa], "strain": PROBE_STRAIN[kpa], "replicas": REPLICAS[path]}}
+    tables = {
+        "packing": {"grains": 300, "folder": str(packings)},
+        "engine": {},
+        "soil": {},
+        "probe": {"pressure": PRESSURES[kpa], "strain": PROBE_STRAIN[kpa], "replicas": REPLICAS[path]},
+    }
     tables["packing"].update({"file": str(file)} if file else {"seeds": [seed]})
     for key, value in setting.keys.items():
         table, _, name = key.rpartition(".")
@@ -70,8 +98,10 @@ def case_text(setting, kpa, seed, packings, *, path, file=None):
     for name, keys in tables.items():
         text += f"\n[{name}]\n" + "".join(f"{key} = {toml(value)}\n" for key, value in keys.items())
     if path:
-        text += (f"\n[[probe.path]]\ngradient = [0, 0, 0, {-PATH_STRAIN / setting.increments:.9g}]\n"
-                 f"increments = {setting.increments}\nconstant_xx = true\n")
+        text += (
+            f"\n[[probe.path]]\ngradient = [0, 0, 0, {-PATH_STRAIN / setting.increments:.9g}]\n"
+            f"increments = {setting.increments}\nconstant_xx = true\n"
+        )
     return text
 
 
@@ -87,7 +117,7 @@ class Study:
 
     def seeds_of(self, setting, kpa):
         every = 1 if setting.knob in ("reference", "preset") else FEWER_SEEDS_AT.get(kpa, 1)
-        return self.seeds[:max(1, len(self.seeds) // every)]
+        return self.seeds[: max(1, len(self.seeds) // every)]
 
     def seeds_needed(self, chosen, kpa):
         """Of the reference solution: no more than those of what it is compared with."""
@@ -112,7 +142,9 @@ class Study:
         shutil.rmtree(folder, ignore_errors=True)
         case.parent.mkdir(parents=True, exist_ok=True)
         case.write_text(text)
-        done = subprocess.run([self.program, "run", case, "-o", folder, "--replace", "--threads", "1"], capture_output=True, text=True)
+        done = subprocess.run(
+            [self.program, "run", case, "-o", folder, "--replace", "--threads", "1"], capture_output=True, text=True
+        )
         if done.returncode not in (0, 3):
             sys.exit(f"{case}: exit {done.returncode}\n{done.stderr}")
         return f"{folder.relative_to(self.folder)}" + (f" ({done.stderr.strip()})" if done.returncode else "")
@@ -123,9 +155,13 @@ class Study:
         for kpa in self.pressures:
             for setting in (self.reference(kpa), *chosen):
                 keys = {k: v for k, v in setting.keys.items() if "." in k}
-                plain = Setting("packing", "_".join(str(v) for v in keys.values()) or "standard", {"preset": "fast", **keys})
+                plain = Setting(
+                    "packing", "_".join(str(v) for v in keys.values()) or "standard", {"preset": "fast", **keys}
+                )
                 for seed in sorted(self.seeds_needed(chosen, kpa) & set(self.seeds_of(setting, kpa))):
-                    jobs[self.folder / f"packing_{kpa}" / f"{plain.name}_{seed}"] = self.text(plain, kpa, seed, path=False)
+                    jobs[self.folder / f"packing_{kpa}" / f"{plain.name}_{seed}"] = self.text(
+                        plain, kpa, seed, path=False
+                    )
         return jobs.items()
 
     def path_jobs(self, chosen):
@@ -141,7 +177,10 @@ class Study:
             isotropic, sheared = (self.probe_folders(setting, kpa, state) for state in ("isotropic", "sheared"))
             for seed in sorted(self.seeds_needed(chosen, kpa) & set(isotropic)):
                 yield isotropic[seed], self.text(setting, kpa, seed, path=False)
-                yield sheared[seed], self.text(setting, kpa, seed, path=False, file=(ends[seed] / f"end_{seed}.h5").resolve())
+                yield (
+                    sheared[seed],
+                    self.text(setting, kpa, seed, path=False, file=(ends[seed] / f"end_{seed}.h5").resolve()),
+                )
 
     def with_reference(self, chosen):
         return [(setting, kpa) for kpa in self.pressures for setting in (self.reference(kpa), *chosen)]

@@ -19,14 +19,15 @@ class Findings:
 
     def __init__(self, study):
         self.study = study
-        self.chosen = settings()   # of all knobs: a study made in parts shows what is there
+        self.chosen = settings()  # of all knobs: a study made in parts shows what is there
         self.evaluation, self.paths, self.scatter, self.curves = {}, {}, {}, {}
         for kpa in study.pressures:
             reference = study.reference(kpa)
             for state in STATES:
                 theirs = probes(study.probe_folders(reference, kpa, state).values())
-                self.evaluation[kpa, state] = self._each(lambda s: evaluation_error(probes(
-                    study.probe_folders(s, kpa, state).values()), theirs), reference)
+                self.evaluation[kpa, state] = self._each(
+                    lambda s: evaluation_error(probes(study.probe_folders(s, kpa, state).values()), theirs), reference
+                )
             theirs = path(study.path_folders(reference, kpa).values())
             self.curves[kpa] = self._each(lambda s: path(study.path_folders(s, kpa).values()), reference)
             self.paths[kpa] = {name: path_error(ours, theirs) for name, ours in self.curves[kpa].items() if ours}
@@ -54,43 +55,102 @@ def table_of_presets(findings):
     """Errors as root mean square | median | worst sample."""
     three = lambda found: " | ".join(figure_of(found.get(key, np.nan)) for key in ("error", "median", "worst"))  # noqa: E731
     triple = ("rms", "median", "worst")
-    text = head(["preset", "p", *(f"isotropic: {t}" for t in triple), *(f"sheared: {t}" for t in triple), "at rest, %",
-                 "tangent, isotropic", "sheared", "steps", *(f"path: {t}" for t in triple), "of it systematic", "volumetric strain",
-                 "steps an increment"])
+    text = head(
+        [
+            "preset",
+            "p",
+            *(f"isotropic: {t}" for t in triple),
+            *(f"sheared: {t}" for t in triple),
+            "at rest, %",
+            "tangent, isotropic",
+            "sheared",
+            "steps",
+            *(f"path: {t}" for t in triple),
+            "of it systematic",
+            "volumetric strain",
+            "steps an increment",
+        ]
+    )
     for name in PRESETS:
         setting = f"preset_{name}"
         for kpa in findings.study.pressures:
             isotropic, sheared = (findings.evaluation[kpa, state].get(setting, {}) for state in STATES)
             way = findings.paths[kpa].get(setting, {})
             cell = lambda found, key: figure_of(found.get(key, np.nan))  # noqa: E731
-            text += row([name, PRESSURES[kpa], three(isotropic), three(sheared), figure_of(100 - sheared.get("flagged", np.nan), 3),
-                         cell(isotropic, "tangent_median"), cell(sheared, "tangent_median"), cell(sheared, "steps"), three(way),
-                         f"{cell(way, 'bias')} ± {cell(way, 'bias_error')}", cell(way, "volume_rms"),
-                         figure_of(way.get("steps", np.nan) / INCREMENTS)])
+            text += row(
+                [
+                    name,
+                    PRESSURES[kpa],
+                    three(isotropic),
+                    three(sheared),
+                    figure_of(100 - sheared.get("flagged", np.nan), 3),
+                    cell(isotropic, "tangent_median"),
+                    cell(sheared, "tangent_median"),
+                    cell(sheared, "steps"),
+                    three(way),
+                    f"{cell(way, 'bias')} ± {cell(way, 'bias_error')}",
+                    cell(way, "volume_rms"),
+                    figure_of(way.get("steps", np.nan) / INCREMENTS),
+                ]
+            )
     return text
 
 
 def table_of_scatter(findings):
-    text = head(["p", "evaluation: replicas", "path: replicas of the reference solution", "path: replicas of `standard`",
-                 "path: packings", "q/p at the end", "volumetric strain at the end"])
+    text = head(
+        [
+            "p",
+            "evaluation: replicas",
+            "path: replicas of the reference solution",
+            "path: replicas of `standard`",
+            "path: packings",
+            "q/p at the end",
+            "volumetric strain at the end",
+        ]
+    )
     for kpa in findings.study.pressures:
-        reference, standard = findings.scatter[kpa].get("reference_solution", {}), findings.scatter[kpa].get("preset_standard", {})
+        reference, standard = (
+            findings.scatter[kpa].get("reference_solution", {}),
+            findings.scatter[kpa].get("preset_standard", {}),
+        )
         cell = lambda found, key, digits=2: figure_of(found.get(key, np.nan), digits)  # noqa: E731
-        text += row([PRESSURES[kpa], cell(findings.evaluation[kpa, "sheared"].get("reference_solution", {}), "scatter"),
-                     cell(reference, "chaos"), cell(standard, "chaos"), cell(reference, "packings"), cell(reference, "ratio", 3),
-                     cell(reference, "volume", 3)])
+        text += row(
+            [
+                PRESSURES[kpa],
+                cell(findings.evaluation[kpa, "sheared"].get("reference_solution", {}), "scatter"),
+                cell(reference, "chaos"),
+                cell(standard, "chaos"),
+                cell(reference, "packings"),
+                cell(reference, "ratio", 3),
+                cell(reference, "volume", 3),
+            ]
+        )
     return text
 
 
 def table_of_knob(findings, knob):
     """Medians: a single packing that snaps would hide what the knob does to all others."""
-    text = head([f"`{knob}`", *(f"{PRESSURES[kpa]}: {what}" for kpa in findings.study.pressures
-                               for what in ("evaluation", "tangent", "path", "steps"))])
+    text = head(
+        [
+            f"`{knob}`",
+            *(
+                f"{PRESSURES[kpa]}: {what}"
+                for kpa in findings.study.pressures
+                for what in ("evaluation", "tangent", "path", "steps")
+            ),
+        ]
+    )
     for setting in (s for s in findings.chosen if s.knob == knob):
         cells = [setting.label]
         for kpa in findings.study.pressures:
-            once, way = findings.evaluation[kpa, "sheared"].get(setting.name, {}), findings.paths[kpa].get(setting.name, {})
-            cells += [figure_of(found.get(key, np.nan)) for found, key in ((once, "median"), (once, "tangent_median"), (way, "median"))]
+            once, way = (
+                findings.evaluation[kpa, "sheared"].get(setting.name, {}),
+                findings.paths[kpa].get(setting.name, {}),
+            )
+            cells += [
+                figure_of(found.get(key, np.nan))
+                for found, key in ((once, "median"), (once, "tangent_median"), (way, "median"))
+            ]
             cells.append(figure_of(way.get("steps", np.nan) / setting.increments))
         text += row(cells)
     return text
@@ -98,14 +158,26 @@ def table_of_knob(findings, knob):
 
 def table_of_matter(findings, knob):
     """Knobs that change the material itself: not an error, but another answer."""
-    text = head([f"`{knob}`", *(f"{PRESSURES[kpa]}: {what}" for kpa in findings.study.pressures
-                               for what in ("q/p", "scatter of packings, %", "volumetric strain, %", "steps"))])
+    text = head(
+        [
+            f"`{knob}`",
+            *(
+                f"{PRESSURES[kpa]}: {what}"
+                for kpa in findings.study.pressures
+                for what in ("q/p", "scatter of packings, %", "volumetric strain, %", "steps")
+            ),
+        ]
+    )
     for setting in (s for s in findings.chosen if s.knob == knob):
         cells = [setting.label]
         for kpa in findings.study.pressures:
             found = findings.scatter[kpa].get(setting.name, {})
-            cells += [figure_of(found.get("ratio", np.nan), 3), figure_of(100 * found.get("cov", np.nan)),
-                      figure_of(found.get("volume", np.nan), 3), figure_of(found.get("steps", np.nan) / setting.increments)]
+            cells += [
+                figure_of(found.get("ratio", np.nan), 3),
+                figure_of(100 * found.get("cov", np.nan)),
+                figure_of(found.get("volume", np.nan), 3),
+                figure_of(found.get("steps", np.nan) / setting.increments),
+            ]
         text += row(cells)
     return text
 
@@ -117,7 +189,9 @@ def table_of_noise(findings):
         cells = [name.replace("_0", " 0")]
         for kpa in study.pressures:
             for state in STATES:
-                ours, still = (probes(study.probe_folders(every[n], kpa, state).values()) for n in (name, "hold_tolerance_0.0001"))
+                ours, still = (
+                    probes(study.probe_folders(every[n], kpa, state).values()) for n in (name, "hold_tolerance_0.0001")
+                )
                 cells.append(figure_of(noise_share(ours, still)))
         text += row(cells)
     return text
@@ -128,8 +202,20 @@ def tables(findings):
     done = {s.knob for s in findings.chosen if any(s.name in findings.paths[kpa] for kpa in findings.study.pressures)}
     parts = [("Presets", table_of_presets(findings))] if "preset" in done else []
     parts.append(("Scatter", table_of_scatter(findings)))
-    parts += [(knob, table_of_knob(findings, knob)) for knob in ("inertial_number", "hold_tolerance", "hold_cap", "minimum_steps",
-                                                                "maximum_steps", "skin", "precision", "increments") if knob in done]
+    parts += [
+        (knob, table_of_knob(findings, knob))
+        for knob in (
+            "inertial_number",
+            "hold_tolerance",
+            "hold_cap",
+            "minimum_steps",
+            "maximum_steps",
+            "skin",
+            "precision",
+            "increments",
+        )
+        if knob in done
+    ]
     parts += [(knob, table_of_matter(findings, knob)) for knob in ("modulus", "grains") if knob in done]
     if {"hold_cap", "hold_tolerance"} <= done:
         parts.append(("Noise share", table_of_noise(findings)))
@@ -143,20 +229,26 @@ def points(findings, knob, measure):
     return np.array(found).reshape(-1, 2)
 
 
-ROWS = (("one evaluation, sheared state", "median error of stress, % of p", lambda f, s, k: _evaluation(f, s, k, "median")),
-        ("tangent (4) after it", "median error of tangent, %", lambda f, s, k: _evaluation(f, s, k, "tangent_median")),
-        ("path to 5 % shear", "median error of q/p, % of p", lambda f, s, k: _path(f, s, k)))
+ROWS = (
+    ("one evaluation, sheared state", "median error of stress, % of p", lambda f, s, k: _evaluation(f, s, k, "median")),
+    ("tangent (4) after it", "median error of tangent, %", lambda f, s, k: _evaluation(f, s, k, "tangent_median")),
+    ("path to 5 % shear", "median error of q/p, % of p", lambda f, s, k: _path(f, s, k)),
+)
 
 
 def draw_errors(findings, file):
     pressures = findings.study.pressures
-    figure, axes = plt.subplots(len(ROWS), len(pressures), figsize=(4.1 * len(pressures), 3.3 * len(ROWS)), sharex="col", squeeze=False)
+    figure, axes = plt.subplots(
+        len(ROWS), len(pressures), figsize=(4.1 * len(pressures), 3.3 * len(ROWS)), sharex="col", squeeze=False
+    )
     for column, kpa in enumerate(pressures):
         for axis, (what, _, measure) in zip(axes[:, column], ROWS, strict=True):
             draw_knobs(axis, findings, lambda s, k=kpa, of=measure: of(findings, s, k))
             axis.set_title(f"{PRESSURES[kpa]}, {what}")
         scatter = findings.scatter[kpa].get("reference_solution", {})
-        axes[-1][column].axhline(scatter.get("packings", np.nan), color="0.5", linestyle=":", label="scatter of packings")
+        axes[-1][column].axhline(
+            scatter.get("packings", np.nan), color="0.5", linestyle=":", label="scatter of packings"
+        )
         axes[-1][column].axhline(scatter.get("chaos", np.nan), color="0.5", linestyle="--", label="scatter of replicas")
         axes[-1][column].set_xlabel("steps of an increment (all its evaluations)")
         axes[-1][column].xaxis.set_minor_locator(LogLocator(subs=(2, 5)))
@@ -173,10 +265,19 @@ def draw_errors(findings, file):
 
 def draw_knobs(axis, findings, measure):
     for knob, (color, marker) in LINES.items():
-        axis.loglog(*points(findings, knob, measure).T, marker=marker, color=color, markersize=5, label=knob.replace("_", " "))
+        axis.loglog(
+            *points(findings, knob, measure).T, marker=marker, color=color, markersize=5, label=knob.replace("_", " ")
+        )
     for name, (color, marker) in PRESETS.items():
-        axis.loglog(*measure(Setting("preset", name)), marker=marker, color=color, markersize=10, linestyle="", label=f"preset {name}",
-                    zorder=5)
+        axis.loglog(
+            *measure(Setting("preset", name)),
+            marker=marker,
+            color=color,
+            markersize=10,
+            linestyle="",
+            label=f"preset {name}",
+            zorder=5,
+        )
 
 
 def _evaluation(findings, setting, kpa, key):
@@ -199,12 +300,20 @@ def draw_paths(findings, file):
             curves = findings.curves[kpa]
             spread = np.array([c[key].mean(axis=0) for c in curves.get("reference_solution", {}).values()]) * scale
             if spread.size:
-                axis.fill_between(100 * STRAINS, spread.min(axis=0), spread.max(axis=0), color="0.85", label="all packings")
+                axis.fill_between(
+                    100 * STRAINS, spread.min(axis=0), spread.max(axis=0), color="0.85", label="all packings"
+                )
             for name, (color, marker) in PRESETS.items():
                 found = curves.get(f"preset_{name}", {})
                 if found:
-                    axis.plot(100 * STRAINS, scale * found[min(found)][key].mean(axis=0), color=color, marker=marker, markersize=6,
-                              label=f"preset {name}")
+                    axis.plot(
+                        100 * STRAINS,
+                        scale * found[min(found)][key].mean(axis=0),
+                        color=color,
+                        marker=marker,
+                        markersize=6,
+                        label=f"preset {name}",
+                    )
         axes[0][column].set_title(PRESSURES[kpa])
         axes[1][column].set_xlabel("axial strain, %")
     axes[0][0].set_ylabel("q/p")

@@ -1,6 +1,19 @@
 """All figures of a run, by the name of their file."""
 
-from . import chains, convergence, fields, panels, paths, profiles, reaction, rotation, settlements, stresses, troughs, widths
+from . import (
+    chains,
+    convergence,
+    fields,
+    panels,
+    paths,
+    profiles,
+    reaction,
+    rotation,
+    settlements,
+    stresses,
+    troughs,
+    widths,
+)
 
 FIGURES = {
     "settlement_troughs.png": troughs.draw,

@@ -10,7 +10,7 @@ from . import points
 from .result import Missing
 from .style import percent, save
 
-STRONG = 1.0     # a contact is strong from this share of the mean normal force on (C1 of the study's pictures)
+STRONG = 1.0  # a contact is strong from this share of the mean normal force on (C1 of the study's pictures)
 STRONGEST = 2.0  # C2
 
 
@@ -35,12 +35,17 @@ def rows(result, increment):
         if away[name] < 0.25 * diameter:
             found.append((point.name + (f"\n(RVE {away[name]:.2f} m away)" if away[name] > 1e-9 else ""), name))
             rest.pop(name, None)
-    return found + [(f"x = {where[number][0]:.1f} m, {(where[number][1] - result.crown_height) / diameter:+.2f} D", name)
-                    for name, number in rest.items()]
+    return found + [
+        (f"x = {where[number][0]:.1f} m, {(where[number][1] - result.crown_height) / diameter:+.2f} D", name)
+        for name, number in rest.items()
+    ]
 
 
 def draw(result, path):
-    chosen = [result.loss_increments[0], *(result.nearest(result.settings.field_losses) or [result.loss_increments[-1]])]
+    chosen = [
+        result.loss_increments[0],
+        *(result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]),
+    ]
     found = rows(result, chosen[-1])
     figure, axes = plt.subplots(len(found), len(chosen), figsize=(3.6 * len(chosen), 3.9 * len(found)), squeeze=False)
     for row, (label, name) in zip(axes, found):
@@ -48,8 +53,10 @@ def draw(result, path):
             _draw_rve(axis, increment.snapshot(name))
             axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])}", fontsize=10)
         row[0].set_ylabel(label, fontsize=11)
-    figure.suptitle("Force chains: width of a bar by normal force;\nred from the RVE's mean on, dark red from twice the mean on",
-                    fontsize=12)
+    figure.suptitle(
+        "Force chains: width of a bar by normal force;\nred from the RVE's mean on, dark red from twice the mean on",
+        fontsize=12,
+    )
     figure.tight_layout()
     save(figure, path)
 
@@ -59,8 +66,19 @@ def _draw_rve(axis, snapshot):
     # Into the cell: positions are stored anywhere.
     inside = position - (cell @ np.floor(np.linalg.solve(cell, position.T))).T
     diameter = 2 * snapshot["radius"]
-    axis.add_collection(EllipseCollection(diameter, diameter, np.zeros_like(diameter), units="xy", offsets=inside,
-                                          offset_transform=axis.transData, facecolors="0.9", edgecolors="0.6", linewidths=0.3))
+    axis.add_collection(
+        EllipseCollection(
+            diameter,
+            diameter,
+            np.zeros_like(diameter),
+            units="xy",
+            offsets=inside,
+            offset_transform=axis.transData,
+            facecolors="0.9",
+            edgecolors="0.6",
+            linewidths=0.3,
+        )
+    )
     if len(snapshot["contact_i"]):
         force = normal_forces(snapshot)
         share = force / force.mean()
@@ -68,7 +86,9 @@ def _draw_rve(axis, snapshot):
         bars = np.stack([start, start + snapshot["branch"]], axis=1)
         order = np.argsort(share)
         colour = np.where(share >= STRONGEST, "darkred", np.where(share >= STRONG, "red", "steelblue"))
-        axis.add_collection(LineCollection(bars[order], linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order]))
+        axis.add_collection(
+            LineCollection(bars[order], linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order])
+        )
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) @ cell.T
     axis.plot(*corners.T, color="black", linewidth=0.8)
     axis.set_aspect("equal")

@@ -10,7 +10,7 @@ from .style import save
 
 
 def name(result):
-    """"dense sand, C/D = 3", for legends."""
+    """ "dense sand, C/D = 3", for legends."""
     (diameter,) = result.need("diameter")
     return f"{result.soil}, $C/D$ = {result.cover / diameter:.3g}"
 
@@ -27,12 +27,19 @@ def draw(results, path):
         loss = 100 * result.volume_loss
         axes[0, 0].plot(loss, curve(result)[1], **style)
         for depth, line in ((0.0, "-"), (0.75, "--")):
-            axes[0, 1].plot(loss, 1e3 * settlements.on_axis(result, depth), line, **{**style, "label": f"{style['label']}, z/C = {depth:g}"})
+            axes[0, 1].plot(
+                loss,
+                1e3 * settlements.on_axis(result, depth),
+                line,
+                **{**style, "label": f"{style['label']}, z/C = {depth:g}"},
+            )
         width_loss, width, _ = widths.surface_width(result)
         axes[0, 2].plot(100 * width_loss, width, **style)
         for axis, point in zip(axes[1], points.above_crown(result)):
             axis.plot(loss, paths.stress_ratio(result, point), **style)
-            axis.set_title(f"{point.name}, {result.settings.above_crown[('Aa', 'Ab', 'Ac').index(point.name)]:g} $D$ above the crown")
+            axis.set_title(
+                f"{point.name}, {result.settings.above_crown[('Aa', 'Ab', 'Ac').index(point.name)]:g} $D$ above the crown"
+            )
             axis.set_ylabel("stress ratio  $q/p$  [-]")
             axis.set_ylim(0, 1.05)
     axes[0, 0].set_ylabel(r"$\sigma_v / \sigma_{v,0}$ above the crown  [-]")
@@ -65,8 +72,12 @@ def widening(results):
     loss = common_loss(chosen)
     found = [(cover_ratio(r), np.interp(loss, *_inflection(r))) for r in chosen]
     holds = all(a[1] < b[1] for a, b in zip(found, found[1:]))
-    return trends.Trend("Troughs widen with C/D", trends.verdict(holds), f"inflection of the surface trough at V_l = {trends.percent(loss)}: "
-                        + ", ".join(f"C/D = {c:.3g}: {i:.2f} m" for c, i in found))
+    return trends.Trend(
+        "Troughs widen with C/D",
+        trends.verdict(holds),
+        f"inflection of the surface trough at V_l = {trends.percent(loss)}: "
+        + ", ".join(f"C/D = {c:.3g}: {i:.2f} m" for c, i in found),
+    )
 
 
 def _inflection(result):
@@ -82,12 +93,19 @@ def depth_dependence(results):
     loss, found = common_loss(chosen), []
     for result in chosen:
         increment = result.nearest([loss])[-1]
-        width = [t.width for (ratio, v), t in troughs.all_troughs(result).items() if v == increment["volume_loss"] and ratio < 1]
+        width = [
+            t.width
+            for (ratio, v), t in troughs.all_troughs(result).items()
+            if v == increment["volume_loss"] and ratio < 1
+        ]
         found.append((cover_ratio(result), max(width) - min(width)))
     holds = all(a[1] < b[1] for a, b in zip(found, found[1:]))
-    return trends.Trend("K varies less with depth for shallow tunnels", trends.verdict(holds),
-                        f"largest less least K above the crown at V_l = {trends.percent(loss)}: "
-                        + ", ".join(f"C/D = {c:.3g}: {k:.2f}" for c, k in found))
+    return trends.Trend(
+        "K varies less with depth for shallow tunnels",
+        trends.verdict(holds),
+        f"largest less least K above the crown at V_l = {trends.percent(loss)}: "
+        + ", ".join(f"C/D = {c:.3g}: {k:.2f}" for c, k in found),
+    )
 
 
 def pair(results, soil):
@@ -102,14 +120,19 @@ def looser_settles_more(results):
     """Medium dense sand settles more than dense sand, at the surface and below it at similar rates."""
     dense, loose = pair(results, "medium dense sand")
     loss = common_loss((dense, loose))
-    both = {z: [float(np.interp(loss, r.volume_loss, settlements.on_axis(r, z))) for r in (dense, loose)] for z in (0.0, 0.5)}
+    both = {
+        z: [float(np.interp(loss, r.volume_loss, settlements.on_axis(r, z))) for r in (dense, loose)]
+        for z in (0.0, 0.5)
+    }
     text = "; ".join(f"z/C = {z:g}: {1e3 * a:.0f} and {1e3 * b:.0f} mm" for z, (a, b) in both.items())
     late = {z: trends.slope(loose.volume_loss, settlements.on_axis(loose, z), loss / 2, loss) for z in (0.0, 0.5)}
     similar = 0.8 < late[0.0] / late[0.5] < 1.25
-    return trends.Trend("Medium dense sand settles more, surface and subsurface at similar rates",
-                        trends.verdict(all(b > a for a, b in both.values()) and similar),
-                        f"dense and medium dense at V_l = {trends.percent(loss)}: {text}; slopes of surface over subsurface in the second half "
-                        f"{late[0.0] / late[0.5]:.2f}")
+    return trends.Trend(
+        "Medium dense sand settles more, surface and subsurface at similar rates",
+        trends.verdict(all(b > a for a, b in both.values()) and similar),
+        f"dense and medium dense at V_l = {trends.percent(loss)}: {text}; slopes of surface over subsurface in the second half "
+        f"{late[0.0] / late[0.5]:.2f}",
+    )
 
 
 def gravel_reacts(results):
@@ -121,19 +144,26 @@ def gravel_reacts(results):
         least = int(np.argmin(ratio))
         numbers.append((trends.slope(loss, ratio, 0, 0.01), ratio[least], loss[least]))
     (slope_a, low_a, at_a), (slope_b, low_b, at_b) = numbers
-    return trends.Trend("Ground reaction of gravel: steeper, lower, slower to recover than dense sand's",
-                        trends.verdict(slope_b < slope_a and low_b < low_a and at_b >= at_a),
-                        f"dense sand and gravel: slope to V_l = 1 % {slope_a:.1f} and {slope_b:.1f}; minimum {low_a:.3f} at "
-                        f"{trends.percent(at_a)} and {low_b:.3f} at {trends.percent(at_b)}")
+    return trends.Trend(
+        "Ground reaction of gravel: steeper, lower, slower to recover than dense sand's",
+        trends.verdict(slope_b < slope_a and low_b < low_a and at_b >= at_a),
+        f"dense sand and gravel: slope to V_l = 1 % {slope_a:.1f} and {slope_b:.1f}; minimum {low_a:.3f} at "
+        f"{trends.percent(at_a)} and {low_b:.3f} at {trends.percent(at_b)}",
+    )
 
 
 def gravel_is_stronger(results):
     """RVEs of gravel reach a higher q/p than those of dense sand."""
     dense, gravel = pair(results, "gravel")
-    most = [{p.name: float(np.nanmax(paths.stress_ratio(r, p))) for p in points.above_crown(r)} for r in (dense, gravel)]
+    most = [
+        {p.name: float(np.nanmax(paths.stress_ratio(r, p))) for p in points.above_crown(r)} for r in (dense, gravel)
+    ]
     text = "; ".join(f"{name}: {most[0][name]:.2f} and {most[1][name]:.2f}" for name in most[0])
-    return trends.Trend("RVEs of gravel reach a higher q/p", trends.verdict(all(most[1][n] > most[0][n] for n in most[0])),
-                        f"largest q/p, dense sand and gravel: {text}")
+    return trends.Trend(
+        "RVEs of gravel reach a higher q/p",
+        trends.verdict(all(most[1][n] > most[0][n] for n in most[0])),
+        f"largest q/p, dense sand and gravel: {text}",
+    )
 
 
 def looser_is_less_connected(results):
@@ -146,9 +176,12 @@ def looser_is_less_connected(results):
         early.append(history[0])
         late.append(float(np.interp(loss, result.volume_loss, history)))
     holds = early[1] < early[0] - 0.05 and abs(late[1] - late[0]) < abs(early[1] - early[0])
-    return trends.Trend("Z_m is lower in medium dense sand early only", trends.verdict(holds),
-                        f"mean of Aa, Ab, Ac, dense and medium dense: {early[0]:.2f} and {early[1]:.2f} at V_l = 0, {late[0]:.2f} and "
-                        f"{late[1]:.2f} at {trends.percent(loss)}")
+    return trends.Trend(
+        "Z_m is lower in medium dense sand early only",
+        trends.verdict(holds),
+        f"mean of Aa, Ab, Ac, dense and medium dense: {early[0]:.2f} and {early[1]:.2f} at V_l = 0, {late[0]:.2f} and "
+        f"{late[1]:.2f} at {trends.percent(loss)}",
+    )
 
 
 def gravel_is_as_connected(results):
@@ -156,21 +189,44 @@ def gravel_is_as_connected(results):
     dense, gravel = pair(results, "gravel")
     means = {}
     for field in ("mechanical_coordination", "strong_coordination_1", "strong_coordination_2"):
-        means[field] = [float(np.mean([points.history(r, f"gauss/{field}", p) for p in points.above_crown(r)])) for r in (dense, gravel)]
+        means[field] = [
+            float(np.mean([points.history(r, f"gauss/{field}", p) for p in points.above_crown(r)]))
+            for r in (dense, gravel)
+        ]
     a, b = means["mechanical_coordination"]
     holds = abs(a - b) < 0.1 * a and all(means[f][1] > means[f][0] for f in means if f.startswith("strong"))
     text = "; ".join(f"{field}: {x:.2f} and {y:.2f}" for field, (x, y) in means.items())
-    return trends.Trend("Z_m of gravel is that of dense sand, its strong network better connected", trends.verdict(holds),
-                        f"means over Aa, Ab, Ac and V_l, dense sand and gravel: {text}")
+    return trends.Trend(
+        "Z_m of gravel is that of dense sand, its strong network better connected",
+        trends.verdict(holds),
+        f"means over Aa, Ab, Ac and V_l, dense sand and gravel: {text}",
+    )
 
 
-TRENDS = (widening, depth_dependence, looser_settles_more, gravel_reacts, gravel_is_stronger, looser_is_less_connected,
-          gravel_is_as_connected)
+TRENDS = (
+    widening,
+    depth_dependence,
+    looser_settles_more,
+    gravel_reacts,
+    gravel_is_stronger,
+    looser_is_less_connected,
+    gravel_is_as_connected,
+)
 
 
 def write(results, path):
-    lines = ["# Trends between tunnels", "", "; ".join(f"{r.folder.resolve().name}: {name(r).replace('$', '')}, V_l to "
-             f"{trends.percent(r.volume_loss[-1])}" for r in results) + ".", "", "| trend | verdict | numbers |", "|---|---|---|"]
+    lines = [
+        "# Trends between tunnels",
+        "",
+        "; ".join(
+            f"{r.folder.resolve().name}: {name(r).replace('$', '')}, V_l to {trends.percent(r.volume_loss[-1])}"
+            for r in results
+        )
+        + ".",
+        "",
+        "| trend | verdict | numbers |",
+        "|---|---|---|",
+    ]
     for judge in TRENDS:
         try:
             row = judge(results)

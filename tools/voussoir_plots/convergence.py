@@ -10,13 +10,17 @@ from .style import save
 def draw(result, path):
     increments = result.increments
     index = np.array([i["index"] for i in increments])
-    column = {name: np.array([float(i[name]) for i in increments])
-              for name in ("residual", "evaluations", "iterations", "converged", "wall_s")}
+    column = {
+        name: np.array([float(i[name]) for i in increments])
+        for name in ("residual", "evaluations", "iterations", "converged", "wall_s")
+    }
     figure, (top, middle, bottom) = plt.subplots(3, 1, figsize=(8.4, 7.8), sharex=True)
     # A residual of exactly zero (a stage's first state) has no place on a logarithmic axis.
     shown = column["residual"] > 0
     good = column["converged"] > 0
-    top.semilogy(index[shown & good], column["residual"][shown & good], "o", markersize=3.5, color="C0", label="converged")
+    top.semilogy(
+        index[shown & good], column["residual"][shown & good], "o", markersize=3.5, color="C0", label="converged"
+    )
     if not good.all():
         top.semilogy(index[shown & ~good], column["residual"][shown & ~good], "X", color="C3", label="not converged")
     if all("residual_bound" in i.attributes for i, s in zip(increments, shown) if s) and shown.any():
@@ -32,7 +36,14 @@ def draw(result, path):
     cuts = np.array([float(i["cuts"]) for i in increments])
     for number, marker, label in ((relaxed, ".", "substeps of relaxation"), (cuts, "x", "cuts")):
         if number.any():
-            middle.plot(index[number > 0], number[number > 0], marker, color="C3", markersize=5, label=f"{label}, {number.sum():.0f} in all")
+            middle.plot(
+                index[number > 0],
+                number[number > 0],
+                marker,
+                color="C3",
+                markersize=5,
+                label=f"{label}, {number.sum():.0f} in all",
+            )
     middle.set_ylabel("number  [-]")
     middle.legend()
     _draw_times(bottom, index, increments, column["wall_s"])
@@ -47,14 +58,25 @@ def draw(result, path):
 
 def _draw_times(axis, index, increments, wall):
     """Wall time so far, by part where the run says so; the output of an increment stands with the next one."""
-    parts = [("time_grains", "grains and tangents", "C0"), ("time_solve", "solution", "C1"), ("time_assembly", "assembly", "C2"),
-             ("time_output", "output", "C3")]
+    parts = [
+        ("time_grains", "grains and tangents", "C0"),
+        ("time_solve", "solution", "C1"),
+        ("time_assembly", "assembly", "C2"),
+        ("time_output", "output", "C3"),
+    ]
     times = {name: np.cumsum([float(i.attributes.get(name, 0.0)) for i in increments]) / 60 for name, _, _ in parts}
     base = np.zeros(len(index))
     for name, label, colour in parts:
         if times[name][-1] > 0:
-            axis.fill_between(index, base, base + times[name], color=colour, alpha=0.75, linewidth=0,
-                              label=f"{label}: {times[name][-1]:.2g} min")
+            axis.fill_between(
+                index,
+                base,
+                base + times[name],
+                color=colour,
+                alpha=0.75,
+                linewidth=0,
+                label=f"{label}: {times[name][-1]:.2g} min",
+            )
             base = base + times[name]
     total = np.cumsum(wall) / 60 + times["time_output"]
     axis.plot(index, total, color="black", linewidth=1.2, label=f"all: {total[-1]:.3g} min")
@@ -68,5 +90,10 @@ def _mark_stages(named, others, increments):
             previous = increment["stage"]
             for axis in (named, *others):
                 axis.axvline(increment["index"] - 0.5, color="0.4", linewidth=0.8, linestyle="--")
-            named.text(increment["index"] - 0.3, 1.03, previous.replace("_", " "), transform=named.get_xaxis_transform(),
-                       fontsize=10)
+            named.text(
+                increment["index"] - 0.3,
+                1.03,
+                previous.replace("_", " "),
+                transform=named.get_xaxis_transform(),
+                fontsize=10,
+            )

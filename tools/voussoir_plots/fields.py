@@ -28,7 +28,7 @@ def magnification(result, displacement):
     if largest == 0 or largest > 0.005 * width:
         return 1
     factor = 0.02 * width / largest
-    power = 10.0**np.floor(np.log10(factor))
+    power = 10.0 ** np.floor(np.log10(factor))
     return float(max(m * power for m in (1, 2, 5) if m * power <= factor))
 
 
@@ -41,7 +41,9 @@ def canvas(result, increment):
     factor = magnification(result, displacement)
     deformed = result.coordinates + factor * displacement
     figure, axis = plt.subplots(figsize=(7.4, 6.6))
-    edges = LineCollection(q8.outlines(deformed, result.connectivity), colors="0.5", linewidths=0.35, alpha=0.6, zorder=2)
+    edges = LineCollection(
+        q8.outlines(deformed, result.connectivity), colors="0.5", linewidths=0.35, alpha=0.6, zorder=2
+    )
     axis.add_collection(edges)
     axis.set_aspect("equal")
     axis.grid(False)
@@ -60,8 +62,9 @@ def draw_displacement(result, path):
     figure, axis, deformed, note = canvas(result, increment)
     displacement = increment.field("node/displacement")
     size = np.linalg.norm(displacement, axis=1)
-    filled = axis.tricontourf(deformed[:, 0], deformed[:, 1], q8.triangles(result.connectivity), size, levels=21,
-                              cmap="viridis", zorder=1)
+    filled = axis.tricontourf(
+        deformed[:, 0], deformed[:, 1], q8.triangles(result.connectivity), size, levels=21, cmap="viridis", zorder=1
+    )
     figure.colorbar(filled, ax=axis, label="displacement  $|u|$  [m]", shrink=0.85)
     _add_arrows(axis, result, deformed, displacement)
     axis.set_title(f"Displacement, {state(increment)}\n{note}", loc="left")
@@ -77,9 +80,18 @@ def _add_arrows(axis, result, deformed, displacement):
     chosen = chosen[size[chosen] > 0.01 * size.max()]
     if len(chosen) == 0:
         return
-    arrows = axis.quiver(*deformed[chosen].T, *displacement[chosen].T, angles="xy", scale_units="xy",
-                         scale=size.max() / (2.2 * spacing), width=0.0028, color="white", edgecolor="black", linewidth=0.35,
-                         zorder=3)
+    arrows = axis.quiver(
+        *deformed[chosen].T,
+        *displacement[chosen].T,
+        angles="xy",
+        scale_units="xy",
+        scale=size.max() / (2.2 * spacing),
+        width=0.0028,
+        color="white",
+        edgecolor="black",
+        linewidth=0.35,
+        zorder=3,
+    )
     axis.quiverkey(arrows, 0.86, 1.03, size.max(), f"{size.max():.2g} m", labelpos="E", color="black")
 
 
@@ -92,8 +104,9 @@ def _draw_points(result, path, name, label, title, colour_map, symmetric=False, 
     finite = values[np.isfinite(values)]
     limit = np.max(np.abs(finite)) if finite.size else 1.0
     limits = (-limit, limit) if symmetric else (finite.min(), finite.max()) if finite.size else (0, 1)
-    collection = PolyCollection(patches.reshape(-1, 4, 2), array=values.ravel(), cmap=colour_map, edgecolors="face",
-                                linewidths=0.6, zorder=1)
+    collection = PolyCollection(
+        patches.reshape(-1, 4, 2), array=values.ravel(), cmap=colour_map, edgecolors="face", linewidths=0.6, zorder=1
+    )
     collection.set_clim(*limits)
     axis.add_collection(collection)
     figure.colorbar(collection, ax=axis, label=label, shrink=0.85)
@@ -102,8 +115,15 @@ def _draw_points(result, path, name, label, title, colour_map, symmetric=False, 
 
 
 def draw_deviatoric_strain(result, path):
-    _draw_points(result, path, "gauss/deviatoric_strain", r"deviatoric strain  $\varepsilon_q$  [%]", "Deviatoric strain",
-                 "magma_r", factor=100)
+    _draw_points(
+        result,
+        path,
+        "gauss/deviatoric_strain",
+        r"deviatoric strain  $\varepsilon_q$  [%]",
+        "Deviatoric strain",
+        "magma_r",
+        factor=100,
+    )
 
 
 def draw_void_ratio(result, path):
@@ -111,5 +131,13 @@ def draw_void_ratio(result, path):
 
 
 def draw_grain_rotation(result, path):
-    _draw_points(result, path, "gauss/grain_rotation", "mean grain rotation, counter-clockwise positive  [deg]",
-                 "Grain rotation", "coolwarm", symmetric=True, factor=180 / np.pi)
+    _draw_points(
+        result,
+        path,
+        "gauss/grain_rotation",
+        "mean grain rotation, counter-clockwise positive  [deg]",
+        "Grain rotation",
+        "coolwarm",
+        symmetric=True,
+        factor=180 / np.pi,
+    )

@@ -38,8 +38,15 @@ def draw(result, path):
     if not fields:
         raise Missing("there is no field of the Gauss points")
     (diameter, surface_y) = result.need("diameter", "surface_y")
-    figure, axes = plt.subplots(len(fields), len(chosen), figsize=(4.0 * len(chosen) + 1.2, 4.0 * len(fields)), squeeze=False,
-                                sharex=True, sharey=True, layout="constrained")
+    figure, axes = plt.subplots(
+        len(fields),
+        len(chosen),
+        figsize=(4.0 * len(chosen) + 1.2, 4.0 * len(fields)),
+        squeeze=False,
+        sharex=True,
+        sharey=True,
+        layout="constrained",
+    )
     for row, (name, factor, label, colour_map, symmetric) in zip(axes, fields):
         values = [factor * since_start(result, name, i) for i in chosen]
         range_of = limits(np.concatenate([v.ravel() for v in values]), symmetric)
@@ -51,8 +58,12 @@ def draw(result, path):
             axis.add_collection(drawn)
             axis.set_aspect("equal")
             axis.grid(False)
-            axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])},  largest {np.nanmax(np.abs(value)):.3g}", fontsize=10)
-        figure.colorbar(drawn, ax=list(row), label=label, shrink=0.85, extend="max" if not symmetric else "both", pad=0.01)
+            axis.set_title(
+                f"$V_l$ = {percent(increment['volume_loss'])},  largest {np.nanmax(np.abs(value)):.3g}", fontsize=10
+            )
+        figure.colorbar(
+            drawn, ax=list(row), label=label, shrink=0.85, extend="max" if not symmetric else "both", pad=0.01
+        )
         row[0].set_ylabel("$y$  [m]")
     axes[0, 0].set_xlim(0, min(result.coordinates[:, 0].max(), 4 * diameter))
     axes[0, 0].set_ylim(result.crown_height - 1.6 * diameter, surface_y * 1.01)

@@ -35,8 +35,10 @@ def draw(result, path):
     for point in points.all_points(result):
         style = {"color": COLOURS[point.name], "label": points.describe(result, point), "linewidth": 1.4}
         ratio = stress_ratio(result, point)
-        p, q, volumetric, sheared, void = (points.history(result, f"gauss/{name}", point) for name in (
-            "mean_stress", "deviatoric_stress", "volumetric_strain", "deviatoric_strain", "void_ratio"))
+        p, q, volumetric, sheared, void = (
+            points.history(result, f"gauss/{name}", point)
+            for name in ("mean_stress", "deviatoric_stress", "volumetric_strain", "deviatoric_strain", "void_ratio")
+        )
         axes[0, 0].plot(loss, ratio, **style)
         axes[0, 1].plot(100 * sheared, ratio, **style)
         axes[0, 2].plot(p / 1e3, q / 1e3, **style)
@@ -60,8 +62,13 @@ def draw(result, path):
         axis.set_ylabel(r"$\varepsilon_v$, contraction positive  [%]")
         axis.axhline(0, color="0.4", linewidth=0.8)
     axes[1, 2].set_ylabel("void ratio  $e$  [-]")
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), title="point  ($x$, height above the crown)", loc="upper center",
-                  bbox_to_anchor=(0.5, 0.0), ncol=4)
+    figure.legend(
+        *axes[0, 0].get_legend_handles_labels(),
+        title="point  ($x$, height above the crown)",
+        loc="upper center",
+        bbox_to_anchor=(0.5, 0.0),
+        ncol=4,
+    )
     figure.suptitle("RVEs above the crown and in the shear band", fontsize=12)
     figure.tight_layout()
     save(figure, path)
@@ -74,17 +81,27 @@ def draw_network(result, path):
         raise Missing("the contact network was not written (output.microstructure)")
     rows = -(-len(present) // 3)
     figure, axes = plt.subplots(rows, 3, figsize=(15.5, 4.2 * rows), squeeze=False)
-    for axis in axes.flat[len(present):]:
+    for axis in axes.flat[len(present) :]:
         axis.set_axis_off()
     for axis, (name, label) in zip(axes.flat, present):
         for point in points.all_points(result):
-            axis.plot(100 * result.volume_loss, points.history(result, name, point), color=COLOURS[point.name], linewidth=1.3,
-                      label=points.describe(result, point))
+            axis.plot(
+                100 * result.volume_loss,
+                points.history(result, name, point),
+                color=COLOURS[point.name],
+                linewidth=1.3,
+                label=points.describe(result, point),
+            )
         axis.set_ylabel(label)
         axis.set_xlabel("volume loss  $V_l$  [%]")
         axis.set_xlim(left=0)
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), title="point  ($x$, height above the crown)", loc="upper center",
-                  bbox_to_anchor=(0.5, 0.0), ncol=4)
+    figure.legend(
+        *axes[0, 0].get_legend_handles_labels(),
+        title="point  ($x$, height above the crown)",
+        loc="upper center",
+        bbox_to_anchor=(0.5, 0.0),
+        ncol=4,
+    )
     figure.suptitle("Contact network of the RVEs above the crown and in the shear band", fontsize=12)
     figure.tight_layout()
     save(figure, path)

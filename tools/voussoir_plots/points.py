@@ -11,7 +11,7 @@ from .result import Missing
 @dataclass
 class Point:
     name: str
-    index: int            # Gauss point, 4 * element + corner
+    index: int  # Gauss point, 4 * element + corner
     position: np.ndarray  # original coordinates [m]
 
 
@@ -38,7 +38,9 @@ def above_crown(result):
     """Aa, Ab, Ac; those that would lie above the surface are left out."""
     (diameter,) = result.need("diameter")
     heights = [k for k in result.settings.above_crown if k * diameter <= result.cover * (1 + 1e-9)]
-    return [nearest(result, name, 0.0, result.crown_height + k * diameter) for name, k in zip(("Aa", "Ab", "Ac"), heights)]
+    return [
+        nearest(result, name, 0.0, result.crown_height + k * diameter) for name, k in zip(("Aa", "Ab", "Ac"), heights)
+    ]
 
 
 def in_the_band(result):
@@ -50,8 +52,11 @@ def in_the_band(result):
     (diameter,) = result.need("diameter")
     points = original_points(result)
     height = (points[:, 1] - result.crown_height) / diameter
-    strain = np.where((points[:, 0] > result.settings.aside * diameter) & (height >= result.settings.aside_above),
-                      result.loss_increments[-1].field("gauss/deviatoric_strain").ravel(), -np.inf)
+    strain = np.where(
+        (points[:, 0] > result.settings.aside * diameter) & (height >= result.settings.aside_above),
+        result.loss_increments[-1].field("gauss/deviatoric_strain").ravel(),
+        -np.inf,
+    )
     index = int(np.argmax(strain))
     if not np.isfinite(strain[index]):
         raise Missing("no point lies beside the axis")
@@ -63,7 +68,7 @@ def all_points(result):
 
 
 def describe(result, point):
-    """"Ab  (0.07 m, 1.02 D above the crown)", for legends."""
+    """ "Ab  (0.07 m, 1.02 D above the crown)", for legends."""
     (diameter,) = result.need("diameter")
     return f"{point.name}  ({point.position[0]:.2f} m, {(point.position[1] - result.crown_height) / diameter:+.2f} $D$)"
 
@@ -96,8 +101,11 @@ class LevelLine:
         self.x, self.elements, weights = [], [], []
         for element in crossed:
             low, high = nodes[element, :, 0].min(), nodes[element, :, 0].max()
-            inside = [(x, local) for x in np.linspace(low, high, 21)
-                      if (local := q8.local_coordinates(nodes[element], np.array([x, y]))) is not None]
+            inside = [
+                (x, local)
+                for x in np.linspace(low, high, 21)
+                if (local := q8.local_coordinates(nodes[element], np.array([x, y]))) is not None
+            ]
             if inside and inside[len(inside) // 2][0] <= width:
                 x, local = inside[len(inside) // 2]
                 self.x.append(x)

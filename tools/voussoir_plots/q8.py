@@ -41,8 +41,9 @@ def gauss_patches(coordinates, connectivity):
     """
     nodes = coordinates[connectivity]
     centre = np.einsum("n,enk->ek", shape(0.0, 0.0), nodes)
-    return np.stack([np.stack([nodes[:, c], nodes[:, 4 + c], centre, nodes[:, 4 + (c + 3) % 4]], axis=1) for c in range(4)],
-                    axis=1)
+    return np.stack(
+        [np.stack([nodes[:, c], nodes[:, 4 + c], centre, nodes[:, 4 + (c + 3) % 4]], axis=1) for c in range(4)], axis=1
+    )
 
 
 def gauss_weights(local):
@@ -79,8 +80,12 @@ def local_coordinates(nodes, point, tolerance=1e-6):
     for _ in range(20):
         step = 1e-6
         here = shape(*local) @ nodes
-        jacobian = np.column_stack([(shape(local[0] + step, local[1]) - shape(local[0] - step, local[1])) @ nodes,
-                                    (shape(local[0], local[1] + step) - shape(local[0], local[1] - step)) @ nodes])
+        jacobian = np.column_stack(
+            [
+                (shape(local[0] + step, local[1]) - shape(local[0] - step, local[1])) @ nodes,
+                (shape(local[0], local[1] + step) - shape(local[0], local[1] - step)) @ nodes,
+            ]
+        )
         jacobian /= 2 * step
         if abs(np.linalg.det(jacobian)) < 1e-14:
             return None

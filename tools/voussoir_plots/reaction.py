@@ -28,12 +28,24 @@ def draw(result, path):
     least = int(np.argmin(ratio))
     figure, axis = plt.subplots(figsize=(6.6, 4.6))
     axis.plot(100 * loss, ratio, "o-", color="C0", markersize=3)
-    axis.plot(100 * loss[least], ratio[least], "v", color="C3", markersize=8,
-              label=f"minimum {ratio[least]:.3f} at $V_l$ = {percent(loss[least])}")
+    axis.plot(
+        100 * loss[least],
+        ratio[least],
+        "v",
+        color="C3",
+        markersize=8,
+        label=f"minimum {ratio[least]:.3f} at $V_l$ = {percent(loss[least])}",
+    )
     for point in points.above_crown(result):
         vertical = -points.history(result, "gauss/stress", point)[:, 1]
-        axis.plot(100 * loss, vertical / vertical[0], "--", linewidth=0.9, color=COLOURS[point.name],
-                  label=f"at {points.describe(result, point)}")
+        axis.plot(
+            100 * loss,
+            vertical / vertical[0],
+            "--",
+            linewidth=0.9,
+            color=COLOURS[point.name],
+            label=f"at {points.describe(result, point)}",
+        )
     axis.plot([], [], " ", label=f"end {ratio[-1]:.3f} at $V_l$ = {percent(loss[-1])}")
     axis.legend(fontsize=8)
     axis.set_xlabel("volume loss  $V_l$  [%]")

@@ -25,8 +25,12 @@ class Increment:
         self.path = path
         with h5py.File(path, "r") as file:
             self.attributes = {name: _plain(value) for name, value in file.attrs.items()}
-            self.names = {f"{group}/{name}" for group in ("node", "gauss", "element", "rve") if group in file
-                          for name in file[group]}
+            self.names = {
+                f"{group}/{name}"
+                for group in ("node", "gauss", "element", "rve")
+                if group in file
+                for name in file[group]
+            }
             self.snapshots = sorted(file["snapshots"]) if "snapshots" in file else []
 
     def __getitem__(self, attribute):
@@ -64,11 +68,16 @@ class Result:
                 self.connectivity = mesh["connectivity"][()]
                 self.boundaries = {name: nodes[()] for name, nodes in mesh["boundaries"].items()}
                 self.geometry = {name: float(value) for name, value in mesh["geometry"].attrs.items()}
-            self.tables = {name: {column: values[()] for column, values in table.items()}
-                           for name, table in file.get("tables", {}).items()}
+            self.tables = {
+                name: {column: values[()] for column, values in table.items()}
+                for name, table in file.get("tables", {}).items()
+            }
         if not self.increments:
-            raise Missing("there are no increments yet" if self.has_mesh else "the run has no mesh: figures are of columns, tunnels "
-                          "and biaxial_bvp")
+            raise Missing(
+                "there are no increments yet"
+                if self.has_mesh
+                else "the run has no mesh: figures are of columns, tunnels and biaxial_bvp"
+            )
         self._histories = {}
 
     def need(self, *names):
@@ -147,7 +156,7 @@ class Result:
 
     @property
     def soil(self):
-        """"gravel", "medium dense sand", "dense sand", or "no grains" (an elastic solid), as the case describes it; the study's trends
+        """ "gravel", "medium dense sand", "dense sand", or "no grains" (an elastic solid), as the case describes it; the study's trends
         differ."""
         if self.case.get("material", "grains") != "grains":
             return "no grains"

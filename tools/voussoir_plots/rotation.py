@@ -28,7 +28,9 @@ def fabric_angles(result, increment):
 def draw(result, path):
     (diameter,) = result.need("diameter")
     has_fabric = "gauss/fabric_direction" in result.losses[0].names
-    figure, axes = plt.subplots(1, 2 if has_fabric else 1, figsize=(12.5 if has_fabric else 7, 4.8), squeeze=False, sharey=True)
+    figure, axes = plt.subplots(
+        1, 2 if has_fabric else 1, figsize=(12.5 if has_fabric else 7, 4.8), squeeze=False, sharey=True
+    )
     for increment, colour in zip(result.losses, colours("viridis", len(result.losses))):
         label = percent(increment["volume_loss"])
         x, angle = stress_angles(result, increment)
@@ -45,7 +47,9 @@ def draw(result, path):
         axis.set_yticks(range(-90, 91, 30))
         axis.set_xlim(left=0)
         axis.legend(title="$V_l$")
-    figure.suptitle(f"Along the line {result.settings.line:g} $D$ above the crown; counter-clockwise positive", fontsize=12)
+    figure.suptitle(
+        f"Along the line {result.settings.line:g} $D$ above the crown; counter-clockwise positive", fontsize=12
+    )
     figure.tight_layout()
     save(figure, path)
 

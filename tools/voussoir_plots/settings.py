@@ -5,39 +5,75 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Settings:
-    losses: tuple | None = None            # V_l of troughs, profiles and lines [-]; None: quarters of the largest
-    field_losses: tuple = (0.05, 0.10, 0.15, 0.20)   # V_l of the fields [-]
-    depths: tuple = (0.0, 0.25, 0.5, 0.75, 1.0)      # z/C of troughs and settlements
+    losses: tuple | None = None  # V_l of troughs, profiles and lines [-]; None: quarters of the largest
+    field_losses: tuple = (0.05, 0.10, 0.15, 0.20)  # V_l of the fields [-]
+    depths: tuple = (0.0, 0.25, 0.5, 0.75, 1.0)  # z/C of troughs and settlements
     above_crown: tuple = (0.25, 1.0, 2.0)  # heights of Aa, Ab, Ac above the crown, in D
-    aside: float = 0.25                    # B is the most sheared point with x beyond this, in D
+    aside: float = 0.25  # B is the most sheared point with x beyond this, in D
     aside_above: float = 0.0  # and at least this height above the crown, in D: RVEs at the opening's wall come apart
-    line: float = 0.5                      # height of the line of stress rotations above the crown, in D
-    range_of_k: tuple = (0.25, 0.45)       # Mair and Taylor's range of K for cohesionless soils
+    line: float = 0.5  # height of the line of stress rotations above the crown, in D
+    range_of_k: tuple = (0.25, 0.45)  # Mair and Taylor's range of K for cohesionless soils
 
 
 def parse(arguments):
     """Settings from the options that add_options() declares; those not given keep their defaults."""
-    fraction = (lambda values: tuple(v / 100 for v in values))
-    given = {"losses": arguments.volume_loss and fraction(arguments.volume_loss),
-             "field_losses": arguments.field_loss and fraction(arguments.field_loss),
-             "depths": arguments.depths and tuple(arguments.depths),
-             "above_crown": arguments.above_crown and tuple(arguments.above_crown),
-             "aside": arguments.aside, "aside_above": arguments.aside_above, "line": arguments.line}
+    fraction = lambda values: tuple(v / 100 for v in values)
+    given = {
+        "losses": arguments.volume_loss and fraction(arguments.volume_loss),
+        "field_losses": arguments.field_loss and fraction(arguments.field_loss),
+        "depths": arguments.depths and tuple(arguments.depths),
+        "above_crown": arguments.above_crown and tuple(arguments.above_crown),
+        "aside": arguments.aside,
+        "aside_above": arguments.aside_above,
+        "line": arguments.line,
+    }
     return Settings(**{name: value for name, value in given.items() if value is not None})
 
 
 def add_options(parser):
-    parser.add_argument("--volume-loss", type=float, nargs="+", metavar="PERCENT",
-                        help="volume losses of troughs, profiles and lines; default: quarters of the largest one")
-    parser.add_argument("--field-loss", type=float, nargs="+", metavar="PERCENT",
-                        help="volume losses of the fields; default: 5 10 15 20")
-    parser.add_argument("--depths", type=float, nargs="+", metavar="Z/C",
-                        help="depths of troughs and settlements over the cover; default: 0 0.25 0.5 0.75 1")
-    parser.add_argument("--above-crown", type=float, nargs=3, metavar="D",
-                        help="heights of the points Aa, Ab, Ac above the crown over the diameter; default: 0.25 1 2")
-    parser.add_argument("--aside", type=float, metavar="D",
-                        help="least distance of the point B from the axis over the diameter; default: 0.25")
-    parser.add_argument("--aside-above", type=float, metavar="D",
-                        help="least height of the point B above the crown over the diameter; default: 0")
-    parser.add_argument("--line", type=float, metavar="D",
-                        help="height of the line of stress rotations above the crown over the diameter; default: 0.5")
+    parser.add_argument(
+        "--volume-loss",
+        type=float,
+        nargs="+",
+        metavar="PERCENT",
+        help="volume losses of troughs, profiles and lines; default: quarters of the largest one",
+    )
+    parser.add_argument(
+        "--field-loss",
+        type=float,
+        nargs="+",
+        metavar="PERCENT",
+        help="volume losses of the fields; default: 5 10 15 20",
+    )
+    parser.add_argument(
+        "--depths",
+        type=float,
+        nargs="+",
+        metavar="Z/C",
+        help="depths of troughs and settlements over the cover; default: 0 0.25 0.5 0.75 1",
+    )
+    parser.add_argument(
+        "--above-crown",
+        type=float,
+        nargs=3,
+        metavar="D",
+        help="heights of the points Aa, Ab, Ac above the crown over the diameter; default: 0.25 1 2",
+    )
+    parser.add_argument(
+        "--aside",
+        type=float,
+        metavar="D",
+        help="least distance of the point B from the axis over the diameter; default: 0.25",
+    )
+    parser.add_argument(
+        "--aside-above",
+        type=float,
+        metavar="D",
+        help="least height of the point B above the crown over the diameter; default: 0",
+    )
+    parser.add_argument(
+        "--line",
+        type=float,
+        metavar="D",
+        help="height of the line of stress rotations above the crown over the diameter; default: 0.5",
+    )

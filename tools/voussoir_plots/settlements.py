@@ -40,6 +40,8 @@ def draw(result, path):
         axis.set_xlabel("volume loss  $V_l$  [%]")
         axis.set_xlim(left=0)
     right.set_title(r"slope over $V_l$ ± 1 %", fontsize=11)
-    figure.suptitle(f"Settlement above the crown, $C/D$ = {result.cover / diameter:.2g}, $D$ = {diameter:g} m", fontsize=12)
+    figure.suptitle(
+        f"Settlement above the crown, $C/D$ = {result.cover / diameter:.2g}, $D$ = {diameter:g} m", fontsize=12
+    )
     figure.tight_layout()
     save(figure, path)

@@ -36,8 +36,11 @@ def draw(result, path):
     _draw_rows(axes[1, 0], result, unit_weight, surcharge)
     _draw_deflection(axes[1, 1], stress[..., 1], tensors.major_from_vertical(tensor), far)
     worst = np.max(np.abs(stress[..., 1] - weight)[far] / (0.05 * weight[far] + 1))
-    figure.suptitle(f"After gravity: $\\gamma$ = {unit_weight / 1e3:g} kN/m³, surcharge {surcharge / 1e3:g} kPa; "
-                    f"largest departure {worst:.2f} of the allowed 5 % + 1 kPa", fontsize=12)
+    figure.suptitle(
+        f"After gravity: $\\gamma$ = {unit_weight / 1e3:g} kN/m³, surcharge {surcharge / 1e3:g} kPa; "
+        f"largest departure {worst:.2f} of the allowed 5 % + 1 kPa",
+        fontsize=12,
+    )
     figure.tight_layout()
     save(figure, path)
 
@@ -62,7 +65,9 @@ def _draw_ratio(axis, stress, far):
     good = far & (vertical > 0)
     if not good.any():
         raise Missing("no point is compressed vertically")
-    axis.semilogx(vertical[good], horizontal[good] / vertical[good], ".", color="C0", markersize=4, label="Gauss points")
+    axis.semilogx(
+        vertical[good], horizontal[good] / vertical[good], ".", color="C0", markersize=4, label="Gauss points"
+    )
     _plain_ticks(axis, vertical[good])
     low, high = axis.get_ylim()
     axis.set_ylim(min(0.2, low), max(1.1, high))
@@ -102,8 +107,16 @@ def _draw_rows(axis, result, unit_weight, surcharge):
     rows = result.tables["geostatic_rows"]
     allowed = (0.02 * (unit_weight * rows["depth"] + surcharge) + 0.5e3) / 1e3
     axis.fill_betweenx(rows["depth"], -allowed, allowed, color="0.85", label="± (2 % + 0.5 kPa), of the mean")
-    axis.errorbar(rows["error"] / 1e3, rows["depth"], xerr=rows["scatter"] / 1e3, fmt="o", color="C0", markersize=4,
-                  linewidth=1, capsize=2)
+    axis.errorbar(
+        rows["error"] / 1e3,
+        rows["depth"],
+        xerr=rows["scatter"] / 1e3,
+        fmt="o",
+        color="C0",
+        markersize=4,
+        linewidth=1,
+        capsize=2,
+    )
     axis.axvline(0, color="black", linewidth=1)
     axis.invert_yaxis()
     axis.legend(loc="upper right")
@@ -114,8 +127,13 @@ def _draw_deflection(axis, vertical, angle, far):
     axis.semilogx(vertical[good], np.degrees(angle[good]), ".", color="C0", markersize=4)
     axis.plot([100, 100], [-1, 1], color="0.4", linewidth=1)
     for limit in (-1, 1):
-        axis.plot([100, max(200, vertical[good].max())], [limit, limit], color="0.4", linewidth=1,
-                  label="1° from 100 kPa on" if limit > 0 else None)
+        axis.plot(
+            [100, max(200, vertical[good].max())],
+            [limit, limit],
+            color="0.4",
+            linewidth=1,
+            label="1° from 100 kPa on" if limit > 0 else None,
+        )
     _plain_ticks(axis, vertical[good])
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
     axis.set_ylabel("principal axis from the vertical  [deg]")

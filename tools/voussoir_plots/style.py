@@ -8,12 +8,23 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
 
 def use_style():
-    plt.rcParams.update({
-        "figure.dpi": 110, "savefig.dpi": 160, "savefig.bbox": "tight",
-        "font.size": 11, "axes.titlesize": 12, "axes.labelsize": 11, "legend.fontsize": 9.5,
-        "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True, "lines.linewidth": 1.6,
-        "image.cmap": "viridis", "legend.framealpha": 0.9,
-    })
+    plt.rcParams.update(
+        {
+            "figure.dpi": 110,
+            "savefig.dpi": 160,
+            "savefig.bbox": "tight",
+            "font.size": 11,
+            "axes.titlesize": 12,
+            "axes.labelsize": 11,
+            "legend.fontsize": 9.5,
+            "axes.grid": True,
+            "grid.alpha": 0.3,
+            "axes.axisbelow": True,
+            "lines.linewidth": 1.6,
+            "image.cmap": "viridis",
+            "legend.framealpha": 0.9,
+        }
+    )
 
 
 def colours(name, count):

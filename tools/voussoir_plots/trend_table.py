@@ -12,10 +12,16 @@ BAND = 0.05  # eps_q from which soil counts as sheared
 def write(result, path):
     rows = table(result)
     axis_depth, diameter = result.need("axis_depth", "diameter")
-    lines = [f"# Trends: {result.folder.resolve().name}", "",
-             f"C/D = {result.cover / diameter:.3g}, D = {diameter:g} m, {result.soil}, {len(result.connectivity)} elements; V_l to "
-             f"{trends.percent(result.volume_loss[-1])} in {len(result.loss_increments) - 1} increments. The trends are those of the study "
-             "(tools/voussoir_plots/README.md says how each is judged).", "", "| trend | verdict | numbers |", "|---|---|---|"]
+    lines = [
+        f"# Trends: {result.folder.resolve().name}",
+        "",
+        f"C/D = {result.cover / diameter:.3g}, D = {diameter:g} m, {result.soil}, {len(result.connectivity)} elements; V_l to "
+        f"{trends.percent(result.volume_loss[-1])} in {len(result.loss_increments) - 1} increments. The trends are those of the study "
+        "(tools/voussoir_plots/README.md says how each is judged).",
+        "",
+        "| trend | verdict | numbers |",
+        "|---|---|---|",
+    ]
     lines += [f"| {row.statement} | **{row.verdict}** | {row.numbers} |" for row in rows]
     lines += ["", _solution(result)]
     lines += ["", "Points: " + "; ".join(describe(result, p) for p in points.all_points(result)) + "."]
@@ -25,11 +31,13 @@ def write(result, path):
 def _solution(result):
     """How the increments were found, in a sentence: a trend is worth no more than they are."""
     found = result.increments
-    number = (lambda name: np.array([float(i.attributes.get(name, 0)) for i in found]))
+    number = lambda name: np.array([float(i.attributes.get(name, 0)) for i in found])
     relaxed, losing = number("relaxations") > 0, number("volume_loss") > 0
-    return (f"Of {len(found)} increments {number('converged').sum():.0f} converged, the largest residual {number('residual').max():.2g} of the "
-            f"reference; {number('cuts').sum():.0f} cuts, {relaxed.sum()} increments relaxed; {np.median(number('evaluations')[losing]):.3g} "
-            f"evaluations (median) and at most {number('evaluations')[losing].max():.0f} an increment of the volume loss.")
+    return (
+        f"Of {len(found)} increments {number('converged').sum():.0f} converged, the largest residual {number('residual').max():.2g} of the "
+        f"reference; {number('cuts').sum():.0f} cuts, {relaxed.sum()} increments relaxed; {np.median(number('evaluations')[losing]):.3g} "
+        f"evaluations (median) and at most {number('evaluations')[losing].max():.0f} an increment of the volume loss."
+    )
 
 
 def describe(result, point):
@@ -60,8 +68,11 @@ def _settlements(result):
     found = {z: settlements.on_axis(result, z) for z in result.settings.depths}
     rows = [trends.settlement_slows(result.volume_loss, found, diameter)]
     if 0.0 in found:
-        rows.append(trends.surface_accelerates(result.volume_loss, found[0.0], diameter).where(
-            _cover_ratio(result) < 2.5, "reported for C/D = 2"))
+        rows.append(
+            trends.surface_accelerates(result.volume_loss, found[0.0], diameter).where(
+                _cover_ratio(result) < 2.5, "reported for C/D = 2"
+            )
+        )
     return rows
 
 
@@ -70,12 +81,17 @@ def _bands(result):
     (diameter,) = result.need("diameter")
     where = points.original_points(result)
     height = (where[:, 1] - result.crown_height) / result.cover
-    reach = {i["volume_loss"]: trends.band_height(height, where[:, 0], i.field("gauss/deviatoric_strain").ravel(),
-                                                  result.settings.aside * diameter, BAND)
-             for i in result.nearest(result.settings.field_losses)}
+    reach = {
+        i["volume_loss"]: trends.band_height(
+            height, where[:, 0], i.field("gauss/deviatoric_strain").ravel(), result.settings.aside * diameter, BAND
+        )
+        for i in result.nearest(result.settings.field_losses)
+    }
     if not reach:
         raise Missing("no increment is near the volume losses of the fields")
-    return [trends.bands(reach, _cover_ratio(result), BAND).where(result.soil == "dense sand", "reported for dense sand")]
+    return [
+        trends.bands(reach, _cover_ratio(result), BAND).where(result.soil == "dense sand", "reported for dense sand")
+    ]
 
 
 def _troughs(result):
@@ -85,8 +101,10 @@ def _troughs(result):
     loss = np.array([t.loss for t in next(iter(by_depth.values()))])
     low, high = result.settings.range_of_k
     return [
-        trends.gauss_fits({z: np.array([t.fit.misfit for t in ts]) for z, ts in by_depth.items()},
-                          {z: np.array([t.fit.at_bound for t in ts]) for z, ts in by_depth.items()}),
+        trends.gauss_fits(
+            {z: np.array([t.fit.misfit for t in ts]) for z, ts in by_depth.items()},
+            {z: np.array([t.fit.at_bound for t in ts]) for z, ts in by_depth.items()},
+        ),
         trends.troughs_narrow(loss, {z: np.array([t.fit.inflection for t in ts]) for z, ts in by_depth.items()}),
         trends.surface_width_in_range(*widths.surface_width(result)[:2], low, high),
     ]
@@ -103,10 +121,13 @@ def _stresses(result):
             inside = near(place)
             rows.append((xx[inside].mean(), yy[inside].mean()))
         return np.array(rows).T
+
     above = means(profiles.above, lambda height: height <= diameter)
     beside = means(profiles.beside, lambda x: x <= 1.5 * diameter)
-    return [trends.stresses_above(result.volume_loss, *(s / s[0] for s in above)),
-            trends.stresses_beside(result.volume_loss, *(s / s[0] for s in beside))]
+    return [
+        trends.stresses_above(result.volume_loss, *(s / s[0] for s in above)),
+        trends.stresses_beside(result.volume_loss, *(s / s[0] for s in beside)),
+    ]
 
 
 def _reaction(result):
@@ -121,7 +142,10 @@ def _paths(result):
     ratios = {p.name: paths.stress_ratio(result, p) for p in followed}
     volumes = {p.name: points.history(result, "gauss/volumetric_strain", p) for p in followed}
     dense_sand = result.soil == "dense sand"
-    rows = [trends.falls_linearly(loss, ratios), trends.softening_order(loss, ratios).where(dense_sand, "reported for dense sand")]
+    rows = [
+        trends.falls_linearly(loss, ratios),
+        trends.softening_order(loss, ratios).where(dense_sand, "reported for dense sand"),
+    ]
     if "Ac" in volumes:
         rows.append(trends.contracts_until(loss, volumes["Ac"]).where(dense_sand, "reported for dense sand"))
     if result.soil == "medium dense sand":

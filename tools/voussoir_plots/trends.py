@@ -61,7 +61,9 @@ def settlement_slows(loss, settlements, diameter):
     statement = "Settlement above the crown grows more slowly with V_l below 10 %"
     if loss[-1] < 0.0999:
         return not_reached(statement, 0.10, loss[-1])
-    pairs = {z: (slope(loss, s, 0, 0.02) / diameter, slope(loss, s, 0.08, 0.10) / diameter) for z, s in settlements.items()}
+    pairs = {
+        z: (slope(loss, s, 0, 0.02) / diameter, slope(loss, s, 0.08, 0.10) / diameter) for z, s in settlements.items()
+    }
     text = "; ".join(f"z/C = {z:g}: {a:.2f} to {b:.2f}" for z, (a, b) in pairs.items())
     holds = all(b < 0.9 * a for z, (a, b) in pairs.items() if z < 1)
     return Trend(statement, verdict(holds), f"slope dS/dV_l / D at V_l = 0 to 2 % and 8 to 10 %: {text}")
@@ -92,7 +94,10 @@ def bands(reach, cover_ratio, threshold):
     if cover_ratio < 2.5:
         statement, holds = "Shear bands reach the surface (C/D = 2)", beside > 0.9
     elif cover_ratio < 3.5:
-        statement, holds = "Shear bands close into an arch below the surface (C/D = 3)", 0.1 < max(beside, middle) < 0.9 and middle > 0.1
+        statement, holds = (
+            "Shear bands close into an arch below the surface (C/D = 3)",
+            0.1 < max(beside, middle) < 0.9 and middle > 0.1,
+        )
     else:
         statement, holds = "Shear bands stay low, the arch is stable (C/D = 4)", max(beside, middle) < 0.7
     if not holds and max(reach) < 0.199:
@@ -105,9 +110,12 @@ def gauss_fits(misfits, at_bounds):
     worst = max(float(np.max(m)) for m in misfits.values())
     text = "; ".join(f"z/C = {z:g}: {percent(float(np.max(m)))}" for z, m in misfits.items())
     share = np.mean([float(np.mean(b)) for b in at_bounds.values()])
-    return Trend("The modified Gauss curve fits the troughs at all depths", verdict(worst <= 0.05),
-                 f"largest rms misfit over S_max: {text}; alpha at its lower bound in {percent(share)} of the fits (the trough is more "
-                 "pointed, with a wider foot, than the family)")
+    return Trend(
+        "The modified Gauss curve fits the troughs at all depths",
+        verdict(worst <= 0.05),
+        f"largest rms misfit over S_max: {text}; alpha at its lower bound in {percent(share)} of the fits (the trough is more "
+        "pointed, with a wider foot, than the family)",
+    )
 
 
 def troughs_narrow(loss, inflection):
@@ -116,8 +124,11 @@ def troughs_narrow(loss, inflection):
         return not_reached("Troughs narrow with V_l", 0.03, loss[-1])
     first = int(np.argmin(np.abs(loss - 0.01)))
     text = "; ".join(f"z/C = {z:g}: {i[first]:.2f} to {i[-1]:.2f} m" for z, i in inflection.items())
-    return Trend("Troughs narrow with V_l", verdict(all(i[-1] < 0.95 * i[first] for i in inflection.values())),
-                 f"inflection from V_l = {percent(loss[first])} to {percent(loss[-1])}: {text}")
+    return Trend(
+        "Troughs narrow with V_l",
+        verdict(all(i[-1] < 0.95 * i[first] for i in inflection.values())),
+        f"inflection from V_l = {percent(loss[first])} to {percent(loss[-1])}: {text}",
+    )
 
 
 def surface_width_in_range(loss, width, low, high):
@@ -125,9 +136,12 @@ def surface_width_in_range(loss, width, low, high):
     if loss[-1] < 0.0499:
         return not_reached(statement, 0.05, loss[-1])
     inside = (width >= low) & (width <= high)
-    return Trend(statement, verdict(inside.mean() > 0.5),
-                 f"in it at {percent(inside.mean())} of the increments; K_s = {at(loss, width, loss[0]):.2f} at V_l = {percent(loss[0])}, "
-                 f"{at(loss, width, 0.05):.2f} at 5 %, {width[-1]:.2f} at {percent(loss[-1])}")
+    return Trend(
+        statement,
+        verdict(inside.mean() > 0.5),
+        f"in it at {percent(inside.mean())} of the increments; K_s = {at(loss, width, loss[0]):.2f} at V_l = {percent(loss[0])}, "
+        f"{at(loss, width, 0.05):.2f} at 5 %, {width[-1]:.2f} at {percent(loss[-1])}",
+    )
 
 
 def stresses_above(loss, horizontal, vertical, until=0.05):
@@ -136,8 +150,11 @@ def stresses_above(loss, horizontal, vertical, until=0.05):
     last = min(until, loss[-1])
     holds = at(loss, horizontal, last) > 1.05 and at(loss, vertical, last) < 0.95
     text = "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
-    return Trend(f"Above the crown sigma_xx rises and sigma_yy falls (at V_l = {percent(last)})", verdict(holds),
-                 f"mean over the first D above the crown, over its value at V_l = 0, xx and yy at {text}")
+    return Trend(
+        f"Above the crown sigma_xx rises and sigma_yy falls (at V_l = {percent(last)})",
+        verdict(holds),
+        f"mean over the first D above the crown, over its value at V_l = 0, xx and yy at {text}",
+    )
 
 
 def stresses_beside(loss, horizontal, vertical, until=0.02):
@@ -145,19 +162,28 @@ def stresses_beside(loss, horizontal, vertical, until=0.02):
     last = min(until, loss[-1])
     holds = at(loss, horizontal, last) < 0.98 and at(loss, vertical, last) > 1.02
     text = "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
-    return Trend(f"At the sides the opposite: sigma_xx falls and sigma_yy rises (at V_l = {percent(last)})", verdict(holds),
-                 f"mean from the opening to D beside it, over its value at V_l = 0, xx and yy at {text}")
+    return Trend(
+        f"At the sides the opposite: sigma_xx falls and sigma_yy rises (at V_l = {percent(last)})",
+        verdict(holds),
+        f"mean from the opening to D beside it, over its value at V_l = 0, xx and yy at {text}",
+    )
 
 
 def reaction(loss, ratio, soil):
     """The ground reaction curve: a minimum and recovery in dense soils, a monotone fall in medium dense sand."""
     least = int(np.argmin(ratio))
     recovery = ratio[-1] - ratio[least]
-    text = (f"minimum {ratio[least]:.3f} at V_l = {percent(loss[least])}, {ratio[-1]:.3f} at the end ({percent(loss[-1])}): "
-            f"recovery {recovery:.3f} of the stress before the loss")
+    text = (
+        f"minimum {ratio[least]:.3f} at V_l = {percent(loss[least])}, {ratio[-1]:.3f} at the end ({percent(loss[-1])}): "
+        f"recovery {recovery:.3f} of the stress before the loss"
+    )
     if soil == "medium dense sand":
-        return at_the_end("The ground reaction curve falls monotonically to its end value (medium dense sand)",
-                          recovery < 0.02, text, loss)
+        return at_the_end(
+            "The ground reaction curve falls monotonically to its end value (medium dense sand)",
+            recovery < 0.02,
+            text,
+            loss,
+        )
     statement = "The ground reaction curve drops to a minimum, then recovers (dense soils)"
     if recovery < 0.02 and loss[-1] < 0.199:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; {text}")
@@ -175,10 +201,16 @@ def falls_linearly(loss, ratios, until=0.02):
         known = inside & np.isfinite(ratio)
         x, y = loss[known], ratio[known]
         fit = np.polyval(np.polyfit(x, y, 1), x)
-        spread = np.sum((y - y.mean())**2)
-        found[name] = (1 - np.sum((y - fit)**2) / spread if spread > 0 else 0.0, np.polyfit(x, y, 1)[0],
-                       loss[np.nanargmin(ratio)], np.nanmin(ratio))
-    text = "; ".join(f"{name}: slope {b:.1f}, R2 {r:.3f}, least {low:.2f} at {percent(v)}" for name, (r, b, v, low) in found.items())
+        spread = np.sum((y - y.mean()) ** 2)
+        found[name] = (
+            1 - np.sum((y - fit) ** 2) / spread if spread > 0 else 0.0,
+            np.polyfit(x, y, 1)[0],
+            loss[np.nanargmin(ratio)],
+            np.nanmin(ratio),
+        )
+    text = "; ".join(
+        f"{name}: slope {b:.1f}, R2 {r:.3f}, least {low:.2f} at {percent(v)}" for name, (r, b, v, low) in found.items()
+    )
     holds = all(b < 0 and r > 0.95 for r, b, _, _ in found.values())
     return Trend(statement, verdict(holds), text)
 
@@ -199,8 +231,10 @@ def peak_after_unloading(loss, ratio):
 
 def softening_order(loss, ratios):
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
-    text = "; ".join(f"{name}: {value:.2f} at V_l = {percent(v)}, {'falls after it' if fell else 'no softening until the end'}"
-                     for name, (v, value, fell) in peaks.items())
+    text = "; ".join(
+        f"{name}: {value:.2f} at V_l = {percent(v)}, {'falls after it' if fell else 'no softening until the end'}"
+        for name, (v, value, fell) in peaks.items()
+    )
     order = [peaks[name][0] for name in ("Aa", "Ab", "Ac") if name in peaks]
     holds = all(a <= b for a, b in zip(order, order[1:])) and peaks["Aa"][2]
     statement, text = "Aa softens first, then Ab peaks, Ac last", f"peak of q/p after unloading: {text}"
@@ -211,15 +245,21 @@ def softening_order(loss, ratios):
 
 def no_softening(loss, ratios, soil):
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
-    text = "; ".join(f"{name}: end over peak {ratio[np.isfinite(ratio)][-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items())
-    return at_the_end(f"No softening at Aa, Ab, Ac ({soil})", not any(fell for _, _, fell in peaks.values()), text, loss)
+    text = "; ".join(
+        f"{name}: end over peak {ratio[np.isfinite(ratio)][-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items()
+    )
+    return at_the_end(
+        f"No softening at Aa, Ab, Ac ({soil})", not any(fell for _, _, fell in peaks.values()), text, loss
+    )
 
 
 def contracts_until(loss, volumetric, wanted=0.15):
     statement = f"Ac contracts until V_l = {percent(wanted)}"
     most = int(np.argmax(volumetric))
-    text = (f"largest contraction {percent(volumetric[most])} at V_l = {percent(loss[most])}, {percent(volumetric[-1])} at the end "
-            f"({percent(loss[-1])})")
+    text = (
+        f"largest contraction {percent(volumetric[most])} at V_l = {percent(loss[most])}, {percent(volumetric[-1])} at the end "
+        f"({percent(loss[-1])})"
+    )
     if loss[-1] < wanted - 1e-9 and volumetric[-1] > 0.5 * volumetric[most]:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; {text}")
     return Trend(statement, verdict(loss[most] >= wanted - 0.03), text)
@@ -227,8 +267,12 @@ def contracts_until(loss, volumetric, wanted=0.15):
 
 def ends_contracted(loss, volumetrics):
     text = "; ".join(f"{name}: {percent(v[-1])}" for name, v in volumetrics.items())
-    return at_the_end("Ab and Ac contract (medium dense sand)", all(v[-1] > 0 for v in volumetrics.values()),
-                      f"volumetric strain at the end, contraction positive: {text}", loss)
+    return at_the_end(
+        "Ab and Ac contract (medium dense sand)",
+        all(v[-1] > 0 for v in volumetrics.values()),
+        f"volumetric strain at the end, contraction positive: {text}",
+        loss,
+    )
 
 
 def follows_fabric(stress, fabric):
@@ -237,8 +281,11 @@ def follows_fabric(stress, fabric):
     together = {v: float(np.abs(np.mean(np.exp(2j * (stress[v] - fabric[v]))))) for v in stress}
     text = "; ".join(f"{percent(v)}: {d.mean():.0f} deg, {together[v]:.2f}" for v, d in away.items())
     holds = all(d.mean() < 20 for d in away.values())
-    return Trend("Principal stresses above the crown turn with the RVEs' fabric", verdict(holds),
-                 f"mean angle between major stress and theta_a along the line, and agreement from 0 to 1, at V_l = {text}")
+    return Trend(
+        "Principal stresses above the crown turn with the RVEs' fabric",
+        verdict(holds),
+        f"mean angle between major stress and theta_a along the line, and agreement from 0 to 1, at V_l = {text}",
+    )
 
 
 def ranks(values):
@@ -249,10 +296,15 @@ def localise_together(strain, rotation, dilation, share=0.05):
     """Rank correlation of eps_q with |grain rotation| and with the change of void ratio, and how many of the most sheared points
     are also among the most turned and dilated."""
     count = max(1, int(share * len(strain)))
-    most = {name: set(np.argsort(-values)[:count]) for name, values in
-            (("strain", strain), ("rotation", np.abs(rotation)), ("dilation", dilation))}
+    most = {
+        name: set(np.argsort(-values)[:count])
+        for name, values in (("strain", strain), ("rotation", np.abs(rotation)), ("dilation", dilation))
+    }
     overlap = [len(most["strain"] & most[name]) / count for name in ("rotation", "dilation")]
     correlation = [np.corrcoef(ranks(strain), ranks(values))[0, 1] for values in (np.abs(rotation), dilation)]
-    return Trend("Deviatoric strain, grain rotation and void ratio localise together", verdict(min(overlap) > 0.5),
-                 f"of the {percent(share)} most sheared points {percent(overlap[0])} are among the most turned, {percent(overlap[1])} among "
-                 f"the most dilated (by chance {percent(share)}); rank correlations {numbers(correlation, '{:.2f}')}")
+    return Trend(
+        "Deviatoric strain, grain rotation and void ratio localise together",
+        verdict(min(overlap) > 0.5),
+        f"of the {percent(share)} most sheared points {percent(overlap[0])} are among the most turned, {percent(overlap[1])} among "
+        f"the most dilated (by chance {percent(share)}); rank correlations {numbers(correlation, '{:.2f}')}",
+    )

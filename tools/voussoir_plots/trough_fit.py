@@ -18,16 +18,16 @@ def shape_number(alpha):
 def modified_gauss(x, largest, inflection, alpha):
     """Settlement of eq. (20) at distance x from the axis, same unit as `largest`."""
     n = shape_number(alpha)
-    exponent = np.minimum(alpha * (np.asarray(x) / inflection)**2, 700)
+    exponent = np.minimum(alpha * (np.asarray(x) / inflection) ** 2, 700)
     return largest * n / ((n - 1) + np.exp(exponent))
 
 
 @dataclass
 class TroughFit:
-    largest: float      # S_max [m]
-    inflection: float   # i [m]
-    alpha: float        # [-]
-    misfit: float       # rms of the residual relative to S_max [-]
+    largest: float  # S_max [m]
+    inflection: float  # i [m]
+    alpha: float  # [-]
+    misfit: float  # rms of the residual relative to S_max [-]
 
     @property
     def good(self):
@@ -66,7 +66,7 @@ def fit(x, settlement):
         inflection, alpha = (np.exp(g).reshape(-1, 1) for g in np.meshgrid(*axes))
         unit = modified_gauss(x, 1.0, inflection, alpha)
         largest = (unit * weight) @ settlement / np.maximum((unit**2) @ weight, 1e-300)
-        misfit = ((settlement - largest[:, None] * unit)**2) @ weight
+        misfit = ((settlement - largest[:, None] * unit) ** 2) @ weight
         k = int(np.argmin(misfit))
         best = largest[k], inflection[k, 0], alpha[k, 0], misfit[k]
         centre, half = np.log(best[1:3]), half * 0.5

@@ -9,8 +9,20 @@ from . import q8, trough_fit
 from .result import Missing
 from .style import colours, percent, save
 
-COLUMNS = ("z_over_C", "depth_m", "volume_loss", "settlement_max_m", "settlement_axis_m", "inflection_m", "alpha",
-           "alpha_at_bound", "n", "K", "rms_misfit", "trough_area_over_lost_area")
+COLUMNS = (
+    "z_over_C",
+    "depth_m",
+    "volume_loss",
+    "settlement_max_m",
+    "settlement_axis_m",
+    "inflection_m",
+    "alpha",
+    "alpha_at_bound",
+    "n",
+    "K",
+    "rms_misfit",
+    "trough_area_over_lost_area",
+)
 
 
 class Line:
@@ -49,8 +61,20 @@ class Trough:
 
     def row(self):
         fit = self.fit
-        return (self.ratio, self.depth, self.loss, self.settlement.max(), self.settlement[0], fit.inflection, fit.alpha,
-                float(fit.at_bound), fit.n, self.width, fit.misfit, self.area_ratio)
+        return (
+            self.ratio,
+            self.depth,
+            self.loss,
+            self.settlement.max(),
+            self.settlement[0],
+            fit.inflection,
+            fit.alpha,
+            float(fit.at_bound),
+            fit.n,
+            self.width,
+            fit.misfit,
+            self.area_ratio,
+        )
 
 
 def line_at(result, ratio):
@@ -64,8 +88,12 @@ def line_at(result, ratio):
 def all_troughs(result):
     """{(z/C, V_l): trough} at all depths of all increments of the volume loss."""
     if not hasattr(result, "_troughs"):
-        result._troughs = {(ratio, i["volume_loss"]): Trough(result, i, ratio) for ratio in result.settings.depths
-                           for i in result.loss_increments if i["volume_loss"] > 0}
+        result._troughs = {
+            (ratio, i["volume_loss"]): Trough(result, i, ratio)
+            for ratio in result.settings.depths
+            for i in result.loss_increments
+            if i["volume_loss"] > 0
+        }
     return result._troughs
 
 
@@ -88,14 +116,17 @@ def draw(result, path):
         axis.set_ylabel("settlement  $S$  [m]")
         axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
         axis.xaxis.set_tick_params(labelbottom=True)
-    spare = axes.flat[len(depths):]
+    spare = axes.flat[len(depths) :]
     for axis in spare:
         axis.set_axis_off()
     handles, labels = axes.flat[0].get_legend_handles_labels()
     place = spare[0] if len(spare) else axes.flat[0]
     place.legend(handles, labels, title="$V_l$", loc="center" if len(spare) else "lower right")
-    figure.suptitle(f"Settlement troughs, $C/D$ = {result.cover / diameter:.2g}, $D$ = {diameter:g} m   (symbols: computed, lines: "
-                    r"modified Gauss curve, dashed where its $\alpha$ is at its bound)", fontsize=12)
+    figure.suptitle(
+        f"Settlement troughs, $C/D$ = {result.cover / diameter:.2g}, $D$ = {diameter:g} m   (symbols: computed, lines: "
+        r"modified Gauss curve, dashed where its $\alpha$ is at its bound)",
+        fontsize=12,
+    )
     figure.tight_layout()
     save(figure, path)
     _write_table(path.with_suffix(".csv"), troughs.values())
@@ -104,8 +135,14 @@ def draw(result, path):
 def _add(axis, trough, colour):
     fine = np.linspace(-trough.x.max(), trough.x.max(), 400)
     axis.plot(fine, trough.fit(fine), "--" if trough.fit.at_bound else "-", color=colour, label=percent(trough.loss))
-    axis.plot(*mirrored(trough.x, trough.settlement), "o", color=colour, markersize=3, markerfacecolor="none",
-              markeredgewidth=0.7)
+    axis.plot(
+        *mirrored(trough.x, trough.settlement),
+        "o",
+        color=colour,
+        markersize=3,
+        markerfacecolor="none",
+        markeredgewidth=0.7,
+    )
 
 
 def _write_table(path, troughs):

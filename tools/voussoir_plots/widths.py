@@ -10,8 +10,11 @@ from .style import colours, percent, save
 def surface_width(result):
     """V_l, K_s and whether the trough has the curve's shape, over the volume loss."""
     found = [t for (ratio, _), t in troughs.all_troughs(result).items() if ratio == 0]
-    return (np.array([t.loss for t in found]), np.array([t.width for t in found]),
-            np.array([t.fit.good for t in found]))
+    return (
+        np.array([t.loss for t in found]),
+        np.array([t.width for t in found]),
+        np.array([t.fit.good for t in found]),
+    )
 
 
 def draw(result, path):
@@ -31,8 +34,14 @@ def draw(result, path):
     for increment, colour in zip(result.losses, colours("viridis", len(result.losses))):
         at = [found[ratio, increment["volume_loss"]] for ratio in depths]
         right.plot([t.width for t in at], depths, "-", color=colour, linewidth=1)
-        right.plot([t.width for t in at if t.fit.good], [t.ratio for t in at if t.fit.good], "o", color=colour, markersize=5,
-                   label=percent(increment["volume_loss"]))
+        right.plot(
+            [t.width for t in at if t.fit.good],
+            [t.ratio for t in at if t.fit.good],
+            "o",
+            color=colour,
+            markersize=5,
+            label=percent(increment["volume_loss"]),
+        )
     right.invert_yaxis()
     right.set_xlabel("width parameter  $K = i / (z_t - z)$  [-]")
     right.set_ylabel("depth over cover  $z/C$  [-]")
@@ -43,7 +52,9 @@ def draw(result, path):
     left.set_ylabel("width parameter  $K$  [-]")
     left.set_ylim(bottom=0)
     right.set_xlim(left=0)
-    figure.suptitle(f"Widths of the settlement troughs; grey: Mair and Taylor's range for cohesionless soils, {low:g} to {high:g}",
-                    fontsize=12)
+    figure.suptitle(
+        f"Widths of the settlement troughs; grey: Mair and Taylor's range for cohesionless soils, {low:g} to {high:g}",
+        fontsize=12,
+    )
     figure.tight_layout()
     save(figure, path)

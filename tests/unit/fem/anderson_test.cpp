@@ -6,9 +6,7 @@ namespace voussoir::fem {
 namespace {
 
 /// K: the identity on three unknowns, so that a correction is the residual itself.
-SparseSolver identity() {
-  return SparseSolver({.n = 3, .column_start = {0, 1, 2, 3}, .row = {0, 1, 2}});
-}
+SparseSolver identity() { return SparseSolver({.n = 3, .column_start = {0, 1, 2, 3}, .row = {0, 1, 2}}); }
 
 TEST(Anderson, SolvesALinearSystemInAsManyStepsAsUnknowns) {
   SparseSolver solver = identity();

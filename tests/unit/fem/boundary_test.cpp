@@ -7,9 +7,7 @@
 namespace voussoir::fem {
 namespace {
 
-Point resultant(const Eigen::VectorXd& f) {
-  return f.reshaped(2, f.size() / 2).rowwise().sum();
-}
+Point resultant(const Eigen::VectorXd& f) { return f.reshaped(2, f.size() / 2).rowwise().sum(); }
 
 TEST(Boundary, PressureOnTheTopPushesDown) {
   const Mesh mesh = make_rectangle(4, 2, 3, 2);

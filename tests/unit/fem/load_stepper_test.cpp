@@ -135,9 +135,9 @@ TEST(LoadStepper, WhatDidNotConvergeIsNeverCommitted) {
 
 TEST(LoadStepper, StopsWhenAsked) {
   Sheared block(1e300);
-  const StepReport report =
-      advance_load(block.solver, block.state, block.path, {1, 2, 3}, {},
-                   {.on_converged = [](const ConvergedStep& step) { return step.to < 2; }, .on_failed = nullptr});
+  const StepReport report = advance_load(
+      block.solver, block.state, block.path, {1, 2, 3}, {},
+      {.on_converged = [](const ConvergedStep& step) { return step.to < 2; }, .on_failed = nullptr});
   EXPECT_EQ(report.status, StepStatus::stopped);
   EXPECT_EQ(report.increments, 2);
   EXPECT_EQ(block.state.parameter, 2);
@@ -165,14 +165,15 @@ TEST(LoadStepper, SteadyLoadOnALinearLawNeedsOneIterateAnIncrement) {
   LinearElastic material(static_cast<std::size_t>(mesh.n_points()), {});
   NewtonSolver solver(mesh, material, Kinematics::fixed_mesh, {.tolerance = 1e-6, .initial_tangent_share = 0});
   MeshState state = begin_stage(mesh, mesh.coordinates, material);
-  const LoadPath path{
-      [&](double p) { return pressure_force(mesh.coordinates, mesh.edge_set("top"), p); },  // [Pa], so small that H
-      [&](double, double) {                                                                 // F_n^-1 is H
-        Constraints c;
-        for (const int axis : {0, 1}) constrain(c, mesh.node_set("base"), axis, 0);
-        return c;
-      },
-      0};
+  const LoadPath path{[&](double p) { return pressure_force(mesh.coordinates, mesh.edge_set("top"), p); },  // [Pa], so
+                                                                                                            // small
+                                                                                                            // that H
+                      [&](double, double) {  // F_n^-1 is H
+                        Constraints c;
+                        for (const int axis : {0, 1}) constrain(c, mesh.node_set("base"), axis, 0);
+                        return c;
+                      },
+                      0};
   int iterates = 0;
   static_cast<void>(advance_load(solver, state, path, {1, 2.5, 3.5}, {},
                                  {.on_converged =

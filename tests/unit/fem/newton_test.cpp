@@ -185,7 +185,8 @@ TEST(Newton, NoiseFloorsWidenTheBoundsAndCanBeSwitchedOff) {
 /// A law that is a fixed but rough function of the gradient, as an RVE's is: independent errors at every new gradient.
 class RoughMaterial final : public SofteningMaterial {
  public:
-  RoughMaterial(std::size_t n, double noise) : SofteningMaterial(n, {.strain_scale = 0.02, .too_stiff = 1.5}), noise_(noise) {}
+  RoughMaterial(std::size_t n, double noise)
+      : SofteningMaterial(n, {.strain_scale = 0.02, .too_stiff = 1.5}), noise_(noise) {}
   BatchReport evaluate(std::span<const Gradient> gradients, std::span<Stress> stress,
                        std::span<Tangent> tangent) override {
     BatchReport report = SofteningMaterial::evaluate(gradients, stress, tangent);
@@ -208,7 +209,8 @@ class RoughMaterial final : public SofteningMaterial {
 /// Stresses times the next factor of a list at each evaluation, the last one from then on.
 class ScriptedMaterial final : public SofteningMaterial {
  public:
-  ScriptedMaterial(std::size_t n, std::vector<double> factors) : SofteningMaterial(n, {}), factors_(std::move(factors)) {}
+  ScriptedMaterial(std::size_t n, std::vector<double> factors)
+      : SofteningMaterial(n, {}), factors_(std::move(factors)) {}
   BatchReport evaluate(std::span<const Gradient> gradients, std::span<Stress> stress,
                        std::span<Tangent> tangent) override {
     const BatchReport report = SofteningMaterial::evaluate(gradients, stress, tangent);

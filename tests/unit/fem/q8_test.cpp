@@ -2,7 +2,6 @@
 
 #include "fem/gauss_points.hpp"
 #include "fem/q8.hpp"
-#include "fem/gauss_points.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

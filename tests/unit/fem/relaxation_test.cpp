@@ -11,17 +11,18 @@
 namespace voussoir::fem {
 namespace {
 
-/// Elastic (nu = 0, E) until its vertical strain exceeds a limit; beyond, the points of element 0 lose a share of their stress for
-/// good, in every other evaluation: grains that collapse in one iterate and not in the next. The tangent of these points is three times too stiff.
+/// Elastic (nu = 0, E) until its vertical strain exceeds a limit; beyond, the points of element 0 lose a share of their
+/// stress for good, in every other evaluation: grains that collapse in one iterate and not in the next. The tangent of
+/// these points is three times too stiff.
 class CollapsingMaterial final : public MaterialBatch {
  public:
   static constexpr double young = 1e7, limit = 1e-3, loss = 0.5, too_stiff = 3;
 
   int tangents_asked = 0;
-  int settled_from = 0;    ///< before this evaluation a point is not at rest, and may be off by 1 MPa
+  int settled_from = 0;  ///< before this evaluation a point is not at rest, and may be off by 1 MPa
   int fails_from = std::numeric_limits<int>::max();  ///< the first evaluation that is not usable
 
-  double committed_error = 0;                        ///< largest that a committed evaluation has told; they fall
+  double committed_error = 0;  ///< largest that a committed evaluation has told; they fall
 
   explicit CollapsingMaterial(std::size_t n) : committed_(n), trial_(n) {}
   [[nodiscard]] std::size_t size() const override { return committed_.size(); }
@@ -98,8 +99,11 @@ class CollapsingMaterial final : public MaterialBatch {
 struct Pillar {
   Mesh mesh = make_rectangle(1, 2, 1, 2);
   CollapsingMaterial material{static_cast<std::size_t>(mesh.n_points())};
-  NewtonSolver solver{mesh, material, Kinematics::fixed_mesh,
-                      {.tolerance = 1e-6, .displacement_tolerance = 1e-5, .initial_tangent_share = 0, .anderson_depth = 0}};
+  NewtonSolver solver{
+      mesh,
+      material,
+      Kinematics::fixed_mesh,
+      {.tolerance = 1e-6, .displacement_tolerance = 1e-5, .initial_tangent_share = 0, .anderson_depth = 0}};
   MeshState state = begin_stage(mesh, mesh.coordinates, material);
   LoadPath path;
   double reaction = 0;
@@ -138,13 +142,16 @@ TEST(Relaxation, CollapseEndsInTheEquilibriumBehindIt) {
   EXPECT_GT(pillar.last.relaxations, 0);
   EXPECT_GT(pillar.last.viscous_work, 0);
   EXPECT_LE(pillar.last.residual, 1e-6 * pillar.reaction);
-  EXPECT_EQ(pillar.material.tangents_asked, pillar.last.evaluations - pillar.last.relaxations);  // substeps keep the matrix
+  EXPECT_EQ(pillar.material.tangents_asked, pillar.last.evaluations - pillar.last.relaxations);  // substeps keep the
+                                                                                                 // matrix
   // Springs in series: the element that has lost half its stiffness strains twice as much as the other
   // (strains are sums over substeps, so to the order of the strains themselves).
-  const double expected = CollapsingMaterial::young * 3 * CollapsingMaterial::limit / (1 + 1 / (1 - CollapsingMaterial::loss));
+  const double expected = CollapsingMaterial::young * 3 * CollapsingMaterial::limit /
+                          (1 + 1 / (1 - CollapsingMaterial::loss));
   EXPECT_NEAR(pillar.reaction, expected, 1e-3 * expected);
   const int middle = pillar.mesh.elements[0][3];
-  EXPECT_NEAR(pillar.state.displacement[2 * middle + 1], -2 * CollapsingMaterial::limit, 2e-3 * CollapsingMaterial::limit);
+  EXPECT_NEAR(pillar.state.displacement[2 * middle + 1], -2 * CollapsingMaterial::limit,
+              2e-3 * CollapsingMaterial::limit);
   EXPECT_NEAR(pillar.state.deformation[0](1, 1), -2 * CollapsingMaterial::limit, 2e-3 * CollapsingMaterial::limit);
   EXPECT_EQ(pillar.state.last_increment, pillar.state.displacement);  // the whole way
   EXPECT_EQ(pillar.last.material.deferral_error, pillar.material.committed_error);

@@ -10,7 +10,8 @@
 namespace voussoir::host {
 namespace {
 
-/// sin phi rises to `peak` at 4 % and falls to `critical` by 10 %; the volume follows eps_v = -sin(psi) eps_q from 2 % on.
+/// sin phi rises to `peak` at 4 % and falls to `critical` by 10 %; the volume follows eps_v = -sin(psi) eps_q from 2 %
+/// on.
 BiaxialCurve made_curve(double peak, double critical, double sin_psi) {
   BiaxialCurve curve;
   curve.pressure = 1.0e5;

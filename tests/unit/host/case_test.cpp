@@ -56,7 +56,8 @@ TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
   EXPECT_EQ(complaint(teams, {"newton.tangent=contact"}), "");
   EXPECT_NE(complaint(teams, {"newton.tangent=elastic"}).find("newton.tangent"), std::string::npos);
   EXPECT_NE(complaint(teams, {"newton.tangent=static"}).find("newton.tangent"), std::string::npos);
-  EXPECT_NE(complaint("kind = 'probe'\n[engine]\nbackend = 'teams'\n", {"probe.tangent=loading"}).find("probe.tangent"), std::string::npos);
+  EXPECT_NE(complaint("kind = 'probe'\n[engine]\nbackend = 'teams'\n", {"probe.tangent=loading"}).find("probe.tangent"),
+            std::string::npos);
   const std::string biaxial = "kind = 'biaxial'\n[engine]\nbackend = 'teams'\n[output]\nmicrostructure = ['fabric']\n";
   EXPECT_NE(complaint(biaxial, {}).find("output.microstructure"), std::string::npos);
   EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, EngineBackend::teams);
@@ -74,8 +75,9 @@ TEST(Case, RvesAreDeferredOnAMeshOnly) {
 }
 
 TEST(Case, UnitsBecomeSi) {
-  const Case input = load_case(write("kind = 'tunnel'\n[ground]\nunit_weight = '18 kN/m3'\n[volume_loss]\ntotal = '10 %'\n"),
-                               {"soil.friction=30 deg", "engine.precision=double"});
+  const Case input = load_case(
+      write("kind = 'tunnel'\n[ground]\nunit_weight = '18 kN/m3'\n[volume_loss]\ntotal = '10 %'\n"),
+      {"soil.friction=30 deg", "engine.precision=double"});
   EXPECT_DOUBLE_EQ(input.ground.unit_weight, 18e3);
   EXPECT_DOUBLE_EQ(input.volume_loss.total, 0.1);
   EXPECT_NEAR(input.soil.friction, std::numbers::pi / 6, 1e-15);
@@ -93,7 +95,8 @@ TEST(Case, FingerprintFollowsWhatDecidesTheNumbers) {
   const std::string base = load_case(write("kind = 'tunnel'\n")).fingerprint;
   EXPECT_EQ(base, load_case(write("kind = 'tunnel'\n[output]\nevery = 5\n")).fingerprint);
   EXPECT_EQ(base, load_case(write("title = 'x'\nkind = 'tunnel'\n[ground]\ndiameter = '5 m'\n")).fingerprint);
-  EXPECT_EQ(base, load_case(write("kind = 'tunnel'\n"), {"ground.diameter=500 cm", "volume_loss.total=0.2"}).fingerprint);
+  EXPECT_EQ(base,
+            load_case(write("kind = 'tunnel'\n"), {"ground.diameter=500 cm", "volume_loss.total=0.2"}).fingerprint);
   EXPECT_NE(base, load_case(write("kind = 'tunnel'\n"), {"soil.friction=26 deg"}).fingerprint);
   EXPECT_NE(base, load_case(write("kind = 'tunnel'\n"), {"newton.tolerance=2e-3"}).fingerprint);
 }
@@ -109,7 +112,7 @@ TEST(Case, ResolvedCaseGivesTheSameCase) {
 
 TEST(Case, WrongValuesAreRefused) {
   EXPECT_NE(complaint("kind = 'tunel'\n"), "");
-  EXPECT_NE(complaint("[soil]\n"), "");  // no kind
+  EXPECT_NE(complaint("[soil]\n"), "");                                     // no kind
   EXPECT_NE(complaint("kind = 'pack'\n[ground]\ndiameter = '5 m'\n"), "");  // no table of this kind
   EXPECT_NE(complaint("kind = 'tunnel'\n", {"soil.size_maximum=1 mm"}), "");
   EXPECT_NE(complaint("kind = 'tunnel'\n", {"soil.damping=1.5"}), "");

@@ -24,7 +24,9 @@ fem::Gradient gradient(double xx, double xy, double yx, double yy) {
   return h;
 }
 
-fem::Gradient compose(const fem::Gradient& second, const fem::Gradient& first) { return second + first + second * first; }
+fem::Gradient compose(const fem::Gradient& second, const fem::Gradient& first) {
+  return second + first + second * first;
+}
 
 /// Isotropic stiffness (lambda, mu), stress (-100, -200, 30) kPa.
 kernels::RveReport grains_at_rest() {
@@ -126,7 +128,8 @@ TEST(Deferral, ErrorsAreMeasuredAndCostTrust) {
   EXPECT_NEAR(deferral.committed(0).trust, 0.5e-3 / error, 1e-4);
 }
 
-/// What never comes to its bound runs nevertheless, and the whole difference is then the error: the tangent might have answered.
+/// What never comes to its bound runs nevertheless, and the whole difference is then the error: the tangent might have
+/// answered.
 TEST(Deferral, EndsInACheckAtTheLatestAfterSomeCommits) {
   const kernels::RveReport grains = grains_at_rest();
   Deferral deferral(1e-3, 0);

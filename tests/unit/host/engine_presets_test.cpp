@@ -35,7 +35,8 @@ TEST(EnginePresets, TheDeclarationsAreThoseOfStandard) {
 }
 
 TEST(EnginePresets, AreOrderedByAccuracy) {
-  const EngineCase fast = engine_preset("fast"), standard = engine_preset("standard"), reference = engine_preset("reference");
+  const EngineCase fast = engine_preset("fast"), standard = engine_preset("standard"),
+                   reference = engine_preset("reference");
   EXPECT_GT(fast.inertial_number, standard.inertial_number);
   EXPECT_GT(standard.inertial_number, reference.inertial_number);
   EXPECT_GE(fast.hold_tolerance, standard.hold_tolerance);
@@ -44,7 +45,8 @@ TEST(EnginePresets, AreOrderedByAccuracy) {
 }
 
 TEST(EnginePresets, SingleKeysOverrideThem) {
-  const EngineCase engine = probe_case({"engine.preset=reference", "engine.precision=float", "engine.hold_cap=7"}).engine;
+  const EngineCase engine = probe_case({"engine.preset=reference", "engine.precision=float", "engine.hold_cap=7"})
+                                .engine;
   EXPECT_EQ(engine.precision, Precision::single_precision);
   EXPECT_EQ(engine.hold_cap, 7);
   EXPECT_EQ(engine.inertial_number, engine_preset("reference").inertial_number);

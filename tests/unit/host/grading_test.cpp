@@ -94,11 +94,14 @@ std::string complaint(const std::string& soil) {
 }
 
 TEST(Grading, MistakesAreNamed) {
-  EXPECT_NE(complaint("sizes = [\"2 mm\", \"4 mm\"]\npassing = [0, 0.9]").find("must rise from 0 to 1"), std::string::npos);
+  EXPECT_NE(complaint("sizes = [\"2 mm\", \"4 mm\"]\npassing = [0, 0.9]").find("must rise from 0 to 1"),
+            std::string::npos);
   EXPECT_NE(complaint("sizes = [\"4 mm\", \"2 mm\"]\npassing = [0, 1]").find("must ascend"), std::string::npos);
-  EXPECT_NE(complaint("sizes = [\"2 mm\", \"4 mm\"]\npassing = [0, 0.5, 1]").find("as many entries"), std::string::npos);
+  EXPECT_NE(complaint("sizes = [\"2 mm\", \"4 mm\"]\npassing = [0, 0.5, 1]").find("as many entries"),
+            std::string::npos);
   EXPECT_NE(complaint("[[soil.class]]\nsize_to = \"3 mm\"").find("without a class"), std::string::npos);
-  EXPECT_EQ(complaint("[[soil.class]]\nsize_to = \"3 mm\"\n[[soil.class]]\nsize_to = \"5 mm\"\nfriction = \"40 deg\""), "");
+  EXPECT_EQ(complaint("[[soil.class]]\nsize_to = \"3 mm\"\n[[soil.class]]\nsize_to = \"5 mm\"\nfriction = \"40 deg\""),
+            "");
 }
 
 }  // namespace

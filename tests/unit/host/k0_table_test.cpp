@@ -22,7 +22,8 @@ std::vector<K0Sample> elastic_samples(double noise) {
   std::mt19937 random(7);
   std::normal_distribution<double> error(0.0, noise);
   std::vector<K0Sample> samples;
-  for (double s = initial; s < 7e5; s *= 1.01) samples.push_back({s, elastic_k0(s) + (noise > 0 ? error(random) : 0.0)});
+  for (double s = initial; s < 7e5; s *= 1.01)
+    samples.push_back({s, elastic_k0(s) + (noise > 0 ? error(random) : 0.0)});
   return samples;
 }
 

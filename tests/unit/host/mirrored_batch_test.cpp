@@ -98,7 +98,9 @@ std::pair<double, double> fabric_of(const io::RveSnapshot& rve) {
 TEST(MirroredBatch, FieldsAreThoseOfTheMirroredGrains) {
   const PackedRve rve = small_packing(1.0e4);
   const kernels::MicrostructureRequest wanted{.fabric = true, .coordination = true, .strong_networks = true};
-  const auto pool = [&] { return std::make_unique<RvePool>(rve, PoolOptions{.engine = {}, .microstructure = wanted}, n); };
+  const auto pool = [&] {
+    return std::make_unique<RvePool>(rve, PoolOptions{.engine = {}, .microstructure = wanted}, n);
+  };
   MirroredBatch mirrored(pool());
   fem::Gradient h, opposite;  // the mirror image of h: all grains move as those of point 0
   h << -2e-3, 3e-3, 1e-3, 1e-3;
@@ -113,7 +115,8 @@ TEST(MirroredBatch, FieldsAreThoseOfTheMirroredGrains) {
     EXPECT_NEAR(value_of(mirrored, "fabric_anisotropy", p), a, 1e-12) << p;
     EXPECT_NEAR(value_of(mirrored, "fabric_direction", p), direction, 1e-12) << p;
     double rotation = 0;
-    for (const double angle : snapshots[p].rotation) rotation += angle / static_cast<double>(snapshots[p].rotation.size());
+    for (const double angle : snapshots[p].rotation)
+      rotation += angle / static_cast<double>(snapshots[p].rotation.size());
     EXPECT_NEAR(value_of(mirrored, "grain_rotation", p), rotation, 1e-15) << p;
   }
   EXPECT_GT(std::abs(value_of(mirrored, "fabric_direction", 0)), 0.01) << "along an axis: the test shows nothing";

@@ -78,8 +78,8 @@ TEST(RunTotals, TableSumsTheStages) {
     for (std::string word; in >> word;) found.push_back(word);
     return found;
   };
-  EXPECT_EQ(words(lines[4]), (std::vector<std::string>{"all", "5", "6.0", "4.0", "0.5", "1.0", "0.2", "0.2", "4", "9", "2",
-                                                       "8.000e+08", "200.0"}));
+  EXPECT_EQ(words(lines[4]), (std::vector<std::string>{"all", "5", "6.0", "4.0", "0.5", "1.0", "0.2", "0.2", "4", "9",
+                                                       "2", "8.000e+08", "200.0"}));
   EXPECT_EQ(words(lines[2]).at(8), "2.5");
 }
 

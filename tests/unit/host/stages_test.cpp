@@ -1,4 +1,5 @@
-// What the stages check and remember, on linear elastic ground: the state at rest, the opening's reactions, checkpoints.
+// What the stages check and remember, on linear elastic ground: the state at rest, the opening's reactions,
+// checkpoints.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -17,7 +17,8 @@ class StrainPath : public testing::Test {
  protected:
   static void SetUpTestSuite() { rve_ = small_packing(); }
 
-  std::vector<PathPoint> walk(RvePool& pool, const std::vector<PathSegment>& segments, const std::vector<double>& scale) {
+  std::vector<PathPoint> walk(RvePool& pool, const std::vector<PathSegment>& segments,
+                              const std::vector<double>& scale) {
     std::vector<PathPoint> points;
     end_ = walk_path(pool, segments, scale, [&](const PathPoint& at) { points.push_back(at); });
     return points;
@@ -79,7 +80,8 @@ TEST_F(StrainPath, ReplicasAreScaledAndEachFindsItsOwn) {
         EXPECT_NEAR(at.stress(0), start, lateral_tolerance * std::abs(start));
       }
     }
-    EXPECT_LT(points[points.size() - 1].stress(1), points[points.size() - 2].stress(1)) << "the second is compressed more";
+    EXPECT_LT(points[points.size() - 1].stress(1), points[points.size() - 2].stress(1))
+        << "the second is compressed more";
   }
 }
 
@@ -112,7 +114,8 @@ TEST_F(StrainPath, AStressThatIsMissedIsCounted) {
 
 TEST_F(StrainPath, SegmentsFollowOneAnother) {
   RvePool pool(rve_, {EngineCase{}}, 1);
-  const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {0, 0, 0, 1e-3}, .increments = 1}}, {1.0});
+  const auto points = walk(
+      pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {0, 0, 0, 1e-3}, .increments = 1}}, {1.0});
   ASSERT_EQ(points.size(), 4u);
   EXPECT_EQ(points.back().increment, 3);
   EXPECT_LT(points[2].stress(1), points[0].stress(1)) << "compressed";
@@ -121,7 +124,9 @@ TEST_F(StrainPath, SegmentsFollowOneAnother) {
 
 TEST_F(StrainPath, AnImpossibleIncrementEndsIt) {
   RvePool pool(rve_, {EngineCase{}}, 1);
-  const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {-0.5, 0, 0, -0.5}, .increments = 5}}, {1.0});
+  const auto points = walk(
+      pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {-0.5, 0, 0, -0.5}, .increments = 5}},
+      {1.0});
   EXPECT_FALSE(end_.usable);
   EXPECT_NE(end_.message.find("increment 3"), std::string::npos) << end_.message;
   EXPECT_EQ(points.size(), 3u);

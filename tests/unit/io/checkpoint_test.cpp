@@ -45,9 +45,7 @@ class CheckpointTest : public testing::Test {
   CheckpointStore store_{folder_, "case A"};
 };
 
-TEST_F(CheckpointTest, NothingToLoadAtFirst) {
-  EXPECT_FALSE(store_.load_latest().has_value());
-}
+TEST_F(CheckpointTest, NothingToLoadAtFirst) { EXPECT_FALSE(store_.load_latest().has_value()); }
 
 TEST_F(CheckpointTest, SameBitsBack) {
   const Checkpoint saved = example(1.0 / 3);

@@ -59,7 +59,8 @@ class ResultFileTest : public testing::Test {
   }
 
   fs::path folder_ = fs::current_path() / "result";
-  Provenance provenance_{.case_kind = "tunnel", .input = "kind = \"tunnel\"\n", .fingerprint = "ab", .threads = 2, .ranks = 3};
+  Provenance provenance_{
+      .case_kind = "tunnel", .input = "kind = \"tunnel\"\n", .fingerprint = "ab", .threads = 2, .ranks = 3};
 };
 
 TEST_F(ResultFileTest, EverythingReadsBack) {

@@ -77,8 +77,8 @@ std::array<double, 2> displacement(double x, double y, double volume_loss) {
   const double width = 0.35 * std::max(above, 0.0) + diameter / 2;
   const double lost = volume_loss * std::numbers::pi * diameter * diameter / 8;
   const double fade = above > 0 ? 1 : std::exp(above / 2);
-  const double settlement =
-      fade * lost / (width * std::sqrt(2 * std::numbers::pi)) * 2 * std::exp(-x * x / (2 * width * width));
+  const double settlement = fade * lost / (width * std::sqrt(2 * std::numbers::pi)) * 2 *
+                            std::exp(-x * x / (2 * width * width));
   return {-settlement * x / (std::abs(above) + diameter), -settlement};
 }
 
@@ -157,8 +157,8 @@ class Tools : public testing::Test {
   /// Exit status of a tool applied to the result.
   [[nodiscard]] int run(const std::string& tool) const {
     const std::string log = (folder_ / "log.txt").string();
-    const std::string command =
-        python_.string() + " " + (root_ / "tools" / tool).string() + " " + folder_.string() + " >" + log + " 2>&1";
+    const std::string command = python_.string() + " " + (root_ / "tools" / tool).string() + " " + folder_.string() +
+                                " >" + log + " 2>&1";
     const int status = std::system(command.c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }

@@ -13,21 +13,20 @@ namespace {
 
 class Engine : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    dense_ = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{});
-  }
+  static void SetUpTestSuite() { dense_ = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{}); }
   static inline reference::Rve dense_;
 };
 
 /// Runs both on the same motion for the same steps and compares everything that the engine answers.
-void compare(const reference::Rve& start, const StrainRequest& request, const EngineSettings& settings, std::size_t n_clones,
-             double tolerance) {
+void compare(const reference::Rve& start, const StrainRequest& request, const EngineSettings& settings,
+             std::size_t n_clones, double tolerance) {
   RveBatch batch = clones(start, n_clones);
   const RveReport report = run(batch, std::vector(n_clones, request), settings).back();
   ASSERT_FALSE(is_failure(report.status)) << name_of(report.status);
   reference::Rve expected = start;
   const reference::StrainReport oracle = strain(
-      expected, plain(request.f_rel), {.steps = request.strain_steps, .hold_steps = report.steps - request.strain_steps});
+      expected, plain(request.f_rel),
+      {.steps = request.strain_steps, .hold_steps = report.steps - request.strain_steps});
   const reference::Mat2 sigma = love_weber(expected, contacts(expected));
   const double p = reference::pressure(reference::stress(expected));
   const double stress[4] = {sigma.xx, sigma.xy, sigma.yx, sigma.yy};
@@ -74,8 +73,8 @@ TEST_F(Engine, FollowsTheOracleThroughManyRebases) {
 
 TEST_F(Engine, FollowsTheOracleThroughARotation) {
   const double c = std::cos(0.1), s = std::sin(0.1);
-  compare(dense_, {.f_rel = Mat2{c, -s, s, c} * Mat2{1, 0.001, 0, 0.999}, .strain_steps = 450, .hold_cap = 20}, in_double(),
-          2, rounding);
+  compare(dense_, {.f_rel = Mat2{c, -s, s, c} * Mat2{1, 0.001, 0, 0.999}, .strain_steps = 450, .hold_cap = 20},
+          in_double(), 2, rounding);
 }
 
 TEST_F(Engine, FollowsTheOracleWithoutRolling) {
@@ -86,12 +85,14 @@ TEST_F(Engine, FollowsTheOracleWithoutRolling) {
 }
 
 TEST_F(Engine, FloatFollowsTheOracle) {
-  compare(dense_, {.f_rel = {1.0001, 0.0002, 0, 0.9999}, .strain_steps = 200, .hold_cap = 20}, EngineSettings{}, 2, 2e-3);
+  compare(dense_, {.f_rel = {1.0001, 0.0002, 0, 0.9999}, .strain_steps = 200, .hold_cap = 20}, EngineSettings{}, 2,
+          2e-3);
 }
 
 bool same_bits(const RveReport& a, const RveReport& b) {
-  return a.status == b.status && a.steps == b.steps && a.contacts == b.contacts && std::equal(a.stress, a.stress + 4, b.stress) &&
-         std::equal(a.tangent, a.tangent + 6, b.tangent) && a.unbalanced == b.unbalanced;
+  return a.status == b.status && a.steps == b.steps && a.contacts == b.contacts &&
+         std::equal(a.stress, a.stress + 4, b.stress) && std::equal(a.tangent, a.tangent + 6, b.tangent) &&
+         a.unbalanced == b.unbalanced;
 }
 
 TEST_F(Engine, SameBitsAloneInAnyGroupAndBesideANaN) {
@@ -106,13 +107,15 @@ TEST_F(Engine, SameBitsAloneInAnyGroupAndBesideANaN) {
       std::vector<StrainRequest> requests(n);
       for (std::size_t k = 0; k < n; ++k) {
         const double e = 1e-3 * std::cos(1.0 * static_cast<double>(k));
-        requests[k] = {.f_rel = {1 + e, 3 * e, -e, 1 - 2 * e}, .strain_steps = 200 + 10 * static_cast<int>(k), .hold_cap = 64};
+        requests[k] = {
+            .f_rel = {1 + e, 3 * e, -e, 1 - 2 * e}, .strain_steps = 200 + 10 * static_cast<int>(k), .hold_cap = 64};
       }
       requests[place] = general;
       const std::size_t broken = (place + 1) % n;
       batch.committed.position(broken, 3, 0) = std::numeric_limits<double>::quiet_NaN();
       const auto reports = run(batch, requests, settings);
-      EXPECT_TRUE(same_bits(reports[place], expected)) << "place " << place << " precision " << static_cast<int>(precision);
+      EXPECT_TRUE(same_bits(reports[place], expected))
+          << "place " << place << " precision " << static_cast<int>(precision);
       EXPECT_EQ(reports[broken].status, RveStatus::not_finite);
       for (std::size_t i = 0; i < dense_.radii.size(); ++i) {
         ASSERT_EQ(batch.trial.position(place, i, 0), alone.trial.position(0, i, 0)) << i;
@@ -124,8 +127,10 @@ TEST_F(Engine, SameBitsAloneInAnyGroupAndBesideANaN) {
 
 TEST_F(Engine, RigidRotationRotatesStressAndNothingElse) {
   RveBatch batch = clones(dense_, 2);
-  const auto reports = run(batch, {{.f_rel = {0, -1, 1, 0}, .strain_steps = 400, .hold_cap = 16},
-                                   {.f_rel = identity2, .strain_steps = 400, .hold_cap = 16}}, in_double());
+  const auto reports = run(batch,
+                           {{.f_rel = {0, -1, 1, 0}, .strain_steps = 400, .hold_cap = 16},
+                            {.f_rel = identity2, .strain_steps = 400, .hold_cap = 16}},
+                           in_double());
   const double p = reports[1].pressure();
   EXPECT_EQ(reports[0].contacts, reports[1].contacts);
   EXPECT_NEAR(reports[0].stress[0], reports[1].stress[3], 1e-6 * p);
@@ -135,8 +140,9 @@ TEST_F(Engine, RigidRotationRotatesStressAndNothingElse) {
 
 TEST_F(Engine, NoContactIsOpenAndNoFailure) {
   RveBatch batch = clones(dense_, 2);
-  const auto reports = run(batch, std::vector(2, StrainRequest{.f_rel = {1.2, 0, 0, 1.2}, .strain_steps = 400, .hold_cap = 32}),
-                           in_double());
+  const auto reports = run(
+      batch, std::vector(2, StrainRequest{.f_rel = {1.2, 0, 0, 1.2}, .strain_steps = 400, .hold_cap = 32}),
+      in_double());
   EXPECT_EQ(reports[0].status, RveStatus::open);
   EXPECT_EQ(reports[0].stress[0], 0.0);
   EXPECT_EQ(reports[0].contacts, 0);

@@ -17,10 +17,10 @@ using Law = LinearContactLaw<V, true>;
 
 constexpr double kn = 5e6, kt = 2.5e6, kr = 8.0, mu = 0.5, arm = 6e-4;
 constexpr double delta = 2e-6;
-constexpr double fn = kn * delta;            // 10 N
-constexpr double cap = mu * fn;              // 5 N
-constexpr double yield = cap / kt;           // 2 um: slip begins
-constexpr double moment_cap = arm * fn;      // 6e-3 N m
+constexpr double fn = kn * delta;        // 10 N
+constexpr double cap = mu * fn;          // 5 N
+constexpr double yield = cap / kt;       // 2 um: slip begins
+constexpr double moment_cap = arm * fn;  // 6e-3 N m
 constexpr double roll_yield = moment_cap / kr;
 
 // R = |b| = 1 m: an overlap is the same number in every unit.
@@ -30,15 +30,13 @@ ContactMotion<V> motion(double overlap, double sliding, double rolling) {
 }
 
 /// Sums increments of 1/1000 of the path, as the engine would.
-ContactForce<V> slide_by(Law::History& history, double total)
-{
+ContactForce<V> slide_by(Law::History& history, double total) {
   ContactForce<V> force{};
   for (int k = 0; k < 1000; ++k) force = law()(motion(delta, total / 1000, 0), history);
   return force;
 }
 
-ContactForce<V> roll_by(Law::History& history, double total)
-{
+ContactForce<V> roll_by(Law::History& history, double total) {
   ContactForce<V> force{};
   for (int k = 0; k < 1000; ++k) force = law()(motion(delta, 0, total / 1000), history);
   return force;
@@ -46,29 +44,26 @@ ContactForce<V> roll_by(Law::History& history, double total)
 
 constexpr double rounding = 1e-11;  // 1000 sums in double
 
-TEST(ContactLaw, NormalForceIsLinear)
-{
+TEST(ContactLaw, NormalForceIsLinear) {
   Law::History history{V(0), V(0)};
   EXPECT_EQ(law()(motion(delta, 0, 0), history).normal_to_branch[0], fn);
   EXPECT_EQ(law()(motion(3 * delta, 0, 0), history).normal_to_branch[0], kn * (3 * delta));
   EXPECT_EQ(law()(motion(0, 0, 0), history).normal_to_branch[0], 0.0);
 }
 
-TEST(ContactLaw, LoadSlideUnloadReverse)
-{
+TEST(ContactLaw, LoadSlideUnloadReverse) {
   Law::History history{V(0), V(0)};
-  EXPECT_NEAR(slide_by(history, 0.6 * yield).tangential[0], 0.6 * cap, rounding);  // elastic
-  EXPECT_NEAR(slide_by(history, 2.0 * yield).tangential[0], cap, rounding);        // slides at the cap
-  EXPECT_NEAR(slide_by(history, -0.5 * yield).tangential[0], 0.5 * cap, rounding); // unloads at once, elastically
+  EXPECT_NEAR(slide_by(history, 0.6 * yield).tangential[0], 0.6 * cap, rounding);   // elastic
+  EXPECT_NEAR(slide_by(history, 2.0 * yield).tangential[0], cap, rounding);         // slides at the cap
+  EXPECT_NEAR(slide_by(history, -0.5 * yield).tangential[0], 0.5 * cap, rounding);  // unloads at once, elastically
   EXPECT_NEAR(slide_by(history, -1.0 * yield).tangential[0], -0.5 * cap, rounding);
-  EXPECT_NEAR(slide_by(history, -3.0 * yield).tangential[0], -cap, rounding);      // slides the other way
+  EXPECT_NEAR(slide_by(history, -3.0 * yield).tangential[0], -cap, rounding);  // slides the other way
   EXPECT_NEAR(slide_by(history, 0.5 * yield).tangential[0], -0.5 * cap, rounding);
   EXPECT_NEAR(history.tangential[0], -0.5 * cap, rounding);
   EXPECT_EQ(history.moment[0], 0.0);
 }
 
-TEST(ContactLaw, SlidingDissipatesItsClosedFormWork)
-{
+TEST(ContactLaw, SlidingDissipatesItsClosedFormWork) {
   // One full cycle of amplitude A > yield encloses 4 cap (A - yield).
   Law::History history{V(0), V(0)};
   const double amplitude = 3 * yield;
@@ -87,8 +82,7 @@ TEST(ContactLaw, SlidingDissipatesItsClosedFormWork)
   EXPECT_NEAR(work, closed, 1e-3 * closed);  // the trapezoid over the kink: O(1/n)
 }
 
-TEST(ContactLaw, CoulombCapFollowsTheNormalForce)
-{
+TEST(ContactLaw, CoulombCapFollowsTheNormalForce) {
   Law::History history{V(0), V(0)};
   slide_by(history, 0.9 * yield);
   EXPECT_NEAR(law()(motion(delta / 2, 0, 0), history).tangential[0], 0.5 * cap, rounding);  // unloading cuts it
@@ -96,8 +90,7 @@ TEST(ContactLaw, CoulombCapFollowsTheNormalForce)
   EXPECT_NEAR(law()(motion(10 * delta, 3 * yield, 0), history).tangential[0], 3.5 * cap, rounding);
 }
 
-TEST(ContactLaw, SeparationForgets)
-{
+TEST(ContactLaw, SeparationForgets) {
   Law::History history{V(0), V(0)};
   slide_by(history, 0.9 * yield);
   roll_by(history, 0.9 * roll_yield);
@@ -110,8 +103,7 @@ TEST(ContactLaw, SeparationForgets)
   EXPECT_EQ(law()(motion(delta, 0, 0), history).tangential[0], 0.0);  // a new contact starts from nothing
 }
 
-TEST(ContactLaw, RollingSpringWithPlasticCap)
-{
+TEST(ContactLaw, RollingSpringWithPlasticCap) {
   Law::History history{V(0), V(0)};
   EXPECT_NEAR(roll_by(history, 0.7 * roll_yield).moment[0], 0.7 * moment_cap, rounding * moment_cap);
   EXPECT_NEAR(roll_by(history, 5.0 * roll_yield).moment[0], moment_cap, rounding * moment_cap);
@@ -121,8 +113,7 @@ TEST(ContactLaw, RollingSpringWithPlasticCap)
   EXPECT_EQ(history.tangential[0], 0.0);
 }
 
-TEST(ContactLaw, WithoutRollingNoMomentAndTheSameShear)
-{
+TEST(ContactLaw, WithoutRollingNoMomentAndTheSameShear) {
   const LinearContactLaw<V, false> plain{V(kn), V(kt), V(kr), V(mu * kn), V(arm * kn)};
   LinearContactLaw<V, false>::History plain_history{V(1), V(7e-3)};
   Law::History history{V(1), V(0)};
@@ -132,8 +123,7 @@ TEST(ContactLaw, WithoutRollingNoMomentAndTheSameShear)
   EXPECT_EQ(f.tangential[0], law()(motion(delta, 0.3 * yield, 0.5 * roll_yield), history).tangential[0]);
 }
 
-TEST(ContactLaw, ARepeatedCallWithoutMotionChangesNothing)
-{
+TEST(ContactLaw, ARepeatedCallWithoutMotionChangesNothing) {
   Law::History history{V(0), V(0)};
   slide_by(history, 0.7 * yield);
   roll_by(history, 3 * roll_yield);
@@ -143,22 +133,23 @@ TEST(ContactLaw, ARepeatedCallWithoutMotionChangesNothing)
   EXPECT_EQ(history.moment[0], before.moment[0]);
 }
 
-TEST(Combination, EqualGrains)
-{
+TEST(Combination, EqualGrains) {
   const GrainMaterial sand;
   const PairConstants c = combine(sand, 1e-3, sand, 1e-3);
-  EXPECT_NEAR(c.normal_stiffness, 3e6, 1e-6);      // E r
+  EXPECT_NEAR(c.normal_stiffness, 3e6, 1e-6);  // E r
   EXPECT_NEAR(c.tangential_stiffness, 1.5e6, 1e-6);
-  EXPECT_NEAR(c.rolling_stiffness, 1.5, 1e-12);    // beta k_t r^2
+  EXPECT_NEAR(c.rolling_stiffness, 1.5, 1e-12);  // beta k_t r^2
   EXPECT_EQ(c.friction, sand.friction);
   EXPECT_NEAR(c.rolling_arm, 6e-4, 1e-18);
 }
 
-TEST(Combination, TwoClassesByHand)
-{
+TEST(Combination, TwoClassesByHand) {
   // Table 1: coarse gravel (r = 10 mm) on coarse sand (r = 1 mm).
-  const GrainMaterial gravel{.modulus = 5e9, .stiffness_ratio = 0.8, .friction = std::tan(50 * 3.141592653589793 / 180),
-                             .rolling_stiffness = 1, .rolling_limit = 0.8};
+  const GrainMaterial gravel{.modulus = 5e9,
+                             .stiffness_ratio = 0.8,
+                             .friction = std::tan(50 * 3.141592653589793 / 180),
+                             .rolling_stiffness = 1,
+                             .rolling_limit = 0.8};
   const GrainMaterial sand;
   const PairConstants c = combine(gravel, 1e-2, sand, 1e-3);
   EXPECT_NEAR(c.normal_stiffness, 2 * 50e6 * 3e6 / 53e6, 1e-6);
@@ -173,16 +164,15 @@ TEST(Combination, TwoClassesByHand)
   EXPECT_EQ(c.friction, swapped.friction);
 }
 
-TEST(Combination, TheSmallestArmIsNotAlwaysTheSmallestGrain)
-{
+TEST(Combination, TheSmallestArmIsNotAlwaysTheSmallestGrain) {
   const GrainMaterial slick{.rolling_limit = 0.1};
   EXPECT_NEAR(combine(slick, 2e-3, GrainMaterial{}, 1e-3).rolling_arm, 2e-4, 1e-18);
 }
 
-/// Drives one contact through a jagged path of overlaps (open at times), slides and rolls; lane l sees it scaled by 1 + l/7.
+/// Drives one contact through a jagged path of overlaps (open at times), slides and rolls; lane l sees it scaled by 1 +
+/// l/7.
 template <class Lane>
-std::vector<std::array<real_of<Lane>, 3>> jagged_path(int lane_offset)
-{
+std::vector<std::array<real_of<Lane>, 3>> jagged_path(int lane_offset) {
   using real = real_of<Lane>;
   const LinearContactLaw<Lane, true> rule{Lane(real(kn)), Lane(real(kt)), Lane(real(kr)), Lane(real(mu * kn)),
                                           Lane(real(arm * kn))};
@@ -192,7 +182,8 @@ std::vector<std::array<real_of<Lane>, 3>> jagged_path(int lane_offset)
     ContactMotion<Lane> m{Lane(real(0)), Lane(real(0)), Lane(real(0)), Lane(real(0))};
     for (std::size_t l = 0; l < Lane::size(); ++l) {
       const double scale = 1 + (lane_offset + static_cast<double>(l)) / 7;
-      m.overlap[l] = m.overlap_to_branch[l] = static_cast<real>(delta * std::max(0.0, 0.7 + std::sin(0.05 * k * scale)));
+      m.overlap[l] = m.overlap_to_branch[l] = static_cast<real>(delta *
+                                                                std::max(0.0, 0.7 + std::sin(0.05 * k * scale)));
       m.sliding[l] = static_cast<real>(0.4 * yield * std::cos(0.3 * k) * scale);
       m.rolling[l] = static_cast<real>(0.4 * roll_yield * std::sin(0.21 * k) * scale);
     }
@@ -203,8 +194,7 @@ std::vector<std::array<real_of<Lane>, 3>> jagged_path(int lane_offset)
 }
 
 template <class real>
-void check_lanes_against_scalar()
-{
+void check_lanes_against_scalar() {
   constexpr int width = lane_count<WideLane<real>>;
   const auto wide = jagged_path<WideLane<real>>(0);
   int slid = 0, open = 0;
@@ -225,21 +215,20 @@ struct Nudge {
   double overlap, tangential, moment;
   ContactMotion<V> by;
 };
-std::vector<Nudge> nudges()
-{
+std::vector<Nudge> nudges() {
   std::vector<Nudge> out;
   for (int k = 0; k < 2000; ++k) {
     const double overlap = k % 7 == 0 ? 0.0 : delta * (1.2 + std::sin(0.9 * k));
     const double size = std::pow(10.0, -4 + 5.0 * (k % 11) / 10);  // of the overlap: some open
     out.push_back({overlap, mu * kn * overlap * std::sin(1.7 * k), arm * kn * overlap * std::cos(2.3 * k),
-                   motion(size * delta * std::sin(3.1 * k), size * yield * std::cos(4.3 * k), size * roll_yield * std::sin(5.9 * k))});
+                   motion(size * delta * std::sin(3.1 * k), size * yield * std::cos(4.3 * k),
+                          size * roll_yield * std::sin(5.9 * k))});
   }
   return out;
 }
 
 // The step's changes are what operator() adds to the forces it made before.
-TEST(ContactLaw, StepIsTheChangeOfItsForces)
-{
+TEST(ContactLaw, StepIsTheChangeOfItsForces) {
   int stuck = 0, sliding = 0, rolling = 0, open = 0;
   for (const Nudge& n : nudges()) {
     Law::History history{V(n.tangential), V(n.moment)};
@@ -259,8 +248,7 @@ TEST(ContactLaw, StepIsTheChangeOfItsForces)
 }
 
 // Piecewise linear: differences over a thousandth of the motion are the slopes, but across a corner.
-TEST(ContactLaw, StepHasTheSlopesOfItsChange)
-{
+TEST(ContactLaw, StepHasTheSlopesOfItsChange) {
   int corners = 0, compared = 0;
   for (const Nudge& n : nudges()) {
     const Law::History history{V(n.tangential), V(n.moment)};
@@ -271,9 +259,10 @@ TEST(ContactLaw, StepHasTheSlopesOfItsChange)
     const double d = 1e-3 * delta, s = 1e-3 * yield, r = 1e-3 * roll_yield;
     const ContactStep<V> here = at(0, 0, 0), closed = at(d, 0, 0), slid = at(0, s, 0), rolled = at(0, 0, r);
     const auto same = [&](const ContactStep<V>& there) {
-      return there.normal_stiffness[0] == here.normal_stiffness[0] && there.tangential.slope[0] == here.tangential.slope[0] &&
-             there.tangential.by_closing[0] == here.tangential.by_closing[0] && there.moment.slope[0] == here.moment.slope[0] &&
-             there.moment.by_closing[0] == here.moment.by_closing[0];
+      return there.normal_stiffness[0] == here.normal_stiffness[0] &&
+             there.tangential.slope[0] == here.tangential.slope[0] &&
+             there.tangential.by_closing[0] == here.tangential.by_closing[0] &&
+             there.moment.slope[0] == here.moment.slope[0] && there.moment.by_closing[0] == here.moment.by_closing[0];
     };
     if (!same(closed) || !same(slid) || !same(rolled)) {
       ++corners;
@@ -281,7 +270,8 @@ TEST(ContactLaw, StepHasTheSlopesOfItsChange)
     }
     ++compared;
     EXPECT_NEAR(kn * (closed.closing[0] - here.closing[0]) / d, here.normal_stiffness[0], 1e-9 * kn);
-    EXPECT_NEAR((closed.tangential.change[0] - here.tangential.change[0]) / d, here.tangential.by_closing[0], 1e-9 * kn);
+    EXPECT_NEAR((closed.tangential.change[0] - here.tangential.change[0]) / d, here.tangential.by_closing[0],
+                1e-9 * kn);
     EXPECT_NEAR((closed.moment.change[0] - here.moment.change[0]) / d, here.moment.by_closing[0], 1e-9 * arm * kn);
     EXPECT_NEAR((slid.tangential.change[0] - here.tangential.change[0]) / s, here.tangential.slope[0], 1e-9 * kt);
     EXPECT_NEAR((rolled.moment.change[0] - here.moment.change[0]) / r, here.moment.slope[0], 1e-9 * kr);
@@ -292,8 +282,7 @@ TEST(ContactLaw, StepHasTheSlopesOfItsChange)
 TEST(ContactLawLanes, WideDoubleIsBitIdenticalToScalar) { check_lanes_against_scalar<double>(); }
 TEST(ContactLawLanes, WideFloatIsBitIdenticalToScalar) { check_lanes_against_scalar<float>(); }
 
-TEST(ContactLawLanes, FloatFollowsDouble)
-{
+TEST(ContactLawLanes, FloatFollowsDouble) {
   const auto single = jagged_path<SingleLane<float>>(0);
   const auto reference = jagged_path<SingleLane<double>>(0);
   for (std::size_t k = 0; k < single.size(); ++k) {
@@ -302,8 +291,7 @@ TEST(ContactLawLanes, FloatFollowsDouble)
   }
 }
 
-TEST(ContactLawLanes, ANotANumberStaysInItsLane)
-{
+TEST(ContactLawLanes, ANotANumberStaysInItsLane) {
   using Lane = WideLane<double>;
   const LinearContactLaw<Lane, true> rule{Lane(kn), Lane(kt), Lane(kr), Lane(mu * kn), Lane(arm * kn)};
   typename LinearContactLaw<Lane, true>::History history{Lane(0.0), Lane(0.0)};

@@ -38,7 +38,8 @@ TEST(ReducedLattice, HasTheSameAreaAndShortVectors) {
   const Mat2 reduced = reduced_lattice({2.0, 9.3, 0.0, 1.5});
   EXPECT_NEAR(reduced.det(), 3.0, 1e-12);
   EXPECT_NEAR(reduced.xy, -0.7, 1e-12);  // 9.3 - 5 * 2
-  const double aa = reduced.xx * reduced.xx + reduced.yx * reduced.yx, bb = reduced.xy * reduced.xy + reduced.yy * reduced.yy;
+  const double aa = reduced.xx * reduced.xx + reduced.yx * reduced.yx,
+               bb = reduced.xy * reduced.xy + reduced.yy * reduced.yy;
   EXPECT_LE(std::abs(reduced.xx * reduced.xy + reduced.yx * reduced.yy), 0.5 * std::min(aa, bb) + 1e-12);  // Gauss
 }
 
@@ -85,10 +86,12 @@ TEST_F(EngineExtremes, ExplodingAndCrushingMotionsEndWithAStatus) {
 
 TEST_F(EngineExtremes, OpenedContactsCloseAgain) {
   RveBatch batch = clones(dense_, 1);
-  RveReport report = run(batch, {{.f_rel = {1.02, 0, 0, 1.02}, .strain_steps = 400, .hold_cap = 16}}, in_double()).front();
+  RveReport report = run(batch, {{.f_rel = {1.02, 0, 0, 1.02}, .strain_steps = 400, .hold_cap = 16}}, in_double())
+                         .front();
   EXPECT_EQ(report.status, RveStatus::open);
   commit(batch);
-  report = run(batch, {{.f_rel = {1 / 1.025, 0, 0, 1 / 1.025}, .strain_steps = 2000, .hold_cap = 4000}}, in_double()).front();
+  report = run(batch, {{.f_rel = {1 / 1.025, 0, 0, 1 / 1.025}, .strain_steps = 2000, .hold_cap = 4000}}, in_double())
+               .front();
   EXPECT_FALSE(is_failure(report.status));
   EXPECT_GT(report.pressure(), 1e4);
 }
@@ -101,7 +104,8 @@ TEST_F(EngineExtremes, ResultsDoNotDependOnWhenListsAreMade) {
   const RveReport coarse = run(seldom, {fast}, settings).front();
   settings.list_interval = 1;
   // The same number of steps, which follows from the list interval in a motion as fast as this.
-  const RveReport fine = run(often, {{.f_rel = fast.f_rel, .strain_steps = coarse.steps - 200, .hold_cap = 200}}, settings).front();
+  const RveReport
+      fine = run(often, {{.f_rel = fast.f_rel, .strain_steps = coarse.steps - 200, .hold_cap = 200}}, settings).front();
   EXPECT_EQ(fine.steps, coarse.steps);
   EXPECT_EQ(fine.contacts, coarse.contacts);
   for (int c = 0; c < 4; ++c) EXPECT_NEAR(fine.stress[c], coarse.stress[c], 1e-3 * std::abs(coarse.stress[0]));
@@ -120,7 +124,8 @@ TEST_F(EngineExtremes, OneOfFourThousandIsGivenNaNAndNoOtherBitChanges) {
   std::vector<StrainRequest> requests(n);
   for (std::size_t k = 0; k < n; ++k) {
     const double e = 1e-4 * std::cos(1.0 * static_cast<double>(k));
-    requests[k] = {.f_rel = {1 + e, 3 * e, -e, 1 - 2 * e}, .strain_steps = 20 + static_cast<int>(k % 7), .hold_cap = 16};
+    requests[k] = {
+        .f_rel = {1 + e, 3 * e, -e, 1 - 2 * e}, .strain_steps = 20 + static_cast<int>(k % 7), .hold_cap = 16};
   }
   const auto expected = run(healthy, requests, EngineSettings{});
   with_nan.committed.position(broken, 3, 0) = std::numeric_limits<double>::quiet_NaN();

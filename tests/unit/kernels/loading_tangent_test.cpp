@@ -35,7 +35,8 @@ RveBatch compressed(const reference::Rve& rve, double strain, std::size_t n) {
   return batch;
 }
 
-/// Change of stress over the size of a strain, by direction in columns, from the engine. @param batch of four clones at rest
+/// Change of stress over the size of a strain, by direction in columns, from the engine. @param batch of four clones at
+/// rest
 Matrix probe(RveBatch& batch, double size) {
   EngineSettings settings = in_double();
   settings.hold_tolerance = 1e-12;
@@ -71,8 +72,8 @@ TEST_F(LoadingTangent, GoesOnAsTheLastMotionDid) {
   forget_candidates(batch);
   StrainRequest on = still;
   on.f_rel = {1 + 3e-6, 2e-6, 1e-6, 1 - 1e-5};
-  const Matrix going =
-      host::whole_tangent_of(run(batch, std::vector(4, on), asking(TangentKind::loading, 1e-5)).front());
+  const Matrix going = host::whole_tangent_of(
+      run(batch, std::vector(4, on), asking(TangentKind::loading, 1e-5)).front());
   commit(batch);
   const Matrix forward = host::whole_tangent_of(at_rest(batch, asking(TangentKind::loading, 1e-5))),
                back = host::whole_tangent_of(at_rest(batch, asking(TangentKind::loading, -1e-5)));

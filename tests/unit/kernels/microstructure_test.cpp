@@ -24,9 +24,7 @@ Microstructure describe(const std::vector<NetworkContact>& contacts, int grains,
   return out;
 }
 
-NetworkContact at_angle(double angle) {
-  return {0, 1, std::cos(angle), std::sin(angle), 1.0};
-}
+NetworkContact at_angle(double angle) { return {0, 1, std::cos(angle), std::sin(angle), 1.0}; }
 
 /// Angles whose density is E(theta) = (1 + a cos 2(theta - direction)) / 2 pi: equal shares of its integral.
 std::vector<NetworkContact> distributed(double a, double direction, int count) {
@@ -34,8 +32,8 @@ std::vector<NetworkContact> distributed(double a, double direction, int count) {
   for (int k = 0; k < count; ++k) {
     const double share = 2.0 * pi * (k + 0.5) / count;
     double angle = share;
-    for (int iteration = 0; iteration < 200;
-         ++iteration) {  // angle + a/2 sin(2 angle) = share, measured from direction
+    for (int iteration = 0; iteration < 200; ++iteration) {  // angle + a/2 sin(2 angle) = share, measured from
+                                                             // direction
       angle -= (angle + 0.5 * a * std::sin(2.0 * angle) - share) / (1.0 + a);
     }
     contacts.push_back(at_angle(angle + direction));
@@ -122,8 +120,8 @@ std::vector<Microstructure> of_committed(const RveBatch& batch) {
 }
 
 TEST(Microstructure, OfAHexagonalLattice) {
-  const Microstructure m =
-      of_committed(settled(reference::hexagonal_packing(8, 8, 1e-3, 1e-6, reference::Material{}), 1))[0];
+  const Microstructure m = of_committed(
+      settled(reference::hexagonal_packing(8, 8, 1e-3, 1e-6, reference::Material{}), 1))[0];
   EXPECT_NEAR(m.fabric_anisotropy, 0.0, 1e-10);
   EXPECT_DOUBLE_EQ(m.coordination, 6.0);
   EXPECT_DOUBLE_EQ(m.mechanical_coordination, 6.0);

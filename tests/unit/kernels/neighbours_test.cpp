@@ -40,7 +40,8 @@ std::vector<std::uint32_t> all_pairs(const Cloud& cloud, double skin) {
   std::vector<std::uint32_t> keys;
   for (std::size_t i = 0; i < cloud.radii.size(); ++i) {
     for (std::size_t j = i + 1; j < cloud.radii.size(); ++j) {
-      double dx = cloud.positions[2 * j] - cloud.positions[2 * i], dy = cloud.positions[2 * j + 1] - cloud.positions[2 * i + 1];
+      double dx = cloud.positions[2 * j] - cloud.positions[2 * i],
+             dy = cloud.positions[2 * j + 1] - cloud.positions[2 * i + 1];
       cloud.cell.nearest(dx, dy);
       const double reach = cloud.radii[i] + cloud.radii[j] + skin;
       if (dx * dx + dy * dy < reach * reach) keys.push_back(pair_key(static_cast<int>(i), static_cast<int>(j)));

@@ -1,4 +1,5 @@
-// Distances of a touching pair by polynomials against their closed forms, up to the overlap at which an RVE is given up.
+// Distances of a touching pair by polynomials against their closed forms, up to the overlap at which an RVE is given
+// up.
 #include <gtest/gtest.h>
 
 #include <algorithm>

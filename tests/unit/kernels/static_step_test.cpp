@@ -21,7 +21,8 @@ namespace {
 
 using Voigt = Eigen::Vector3d;  ///< xx, yy, xy; of strains gamma_xy
 
-/// A contact as what the law makes of a small motion: strains (normal, sliding, rolling) to changes of (f_n pulled, f_t / y, m).
+/// A contact as what the law makes of a small motion: strains (normal, sliding, rolling) to changes of (f_n pulled, f_t
+/// / y, m).
 struct Spring {
   CommittedContact at;
   PairConstants k;
@@ -39,8 +40,8 @@ struct Spring {
   }
   /// f_t = +- mu f_n and m = +- arm f_n of a contact at its cap: nonsymmetric.
   [[nodiscard]] Eigen::Matrix3d stiffness() const {
-    Eigen::Matrix3d s =
-        Eigen::Vector3d(k.normal_stiffness, k.tangential_stiffness / ratio, k.rolling_stiffness).asDiagonal();
+    Eigen::Matrix3d s = Eigen::Vector3d(k.normal_stiffness, k.tangential_stiffness / ratio, k.rolling_stiffness)
+                            .asDiagonal();
     if (slides != 0) s.row(1) << -slides * k.friction * k.normal_stiffness / ratio, 0, 0;
     if (rolls != 0) s.row(2) << -rolls * k.rolling_arm * k.normal_stiffness, 0, 0;
     return s;
@@ -202,14 +203,15 @@ class StaticStep : public testing::Test {
   static Voigt probe(int state, const Voigt& strain) {
     RveBatch& batch = states_[static_cast<std::size_t>(state)];
     const Mat2 f{1 + strain[0], 0.5 * strain[2], 0.5 * strain[2], 1 + strain[1]};
-    const auto r =
-        run(batch, {{.strain_steps = 400, .hold_cap = 100000}, {.f_rel = f, .strain_steps = 400, .hold_cap = 100000}},
-            to_the_end());
+    const auto r = run(
+        batch, {{.strain_steps = 400, .hold_cap = 100000}, {.f_rel = f, .strain_steps = 400, .hold_cap = 100000}},
+        to_the_end());
     const double *a = r[0].stress, *b = r[1].stress;
     return {b[0] - a[0], b[3] - a[3], 0.5 * (b[1] + b[2] - a[1] - a[2])};
   }
 
-  /// The loading tangent at rest, columns by unit strain. @param size of the strain it is the secant of; its sign: of all directions
+  /// The loading tangent at rest, columns by unit strain. @param size of the strain it is the secant of; its sign: of
+  /// all directions
   static Eigen::Matrix3d loading(int state, double size, const EngineSettings& like) {
     EngineSettings settings = like;
     settings.tangent = TangentKind::loading;
@@ -220,7 +222,8 @@ class StaticStep : public testing::Test {
     return host::whole_tangent_of(r);
   }
 
-  /// Elastic tangent times `strain`, and what the stress itself changes by: sigma e + e sigma (half of it: the branches), - tr e sigma.
+  /// Elastic tangent times `strain`, and what the stress itself changes by: sigma e + e sigma (half of it: the
+  /// branches), - tr e sigma.
   static Voigt elastic(int state, const Voigt& strain) {
     RveBatch& batch = states_[static_cast<std::size_t>(state)];
     const RveReport r = run(batch, std::vector<StrainRequest>(2), to_the_end(TangentKind::elastic)).front();

@@ -203,7 +203,8 @@ TEST_F(StaticTangent, IsPositiveAndSofterThanTheContactTangent) {
 TEST_F(StaticTangent, ElasticOneIsWhatSmallProbesMeasure) {
   for (const double sign : {1.0, -1.0}) {
     RveBatch batch = clones(dense_, 1);
-    const Matrix d = host::tangent_of(at_rest(batch, asking(TangentKind::elastic))), measured = probe(dense_, sign * 1e-6);
+    const Matrix d = host::tangent_of(at_rest(batch, asking(TangentKind::elastic))),
+                 measured = probe(dense_, sign * 1e-6);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(d(k, k), measured(k, k), 0.02 * measured(k, k)) << k;
   }
   RveBatch batch = clones(sheared_, 1);

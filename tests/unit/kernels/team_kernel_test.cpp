@@ -1,4 +1,5 @@
-// The team kernel against the lanes, which are tested against the oracle: the same bits of everything, whatever the team's size.
+// The team kernel against the lanes, which are tested against the oracle: the same bits of everything, whatever the
+// team's size.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +16,8 @@
 namespace voussoir::kernels {
 namespace {
 
-/// On CPUs, one thread either way: several wait for each other at every barrier, milliseconds each where other processes have
-/// their cores. Only the shortest test has them.
+/// On CPUs, one thread either way: several wait for each other at every barrier, milliseconds each where other
+/// processes have their cores. Only the shortest test has them.
 const std::vector<int> one_thread{0, 1};
 
 class TeamKernel : public testing::Test {
@@ -63,8 +64,8 @@ reference::Rve gas(int grains, double smallest, double largest) {
 /// Advances copies of a batch by lanes and by teams, and compares all they answer.
 /// @param make () -> RveBatch, the same at each call
 template <class Make, class Request>
-std::vector<RveReport> expect_lanes_bits(const Make& make, const std::vector<Request>& requests, EngineSettings settings,
-                                         const std::vector<int>& team_sizes = one_thread) {
+std::vector<RveReport> expect_lanes_bits(const Make& make, const std::vector<Request>& requests,
+                                         EngineSettings settings, const std::vector<int>& team_sizes = one_thread) {
   const auto run = [&](Backend backend, int team_size, RveBatch& batch) {
     settings.backend = backend;
     settings.team_size = team_size;
@@ -93,7 +94,8 @@ std::vector<StrainRequest> motions(std::size_t n) {
   std::vector<StrainRequest> requests(n);
   for (std::size_t k = 0; k < n; ++k) {
     const double e = 1e-3 * std::cos(1.0 * static_cast<double>(k));
-    requests[k] = {.f_rel = {1 + e, 3 * e, -e, 1 - 2 * e}, .strain_steps = 100 + 20 * static_cast<int>(k), .hold_cap = 200};
+    requests[k] = {
+        .f_rel = {1 + e, 3 * e, -e, 1 - 2 * e}, .strain_steps = 100 + 20 * static_cast<int>(k), .hold_cap = 200};
   }
   return requests;
 }
@@ -147,7 +149,8 @@ TEST_F(TeamKernel, HasTheLanesBitsWithClassesAndUnlikePackings) {
   const reference::Rve other = reference::consolidated_packing(30, 5, 1e5, 0.0, reference::Material{});
   const auto make = [&] {
     Packing mixed = packing_of(dense_);
-    mixed.materials.push_back({.modulus = 5e9, .stiffness_ratio = 0.8, .friction = 1.2, .rolling_stiffness = 0.7, .rolling_limit = 0.8});
+    mixed.materials.push_back(
+        {.modulus = 5e9, .stiffness_ratio = 0.8, .friction = 1.2, .rolling_stiffness = 0.7, .rolling_limit = 0.8});
     for (std::size_t i = 0; i < mixed.radii.size(); ++i) mixed.class_of.push_back(i % 3 == 0 ? 1 : 0);
     RveBatch batch = make_batch({mixed, packing_of(other)}, {0, 1, 0, 1});
     for (std::size_t k = 0; k < 4; ++k) fill(batch.committed, k, k % 2 == 0 ? dense_ : other);
@@ -162,9 +165,9 @@ TEST_F(TeamKernel, HasTheLanesBitsWithWideGrading) {
   rve.cell.xy += 0.4 * rve.cell.yy;
   for (auto& x : rve.positions) x.x += 0.4 * x.y;
   const double f = 0.95;
-  const auto reports =
-      expect_lanes_bits([&] { return clones(rve, 2); },
-                    std::vector(2, StrainRequest{.f_rel = {f, 0.3, 0, f}, .strain_steps = 4000, .hold_cap = 100}), in_double());
+  const auto reports = expect_lanes_bits(
+      [&] { return clones(rve, 2); },
+      std::vector(2, StrainRequest{.f_rel = {f, 0.3, 0, f}, .strain_steps = 4000, .hold_cap = 100}), in_double());
 }
 
 TEST_F(TeamKernel, EndsWithTheLanesStatuses) {
@@ -202,10 +205,11 @@ TEST_F(TeamKernel, TooFullAListIsReportedAndKeepsTheState) {
 
 TEST_F(TeamKernel, HasTheLanesBitsAndTraceUnderAServo) {
   const ServoRequest squeeze{.x = {true, -1.5e5}, .y = {true, -1.2e5}, .max_rate = 1e-5, .max_steps = 300};
-  const ServoRequest biaxial{.x = {true, -1e5}, .y = {false, -1e-6}, .max_rate = 1e-5, .max_steps = 3000, .end_strain_y = 2e-4};
+  const ServoRequest biaxial{
+      .x = {true, -1e5}, .y = {false, -1e-6}, .max_rate = 1e-5, .max_steps = 3000, .end_strain_y = 2e-4};
   for (const Precision precision : {Precision::float32, Precision::float64}) {
-    const auto reports =
-        expect_lanes_bits([&] { return clones(dense_, 2); }, std::vector{squeeze, biaxial}, {.precision = precision});
+    const auto reports = expect_lanes_bits([&] { return clones(dense_, 2); }, std::vector{squeeze, biaxial},
+                                           {.precision = precision});
     EXPECT_EQ(reports[0].status, RveStatus::step_limit);
     EXPECT_EQ(reports[1].status, RveStatus::converged);
   }
@@ -216,7 +220,8 @@ TEST_F(TeamKernel, HasTheLanesBitsAndTraceUnderAServo) {
     requests[1].trace = &samples;
     requests[1].trace_interval = 20;
     std::vector<RveReport> reports(2);
-    advance(batch, std::span<const ServoRequest>(requests), {.precision = Precision::float64, .backend = backend}, reports);
+    advance(batch, std::span<const ServoRequest>(requests), {.precision = Precision::float64, .backend = backend},
+            reports);
     return samples;
   };
   const auto lanes = trace(Backend::lanes), teams = trace(Backend::teams);

@@ -22,8 +22,7 @@ constexpr double kr = 21.6;   // beta kt ri rj
 constexpr double fn = 7.2;    // kn overlap
 constexpr double distance = ri + rj - overlap;
 
-Material undamped()
-{
+Material undamped() {
   Material material;
   material.damping = 0;
   return material;
@@ -31,8 +30,7 @@ Material undamped()
 
 Rve pair_along(double angle, const Material& material) { return two_grains(ri, rj, overlap, angle, 0.05, material); }
 
-TEST(ReferencePair, NormalForceAndStress)
-{
+TEST(ReferencePair, NormalForceAndStress) {
   const double angle = 0.3;
   Rve rve = pair_along(angle, Material{});
   const auto found = contacts(rve);
@@ -50,8 +48,7 @@ TEST(ReferencePair, NormalForceAndStress)
   EXPECT_EQ(coordination_number(rve), 1.0);
 }
 
-TEST(ReferencePair, StressOfTangentialForceIsSymmetrised)
-{
+TEST(ReferencePair, StressOfTangentialForceIsSymmetrised) {
   Rve rve = pair_along(0, Material{});
   rve.histories[{0, 1}] = {.tangential = 2.0, .moment = 0};
   const double scale = distance / (0.05 * 0.05 * 0.1);
@@ -61,8 +58,7 @@ TEST(ReferencePair, StressOfTangentialForceIsSymmetrised)
   EXPECT_NEAR(stress(rve)[2], scale, 1e-9 * scale);
 }
 
-TEST(ReferencePair, TangentByHand)
-{
+TEST(ReferencePair, TangentByHand) {
   const VoigtMatrix d = tangent(pair_along(0, Material{}));  // n = (1, 0), t = (0, 1)
   const double scale = distance * distance / (0.05 * 0.05 * 0.1);
   EXPECT_NEAR(d[0][0], kn * scale, 1e-9 * kn * scale);
@@ -72,8 +68,7 @@ TEST(ReferencePair, TangentByHand)
   EXPECT_EQ(d[0][2], 0.0);
 }
 
-TEST(ReferencePair, ContactThroughThePeriodicBoundary)
-{
+TEST(ReferencePair, ContactThroughThePeriodicBoundary) {
   Rve rve = pair_along(0.7, Material{});
   rve.cell = {0.05, 0.03, 0, 0.05};
   const Voigt before = stress(rve);
@@ -83,8 +78,7 @@ TEST(ReferencePair, ContactThroughThePeriodicBoundary)
 }
 
 // In the next tests the motion is far smaller than the overlap, so that f_n and n change by less than the tolerance.
-TEST(ReferencePair, TranslationShears)
-{
+TEST(ReferencePair, TranslationShears) {
   Rve rve = pair_along(0, undamped());
   const double slide = 1e-9;
   rve.velocities = {{0, 0}, {0, slide}};
@@ -95,8 +89,7 @@ TEST(ReferencePair, TranslationShears)
   EXPECT_EQ(rve.histories.at({0, 1}).moment, 0.0);
 }
 
-TEST(ReferencePair, AffineMotionShearsAndRotationDoesNot)
-{
+TEST(ReferencePair, AffineMotionShearsAndRotationDoesNot) {
   Rve rve = pair_along(0, undamped());
   const double gamma = 2e-7;
   step(rve, Mat2{0, gamma, 0, 0}, Mat2{});  // D_yx = gamma/2, sliding y D b.t = (ri + rj) gamma/2
@@ -107,8 +100,7 @@ TEST(ReferencePair, AffineMotionShearsAndRotationDoesNot)
   EXPECT_NEAR(contacts(turned)[0].normal_force, fn, 1e-9 * fn);
 }
 
-TEST(ReferencePair, EqualSpinsShearAndOppositeSpinsRoll)
-{
+TEST(ReferencePair, EqualSpinsShearAndOppositeSpinsRoll) {
   const double spin = 1e-8;
   Rve sheared = pair_along(0.2, undamped());
   sheared.velocities = {{0, 0}, {0, 0}};
@@ -126,8 +118,7 @@ TEST(ReferencePair, EqualSpinsShearAndOppositeSpinsRoll)
   EXPECT_NEAR(rolled.histories.at({0, 1}).moment, moment, 1e-9 * moment);
 }
 
-TEST(ReferencePair, ForcesAndTorquesOnBothGrains)
-{
+TEST(ReferencePair, ForcesAndTorquesOnBothGrains) {
   Rve rve = pair_along(0, undamped());
   const double ft = 1.5, m = 2e-3;
   rve.histories[{0, 1}] = {.tangential = ft, .moment = m};
@@ -142,8 +133,7 @@ TEST(ReferencePair, ForcesAndTorquesOnBothGrains)
   EXPECT_NEAR(rve.spins[1], arj * ((rj - 0.5 * overlap) * ft - m), 1e-8 * arj * m);
 }
 
-TEST(ReferencePair, MobilitiesByHand)
-{
+TEST(ReferencePair, MobilitiesByHand) {
   const auto [a, ar] = mobility(Material{}, 2e-3, 2e-3);  // k_n = 6e6, k_t = 3e6, beta = 1, c = 0.9
   EXPECT_NEAR(a, 0.81 * 4 / (36e6 + 36e6), 1e-20);
   EXPECT_NEAR(ar, 0.81 * 4 / ((72e6 + 36e6) * 4e-6), 1e-14);
@@ -151,8 +141,7 @@ TEST(ReferencePair, MobilitiesByHand)
   EXPECT_NEAR(mobility(Material{}, 2e-3, 40e-3).rotation, 0.81 * 4 / (72e6 * 4e-6 + 12 * on_largest), 1e-14);
 }
 
-TEST(ReferencePair, CoulombAndRollingCaps)
-{
+TEST(ReferencePair, CoulombAndRollingCaps) {
   Rve rve = pair_along(0, undamped());
   rve.velocities = {{0, 0}, {0, -1e-6}};  // half the overlap: k_t s = 3.6 N, the cap is 0.466 f_n = 3.36 N
   rve.spins = {-1e-3 / ri, 1e-3 / rj};
@@ -162,8 +151,7 @@ TEST(ReferencePair, CoulombAndRollingCaps)
   EXPECT_NEAR(rve.histories.at({0, 1}).moment, 0.6 * ri * now, 1e-8 * ri * fn);
 }
 
-TEST(ReferencePair, CapsFollowTheNormalForceAndSeparationForgets)
-{
+TEST(ReferencePair, CapsFollowTheNormalForceAndSeparationForgets) {
   Rve rve = pair_along(0, undamped());
   rve.histories[{0, 1}] = {.tangential = 3.0, .moment = -5e-3};
   rve.velocities = {{0, 0}, {0.5e-6, 0}};  // f_n halves; both histories now exceed their caps
@@ -176,8 +164,7 @@ TEST(ReferencePair, CapsFollowTheNormalForceAndSeparationForgets)
   EXPECT_TRUE(rve.histories.empty());
 }
 
-TEST(ReferencePair, LocalDampingCutsWorkDoneAndRaisesWorkAgainst)
-{
+TEST(ReferencePair, LocalDampingCutsWorkDoneAndRaisesWorkAgainst) {
   for (const double speed : {1e-9, -1e-6}) {  // with and against the repulsion of grain 1
     Rve rve = pair_along(0, Material{});      // lambda = 0.3
     rve.velocities = {{0, 0}, {speed, 0}};
@@ -190,8 +177,7 @@ TEST(ReferencePair, LocalDampingCutsWorkDoneAndRaisesWorkAgainst)
   }
 }
 
-TEST(ReferencePair, MomentumAndAngularMomentumOfACollision)
-{
+TEST(ReferencePair, MomentumAndAngularMomentumOfACollision) {
   Rve rve = two_grains(ri, rj, 1e-8, 0.4, 0.05, undamped());
   rve.velocities = {{3e-7, 1e-7}, {-2e-7, -1e-7}};
   rve.spins = {5e-5, -1e-5};
@@ -199,8 +185,8 @@ TEST(ReferencePair, MomentumAndAngularMomentumOfACollision)
   const auto [aj, arj] = mobility(rve.material, rj, rj);
   const auto momentum = [&] { return (1 / ai) * rve.velocities[0] + (1 / aj) * rve.velocities[1]; };
   const auto spin = [&] {
-    return dot(left_of(rve.positions[0]), rve.velocities[0]) / ai + dot(left_of(rve.positions[1]), rve.velocities[1]) / aj +
-           rve.spins[0] / ari + rve.spins[1] / arj;
+    return dot(left_of(rve.positions[0]), rve.velocities[0]) / ai +
+           dot(left_of(rve.positions[1]), rve.velocities[1]) / aj + rve.spins[0] / ari + rve.spins[1] / arj;
   };
   const Vec2 p0 = momentum();
   const double l0 = spin();
@@ -217,14 +203,13 @@ TEST(ReferencePair, MomentumAndAngularMomentumOfACollision)
   EXPECT_GT(touching, 2);
   EXPECT_LT(touching, 100);
   EXPECT_GT(dot(rve.velocities[1] - rve.velocities[0], {std::cos(0.4), std::sin(0.4)}), 0.0);  // they have bounced
-  EXPECT_GT(std::abs(rve.spins[0] - 5e-5), 1e-6);                                             // and exchanged spin
+  EXPECT_GT(std::abs(rve.spins[0] - 5e-5), 1e-6);                                              // and exchanged spin
   EXPECT_NEAR(p1.x, p0.x, 1e-12 * norm(p0));
   EXPECT_NEAR(p1.y, p0.y, 1e-12 * norm(p0));
   EXPECT_NEAR(l1, l0, 1e-11 * angular_scale);
 }
 
-TEST(ReferencePair, GrainWithoutContactSlowsDown)
-{
+TEST(ReferencePair, GrainWithoutContactSlowsDown) {
   Rve rve = two_grains(ri, rj, -1e-3, 0, 0.05, Material{});
   rve.velocities = {{1e-6, 2e-6}, {0, 0}};
   rve.spins = {1e-4, 0};

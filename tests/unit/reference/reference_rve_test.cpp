@@ -14,8 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-TEST(ReferenceRve, RejectsACellThatIsTooSmall)
-{
+TEST(ReferenceRve, RejectsACellThatIsTooSmall) {
   Rve rve = two_grains(2e-3, 3e-3, 1e-6, 0, 0.05, Material{});
   rve.cell = {0.011, 0, 0, 0.05};
   EXPECT_THROW(stress(rve), std::invalid_argument);
@@ -26,8 +25,7 @@ TEST(ReferenceRve, RejectsACellThatIsTooSmall)
   EXPECT_THROW(stress(rve), std::invalid_argument);
 }
 
-TEST(ReferencePlane, ExponentialAndLogarithmCompoundToTheWhole)
-{
+TEST(ReferencePlane, ExponentialAndLogarithmCompoundToTheWhole) {
   const double c = std::cos(2.5), s = std::sin(2.5);
   for (const Mat2& f : {Mat2{1.1, 0.4, -0.1, 0.8}, Mat2{c, -s, s, c}, Mat2{1, 1e-9, 0, 1}, Mat2{2, 3, 0.1, 0.7}}) {
     const Mat2 e = exponential_minus_identity((1.0 / 37) * logarithm(f));
@@ -43,9 +41,9 @@ TEST(ReferencePlane, ExponentialAndLogarithmCompoundToTheWhole)
 /// Triangular lattice, spacing d, area per grain (sqrt(3)/2) d^2, three contacts per grain at 0, 60, 120 degrees. With
 /// sum n_x^4 = 9/8, sum n_x^2 n_y^2 = 3/8, sum n_x^3 n_y = 0, eq. (4) gives the isotropic plane moduli
 ///   D11 = (sqrt(3)/4t)(3 kn + kt), D12 = (sqrt(3)/4t)(kn - kt), D33 = (sqrt(3)/4t)(kn + kt),
-/// so K = (D11 + D12)/2 = sqrt(3) kn/(2t) and G = D33. Exact for sticking contacts: every grain is a centre of symmetry, so
-/// that under a homogeneous strain no grain feels a net force, and the sum of f_t over its six contacts, hence its torque, is
-/// zero as well: neither non-affine motion nor spin appears.
+/// so K = (D11 + D12)/2 = sqrt(3) kn/(2t) and G = D33. Exact for sticking contacts: every grain is a centre of
+/// symmetry, so that under a homogeneous strain no grain feels a net force, and the sum of f_t over its six contacts,
+/// hence its torque, is zero as well: neither non-affine motion nor spin appears.
 struct Hexagonal {
   Material material;
   double radius = 2e-3;
@@ -56,8 +54,7 @@ struct Hexagonal {
   Rve rve = hexagonal_packing(6, 8, radius, overlap, material);
 };
 
-TEST(ReferenceHexagonal, TangentIsTheClosedForm)
-{
+TEST(ReferenceHexagonal, TangentIsTheClosedForm) {
   const Hexagonal hex;
   const VoigtMatrix d = tangent(hex.rve);
   const double scale = hex.factor * hex.kn;
@@ -70,13 +67,13 @@ TEST(ReferenceHexagonal, TangentIsTheClosedForm)
   EXPECT_EQ(coordination_number(hex.rve), 6.0);
 }
 
-TEST(ReferenceHexagonal, StressOfIsotropicCompression)
-{
+TEST(ReferenceHexagonal, StressOfIsotropicCompression) {
   Hexagonal hex;
   const double ratio = 0.998;
   const StrainReport report = strain(hex.rve, ratio * identity, {.steps = 50});
   const double d = ratio * (2 * hex.radius - hex.overlap);
-  const double sigma = -std::sqrt(3.0) * hex.kn * (2 * hex.radius - d) / (d * hex.material.thickness);  // exact at any overlap
+  const double sigma = -std::sqrt(3.0) * hex.kn * (2 * hex.radius - d) / (d * hex.material.thickness);  // exact at any
+                                                                                                        // overlap
   const Voigt s = stress(hex.rve);
   EXPECT_NEAR(s[0], sigma, 1e-9 * std::abs(sigma));
   EXPECT_NEAR(s[1], sigma, 1e-9 * std::abs(sigma));
@@ -84,8 +81,7 @@ TEST(ReferenceHexagonal, StressOfIsotropicCompression)
   EXPECT_EQ(report.steps, 50);
 }
 
-TEST(ReferenceHexagonal, StrainedResponseIsTheTangent)
-{
+TEST(ReferenceHexagonal, StrainedResponseIsTheTangent) {
   const double e = 1e-6;  // a fifth of the overlap strain: nothing opens, nothing slides
   const double unit = Hexagonal{}.factor * Hexagonal{}.kn * e;
   struct Path {
@@ -93,11 +89,11 @@ TEST(ReferenceHexagonal, StrainedResponseIsTheTangent)
     Voigt stress;
   };
   const double r = Hexagonal{}.ratio;
-  for (const auto& [h, expected] : {Path{{e, 0, 0, e}, {4.0, 4.0, 0}},                 // 2K = 4 unit
-                                    Path{{e, 0, 0, -e}, {2 * (1 + r), -2 * (1 + r), 0}},  // 2G
-                                    Path{{0, 0.5 * e, 0.5 * e, 0}, {0, 0, 1 + r}},
-                                    Path{{0, e, 0, 0}, {0, 0, 1 + r}},                    // with rotation: the same
-                                    Path{{0, -e, e, 0}, {0, 0, 0}}}) {
+  for (const auto& [h, expected] :
+       {Path{{e, 0, 0, e}, {4.0, 4.0, 0}},                                                 // 2K = 4 unit
+        Path{{e, 0, 0, -e}, {2 * (1 + r), -2 * (1 + r), 0}},                               // 2G
+        Path{{0, 0.5 * e, 0.5 * e, 0}, {0, 0, 1 + r}}, Path{{0, e, 0, 0}, {0, 0, 1 + r}},  // with rotation: the same
+        Path{{0, -e, e, 0}, {0, 0, 0}}}) {
     Hexagonal hex;
     hex.rve.material.friction = 10;
     const Voigt before = stress(hex.rve);
@@ -108,10 +104,10 @@ TEST(ReferenceHexagonal, StrainedResponseIsTheTangent)
   }
 }
 
-TEST(ReferenceHexagonal, LocalDampingLosesAFixedShareOfEveryHalfCycle)
-{
-  // All grains spin alike: one oscillator, sliding -2 r theta in each contact, no net force. Towards rest its torque is cut by
-  // 1 - lambda, away from it raised by 1 + lambda: successive peaks of f_t^2 have the ratio (1 - lambda)/(1 + lambda).
+TEST(ReferenceHexagonal, LocalDampingLosesAFixedShareOfEveryHalfCycle) {
+  // All grains spin alike: one oscillator, sliding -2 r theta in each contact, no net force. Towards rest its torque is
+  // cut by 1 - lambda, away from it raised by 1 + lambda: successive peaks of f_t^2 have the ratio (1 - lambda)/(1 +
+  // lambda).
   Hexagonal hex;
   hex.rve = hexagonal_packing(6, 6, hex.radius, 2e-6, hex.material);
   hex.rve.material.friction = 10;
@@ -138,8 +134,7 @@ class ReferencePacking : public testing::Test {
   static inline Rve* packing_ = nullptr;
 };
 
-TEST_F(ReferencePacking, IsDenseAndAtRest)
-{
+TEST_F(ReferencePacking, IsDenseAndAtRest) {
   const Voigt s = stress(*packing_);
   EXPECT_NEAR(pressure(s), 1e5, 2e3);
   EXPECT_GT(coordination_number(*packing_), 3.0);
@@ -150,8 +145,7 @@ TEST_F(ReferencePacking, IsDenseAndAtRest)
   EXPECT_EQ((report.steps - 1) % 16, 0);
 }
 
-TEST_F(ReferencePacking, RigidRotationRotatesStressAndNothingElse)
-{
+TEST_F(ReferencePacking, RigidRotationRotatesStressAndNothingElse) {
   const StrainOptions options{.steps = 500, .hold_steps = 200};
   Rve turned = *packing_;
   strain(turned, Mat2{0, -1, 1, 0}, options);
@@ -172,8 +166,7 @@ TEST_F(ReferencePacking, RigidRotationRotatesStressAndNothingElse)
   }
 }
 
-TEST_F(ReferencePacking, StrainEndsExactlyAtF)
-{
+TEST_F(ReferencePacking, StrainEndsExactlyAtF) {
   Rve rve = *packing_;
   const Mat2 f{1.002, 0.003, -0.001, 0.997};
   const Mat2 expected = f * rve.cell;
@@ -187,8 +180,7 @@ TEST_F(ReferencePacking, StrainEndsExactlyAtF)
   for (const Vec2 w : rve.velocities) EXPECT_EQ(norm(w), 0.0);
 }
 
-TEST_F(ReferencePacking, MomentumIsConservedWithoutDamping)
-{
+TEST_F(ReferencePacking, MomentumIsConservedWithoutDamping) {
   Rve rve = *packing_;
   rve.material.damping = 0;
   rve.velocities.assign(rve.positions.size(), {});
@@ -208,8 +200,7 @@ TEST_F(ReferencePacking, MomentumIsConservedWithoutDamping)
   EXPECT_NEAR(momentum().y, before.y, 1e-9 * norm(before));
 }
 
-TEST_F(ReferencePacking, EnergyDecaysAfterAKick)
-{
+TEST_F(ReferencePacking, EnergyDecaysAfterAKick) {
   Rve rve = *packing_;
   const double rest = energy(rve);
   rve.velocities.assign(rve.positions.size(), {});
@@ -226,8 +217,7 @@ TEST_F(ReferencePacking, EnergyDecaysAfterAKick)
   EXPECT_NEAR(last, rest, 0.2 * rest);  // some contacts have slid: not the same state
 }
 
-TEST_F(ReferencePacking, FrictionSwitchHoldsTheNewCap)
-{
+TEST_F(ReferencePacking, FrictionSwitchHoldsTheNewCap) {
   Rve rve = *packing_;
   strain(rve, {1, 0.01, 0, 1}, {.steps = 1000, .hold_steps = 200});
   switch_friction(rve, 0.1);

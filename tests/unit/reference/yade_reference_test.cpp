@@ -1,5 +1,5 @@
-// One packing as Yade computed it, 700 grains at 100 kPa (tests/data/yade): the oracle rebuilds its contacts, stiffnesses,
-// stress and tangent grain by grain, and so does the engine.
+// One packing as Yade computed it, 700 grains at 100 kPa (tests/data/yade): the oracle rebuilds its contacts,
+// stiffnesses, stress and tangent grain by grain, and so does the engine.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,7 @@ namespace {
 const std::filesystem::path data = std::filesystem::path(VOUSSOIR_SOURCE_DIR) / "tests/data/yade";
 
 /// Rows of a CSV file of numbers, each by column name.
-std::vector<std::map<std::string, double>> read_table(const std::string& name)
-{
+std::vector<std::map<std::string, double>> read_table(const std::string& name) {
   std::ifstream file(data / name);
   std::string line, word;
   std::getline(file, line);
@@ -40,8 +39,7 @@ std::vector<std::map<std::string, double>> read_table(const std::string& name)
 }
 
 /// The `count` numbers that follow "key" in the meta file, brackets skipped.
-std::vector<double> read_meta(const std::string& key, std::size_t count)
-{
+std::vector<double> read_meta(const std::string& key, std::size_t count) {
   std::ifstream file(data / "CPS_D_meta.json");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::size_t at = text.find('"' + key + '"');
@@ -65,8 +63,7 @@ struct Record {
 
 class YadeReference : public testing::Test {
  protected:
-  static void SetUpTestSuite()
-  {
+  static void SetUpTestSuite() {
     const auto h = read_meta("hSize", 9);
     rve_.cell = {h.at(0), h.at(1), h.at(3), h.at(4)};
     rve_.material = {.modulus = read_meta("E", 1).at(0),
@@ -83,10 +80,14 @@ class YadeReference : public testing::Test {
     }
     for (auto& row : read_table("CPS_D_contacts.csv")) {
       const Vec2 n{row["nx"], row["ny"]};
-      const Record record{n,         row["overlap_m"],
-                          row["kn"], row["ks"],
-                          row["kr"], dot({row["Fn_x"], row["Fn_y"]}, n),
-                          -dot({row["Fs_x"], row["Fs_y"]}, left_of(n)), -row["Mz"],
+      const Record record{n,
+                          row["overlap_m"],
+                          row["kn"],
+                          row["ks"],
+                          row["kr"],
+                          dot({row["Fn_x"], row["Fn_y"]}, n),
+                          -dot({row["Fs_x"], row["Fs_y"]}, left_of(n)),
+                          -row["Mz"],
                           row["maxRollPl"]};
       const std::pair key{static_cast<int>(row["id1"]), static_cast<int>(row["id2"])};
       records_[key] = record;
@@ -100,20 +101,19 @@ class YadeReference : public testing::Test {
   static inline std::vector<Contact> contacts_;
 };
 
-TEST_F(YadeReference, FindsExactlyItsContacts)
-{
+TEST_F(YadeReference, FindsExactlyItsContacts) {
   ASSERT_EQ(rve_.positions.size(), 700u);
   ASSERT_EQ(records_.size(), static_cast<std::size_t>(read_meta("n_contacts", 1).at(0)));
   ASSERT_EQ(contacts_.size(), records_.size());
   for (const Contact& c : contacts_) EXPECT_TRUE(records_.contains({c.i, c.j})) << c.i << ' ' << c.j;
 }
 
-TEST_F(YadeReference, GeometryAndConstants)
-{
+TEST_F(YadeReference, GeometryAndConstants) {
   for (const Contact& c : contacts_) {
     const Record& yade = records_.at({c.i, c.j});
     const PairStiffness k = pair_stiffness(rve_.material, rve_.radii[c.i], rve_.radii[c.j]);
-    // The positions were written one step after the overlaps; that step moved a pair by up to 4.7e-10 m. Typical overlap: 4e-6 m.
+    // The positions were written one step after the overlaps; that step moved a pair by up to 4.7e-10 m. Typical
+    // overlap: 4e-6 m.
     EXPECT_NEAR(c.overlap, yade.overlap, 5e-10);
     EXPECT_NEAR(c.normal.x, yade.normal.x, 5e-7);
     EXPECT_NEAR(c.normal.y, yade.normal.y, 5e-7);
@@ -125,8 +125,7 @@ TEST_F(YadeReference, GeometryAndConstants)
   }
 }
 
-TEST_F(YadeReference, LoveWeberStressFromItsForces)
-{
+TEST_F(YadeReference, LoveWeberStressFromItsForces) {
   std::vector<Contact> with_its_forces = contacts_;
   for (Contact& c : with_its_forces) {
     const Record& yade = records_.at({c.i, c.j});
@@ -142,8 +141,7 @@ TEST_F(YadeReference, LoveWeberStressFromItsForces)
   EXPECT_NEAR(sigma.yy, expected.at(4), tolerance);
 }
 
-TEST_F(YadeReference, LoveWeberStressFromItsPositions)
-{
+TEST_F(YadeReference, LoveWeberStressFromItsPositions) {
   const Voigt sigma = stress(rve_);
   const auto expected = read_meta("stress", 9);
   const double tolerance = 2e-5 * read_meta("P0", 1).at(0);  // positions are one step younger, see above
@@ -152,8 +150,7 @@ TEST_F(YadeReference, LoveWeberStressFromItsPositions)
   EXPECT_NEAR(sigma[2], 0.5 * (expected.at(1) + expected.at(3)), tolerance);
 }
 
-TEST_F(YadeReference, Tangent)
-{
+TEST_F(YadeReference, Tangent) {
   // The file holds the upper triangle, Voigt order (xx, yy, zz, yz, zx, xy), minor symmetries imposed: xyxy is
   // sum k_t |b|^2 ((n t + t n)/2)_xy^2 + ..., to be multiplied by the engineering shear strain, as ours.
   const auto d6 = read_meta("tangent6x6", 36);
@@ -168,8 +165,7 @@ TEST_F(YadeReference, Tangent)
   }
 }
 
-TEST_F(YadeReference, EngineRebuildsStressAndTangent)
-{
+TEST_F(YadeReference, EngineRebuildsStressAndTangent) {
   kernels::RveBatch batch = kernels::clones(rve_, 1);
   std::vector<kernels::CommittedContact> rebuilt;
   kernels::committed_contacts(batch, 0, rebuilt);
@@ -202,8 +198,7 @@ TEST_F(YadeReference, EngineRebuildsStressAndTangent)
   for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(report.tangent[k], d6.at(place[k]), 1e-6 * d6.at(0)) << k;
 }
 
-TEST_F(YadeReference, IsAtRestForTheOracle)
-{
+TEST_F(YadeReference, IsAtRestForTheOracle) {
   // Yade reports 3.5e-6 by its own measure (largest resultant over mean contact force).
   Rve copy = rve_;
   EXPECT_LT(step(copy, Mat2{}, Mat2{}).unbalanced_ratio, 1e-4);
