@@ -6,17 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "fem/load_path.hpp"
 #include "fem/newton.hpp"
 #include "fem/relaxation.hpp"
 
 namespace voussoir::fem {
-
-/// The load as a function of the parameter, given by the stage.
-struct LoadPath {
-  std::function<Eigen::VectorXd(double parameter)> external_force;          ///< n_dofs [N/m]
-  std::function<Constraints(double from, double to)> prescribed_increment;  ///< [m]; always the same dofs
-  double reference_force = 0;                                               ///< as IncrementLoad::reference_force
-};
 
 struct StepOptions {
   double cut = 0.5;            ///< a failed step is tried again with this share

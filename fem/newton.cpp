@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "fem/anderson.hpp"
+#include "fem/noise.hpp"
 
 namespace voussoir::fem {
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "fem/load_stepper.hpp"
-
 namespace voussoir::fem {
 
 namespace {

@@ -6,11 +6,10 @@
 
 #include <vector>
 
+#include "fem/load_path.hpp"
 #include "fem/newton.hpp"
 
 namespace voussoir::fem {
-
-struct LoadPath;
 
 struct RelaxationOptions {
   int max_substeps = 100;      ///< 0: increments are never relaxed

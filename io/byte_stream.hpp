@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace voussoir::host {
+namespace voussoir::io {
 
 class ByteWriter {
  public:
@@ -44,7 +44,8 @@ class ByteWriter {
 class ByteReader {
  public:
   /// @param complaint what the std::runtime_error says that is thrown where the bytes end too early
-  explicit ByteReader(std::span<const std::byte> bytes, const char* complaint = "a message between ranks is too short")
+  explicit ByteReader(std::span<const std::byte> bytes,
+                      const char* complaint = "the bytes end before the last value that is read from them")
       : bytes_(bytes), complaint_(complaint) {}
 
   template <class T>
@@ -85,4 +86,4 @@ class ByteReader {
   const char* complaint_;
 };
 
-}  // namespace voussoir::host
+}  // namespace voussoir::io

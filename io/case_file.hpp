@@ -12,21 +12,14 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/input_error.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::io {
-
-/// What a user wrote wrong, as one line: "case.toml:12: ground.depth: must be positive, is -3 m". The place is
-/// "file:line", or "--set" for a value given on the command line.
-class InputError : public std::runtime_error {
- public:
-  InputError(const std::string& place, const std::string& key, const std::string& sentence);
-};
 
 /// Limits of a quantity, written like the user's own values ("1 kPa"); without a fallback the key is required.
 struct QuantityRule {

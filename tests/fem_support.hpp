@@ -9,6 +9,7 @@
 #include "fem/boundary.hpp"
 #include "fem/linear_elastic.hpp"
 #include "fem/load_stepper.hpp"
+#include "fem/mesh_rectangle.hpp"
 
 namespace voussoir::fem_support {
 

@@ -19,14 +19,16 @@ struct BiaxialPoint {
 
   kernels::Microstructure microstructure = {};  ///< as far as it was asked for; grain rotation since the test's start
 
-  [[nodiscard]] PlaneTensor stress() const { return {-stress_xx, -stress_yy, -stress_xy}; }  ///< tension positive [Pa]
-  [[nodiscard]] PlaneTensor strain() const {
+  [[nodiscard]] fem::PlaneTensor stress() const {
+    return {-stress_xx, -stress_yy, -stress_xy};
+  }  ///< tension positive [Pa]
+  [[nodiscard]] fem::PlaneTensor strain() const {
     return {-lateral_strain, -axial_strain, 0.0};
   }  ///< extension positive [-]
-  [[nodiscard]] double p() const { return mean_stress(stress()); }
-  [[nodiscard]] double q() const { return deviatoric_stress(stress()); }
-  [[nodiscard]] double volumetric_strain() const { return host::volumetric_strain(strain()); }
-  [[nodiscard]] double shear_strain() const { return deviatoric_strain(strain()); }
+  [[nodiscard]] double p() const { return fem::mean_stress(stress()); }
+  [[nodiscard]] double q() const { return fem::deviatoric_stress(stress()); }
+  [[nodiscard]] double volumetric_strain() const { return fem::volumetric_strain(strain()); }
+  [[nodiscard]] double shear_strain() const { return fem::deviatoric_strain(strain()); }
 };
 
 struct BiaxialCurve {

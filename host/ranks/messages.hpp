@@ -11,6 +11,9 @@
 
 namespace voussoir::host {
 
+using io::ByteReader;
+using io::ByteWriter;
+
 enum class Command : std::uint8_t {
   start,            ///< build's revision, threads -> host's name, threads
   make,             ///< recipe of the pool -> committed reports

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "fem/boundary.hpp"
+#include "fem/mesh_rectangle.hpp"
 #include "host/case/engine.hpp"
 #include "host/stages/make_material.hpp"
 #include "io/result_file.hpp"
@@ -137,7 +138,7 @@ SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increm
   const std::vector<double> now = fem::gauss_points(mesh, state.coordinates).volumes;
   const std::vector<double> first = fem::gauss_points(mesh, mesh.coordinates).volumes;
   double area = 0, first_area = 0;
-  PlaneTensor stress = PlaneTensor::Zero();
+  fem::PlaneTensor stress = fem::PlaneTensor::Zero();
   for (std::size_t p = 0; p < now.size(); ++p) {
     area += now[p];
     first_area += first[p];
@@ -145,8 +146,8 @@ SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increm
   }
   specimen.volumetric_strain = -std::log(area / first_area);
   stress /= area;
-  specimen.p = mean_stress(stress);
-  specimen.q = deviatoric_stress(stress);
+  specimen.p = fem::mean_stress(stress);
+  specimen.q = fem::deviatoric_stress(stress);
   return specimen;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "fem/boundary.hpp"
+#include "fem/mesh_rectangle.hpp"
 #include "host/stages/make_material.hpp"
 #include "host/stages/stages.hpp"
 #include "io/atomic_file.hpp"
@@ -27,8 +28,8 @@ struct ColumnRow {
 std::vector<ColumnRow> averaged_rows(const std::vector<fem::Stress>& stress) {
   std::vector<ColumnRow> rows;
   for (std::size_t p = 0; p + 1 < stress.size(); p += 2) {
-    const PlaneTensor mean = 0.5 * (stress[p] + stress[p + 1]);
-    rows.push_back({{-mean[1], mean[0] / mean[1]}, major_axis_from_vertical(mean)});
+    const fem::PlaneTensor mean = 0.5 * (stress[p] + stress[p + 1]);
+    rows.push_back({{-mean[1], mean[0] / mean[1]}, fem::major_axis_from_vertical(mean)});
   }
   return rows;
 }

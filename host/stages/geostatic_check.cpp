@@ -35,7 +35,7 @@ std::vector<Point> points_at_rest(const Ground& ground) {
     if ((x - axis).norm() <= soil.diameter) continue;  // within D/2 of the opening's edge
     const double depth = soil.height - x.y();
     points.push_back({depth, gauss.volumes[p], -stress[p][1], soil.unit_weight * depth + soil.surcharge,
-                      stress[p][0] / stress[p][1], std::abs(major_axis_from_vertical(stress[p]))});
+                      stress[p][0] / stress[p][1], std::abs(fem::major_axis_from_vertical(stress[p]))});
   }
   return points;
 }

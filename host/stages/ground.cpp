@@ -27,27 +27,27 @@ void add_stress_fields(std::vector<io::Field>& fields, const std::vector<fem::St
     for (int k = 0; k < 3; ++k) out[k] = stress[p][k];
   }));
   fields.push_back(
-      gauss_field("mean_stress", "Pa", 1, n, [&](std::size_t p, double* out) { *out = mean_stress(stress[p]); }));
+      gauss_field("mean_stress", "Pa", 1, n, [&](std::size_t p, double* out) { *out = fem::mean_stress(stress[p]); }));
   fields.push_back(gauss_field("deviatoric_stress", "Pa", 1, n,
-                               [&](std::size_t p, double* out) { *out = deviatoric_stress(stress[p]); }));
+                               [&](std::size_t p, double* out) { *out = fem::deviatoric_stress(stress[p]); }));
 }
 
-void add_strain_fields(std::vector<io::Field>& fields, const std::vector<PlaneTensor>& strain) {
+void add_strain_fields(std::vector<io::Field>& fields, const std::vector<fem::PlaneTensor>& strain) {
   const std::size_t n = strain.size();
   fields.push_back(gauss_field("strain", "-", 3, n, [&](std::size_t p, double* out) {
     for (int k = 0; k < 3; ++k) out[k] = strain[p][k];
   }));
   fields.push_back(gauss_field("volumetric_strain", "-", 1, n,
-                               [&](std::size_t p, double* out) { *out = volumetric_strain(strain[p]); }));
+                               [&](std::size_t p, double* out) { *out = fem::volumetric_strain(strain[p]); }));
   fields.push_back(gauss_field("deviatoric_strain", "-", 1, n,
-                               [&](std::size_t p, double* out) { *out = deviatoric_strain(strain[p]); }));
+                               [&](std::size_t p, double* out) { *out = fem::deviatoric_strain(strain[p]); }));
 }
 
 }  // namespace
 
 void begin_stage(Ground& ground) {
   ground.state = fem::begin_stage(ground.mesh, ground.mesh.coordinates, ground.material);
-  ground.strain.assign(static_cast<std::size_t>(ground.mesh.n_points()), PlaneTensor::Zero());
+  ground.strain.assign(static_cast<std::size_t>(ground.mesh.n_points()), fem::PlaneTensor::Zero());
 }
 
 std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd& reactions) {

@@ -17,8 +17,8 @@ struct Ground {
   const Case& input;
   const fem::Mesh& mesh;
   fem::MaterialBatch& material;
-  fem::MeshState state;             ///< of the current stage
-  std::vector<PlaneTensor> strain;  ///< sum of the increments' strains since the stage began, n_points [-]
+  fem::MeshState state;                  ///< of the current stage
+  std::vector<fem::PlaneTensor> strain;  ///< sum of the increments' strains since the stage began, n_points [-]
 };
 
 /// Displacements and strains start from zero on the original coordinates; the material keeps its state.

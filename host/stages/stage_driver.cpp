@@ -58,7 +58,7 @@ class StageRun {
     tally(step.report);
     for (std::size_t p = 0; p < ground_.strain.size(); ++p) {
       const fem::Gradient& h = step.increment.gradients[p];
-      ground_.strain[p] += PlaneTensor(h(0, 0), h(1, 1), 0.5 * (h(0, 1) + h(1, 0)));
+      ground_.strain[p] += fem::PlaneTensor(h(0, 0), h(1, 1), 0.5 * (h(0, 1) + h(1, 0)));
     }
     if (stage_.on_step) stage_.on_step(step);
     if (!step.target) return true;

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "fem/mesh_tunnel.hpp"
 #include "host/case/engine.hpp"
 #include "host/stages/make_material.hpp"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fem/mesh_rectangle.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

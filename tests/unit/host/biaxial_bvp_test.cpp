@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "fem/linear_elastic.hpp"
+#include "fem/mesh_rectangle.hpp"
 #include "host/stages/biaxial_bvp.hpp"
 
 namespace voussoir::host {

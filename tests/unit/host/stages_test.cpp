@@ -131,7 +131,7 @@ TEST(GroundCheckpoint, GivesBackTheSameBits) {
   rest.ground.state.start = 0.1;
   rest.ground.state.parameter = 0.7;
   rest.ground.state.step_limit = 0.01;
-  rest.ground.strain[5] = PlaneTensor(1, 2, 3);
+  rest.ground.strain[5] = fem::PlaneTensor(1, 2, 3);
   io::Checkpoint checkpoint;
   save(rest.ground, checkpoint);
 
