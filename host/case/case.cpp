@@ -113,17 +113,17 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   }
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
+  const bool on_teams = input.engine.backend == kernels::Backend::teams;
   const auto of_lanes = [](TangentChoice tangent) {
-    return tangent != TangentChoice::automatic && tangent != TangentChoice::contact;
+    return tangent.value_or(kernels::TangentKind::contact) != kernels::TangentKind::contact;
   };
-  if (input.engine.backend == EngineBackend::teams && of_lanes(input.newton.tangent)) {
+  if (on_teams && of_lanes(input.newton.tangent)) {
     throw root.table("newton").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
   }
-  if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::probe && of_lanes(input.probe.tangent)) {
+  if (on_teams && input.kind == CaseKind::probe && of_lanes(input.probe.tangent)) {
     throw root.table("probe").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
   }
-  if (input.engine.backend == EngineBackend::teams && input.kind == CaseKind::biaxial &&
-      input.output.microstructure.any()) {
+  if (on_teams && input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
     throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");
   }
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);

@@ -5,6 +5,8 @@
 #include <array>
 #include <stdexcept>
 
+#include "kernels/advance_rves.hpp"
+
 namespace voussoir::host {
 
 namespace {
@@ -27,7 +29,7 @@ const std::array<Preset, 3>& presets() {
       {{.preset = "standard"},
        "stress off by 2 % of p at 1 kPa, 0.3 % at 100 kPa, 0.04 % at 800 kPa (rms of 8 packings)"},
       {{.preset = "reference",
-        .precision = Precision::double_precision,
+        .precision = kernels::Precision::float64,
         .inertial_number = 3e-5,
         .hold_tolerance = 1e-4,
         .hold_cap = 10000,
@@ -89,9 +91,20 @@ std::string engine_note(const EngineCase& engine) {
   return note;
 }
 
-bool uses_engine(const Case& input) {
-  if (input.kind == CaseKind::probe) return true;
-  return runs_on_a_mesh(input.kind) && input.material == MaterialKind::grains;
+kernels::TangentKind tangent_kind(TangentChoice choice, const EngineCase& engine) {
+  const bool on_teams = kernels::takes_teams(engine.backend);
+  return choice.value_or(on_teams ? kernels::TangentKind::contact : kernels::TangentKind::elastic);
+}
+
+kernels::EngineSettings engine_settings(const EngineCase& engine) {
+  return {.precision = engine.precision,
+          .skin = engine.skin,
+          .hold_tolerance = engine.hold_tolerance,
+          .backend = engine.backend};
+}
+
+bool uses_engine(CaseKind kind, MaterialKind material) {
+  return kind == CaseKind::probe || (runs_on_a_mesh(kind) && material == MaterialKind::grains);
 }
 
 }  // namespace voussoir::host

@@ -126,13 +126,13 @@ PackingCase read_packing(const io::Table& table) {
 
 EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
   EngineCase engine = engine_preset(table.choice("preset", engine_preset_names(), EngineCase{}.preset));
-  const char* width = engine.precision == Precision::single_precision ? "float" : "double";
-  engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? Precision::single_precision
-                                                                                      : Precision::double_precision;
+  const char* width = engine.precision == kernels::Precision::float32 ? "float" : "double";
+  engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? kernels::Precision::float32
+                                                                                      : kernels::Precision::float64;
   const std::string backend = table.choice("backend", {"auto", "lanes", "teams"}, "auto");
-  engine.backend = backend == "lanes"   ? EngineBackend::lanes
-                   : backend == "teams" ? EngineBackend::teams
-                                        : EngineBackend::automatic;
+  engine.backend = backend == "lanes"   ? kernels::Backend::lanes
+                   : backend == "teams" ? kernels::Backend::teams
+                                        : kernels::Backend::automatic;
   read_quantity(table, "inertial_number", Dimension::none, engine.inertial_number,
                 {.at_least = "1e-6", .at_most = "1e-2"});
   read_quantity(table, "hold_tolerance", Dimension::none, engine.hold_tolerance,

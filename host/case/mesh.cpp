@@ -1,15 +1,14 @@
 // The tables of what has a mesh: [ground], [column], [gravity], [volume_loss], [biaxial_bvp], [newton], [output],
 // [elastic].
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "host/case/result_fields.hpp"
 #include "host/case/tables.hpp"
-#include "host/estimate/work.hpp"
 #include "io/units.hpp"
+#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::host {
 
@@ -87,12 +86,16 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
 }
 
 TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise) {
-  constexpr std::array<const char*, 5> names{"auto", "contact", "elastic", "static", "loading"};  // as the enumeration
-                                                                                                  // counts them
-  const std::string tangent = table.choice("tangent", {names.begin(), names.end()},
-                                           names[static_cast<std::size_t>(otherwise)]);
-  const auto found = std::find(names.begin(), names.end(), tangent);
-  return static_cast<TangentChoice>(found - names.begin());
+  using enum kernels::TangentKind;
+  const std::string automatic = "auto";
+  std::vector<std::string> names{automatic};
+  for (const kernels::TangentKind kind : {contact, elastic, static_, loading})
+    names.emplace_back(kernels::name_of(kind));
+  const std::string name = table.choice("tangent", names, otherwise ? kernels::name_of(*otherwise) : automatic);
+  for (const kernels::TangentKind kind : {contact, elastic, static_, loading}) {
+    if (name == kernels::name_of(kind)) return kind;
+  }
+  return {};
 }
 
 NewtonCase read_newton(const io::Table& table) {
@@ -125,7 +128,8 @@ OutputCase read_output(const io::Table& table) {
   output.microstructure = read_microstructure(table);
   output.fields = table.texts("fields", std::vector<std::string>{});
   for (const std::string& name : output.fields) {
-    if (components_of_field(name) == 0) throw table.error("fields", "\"" + name + "\" is no field, see io/FORMAT.md");
+    if (find_result_field(name) == nullptr)
+      throw table.error("fields", "\"" + name + "\" is no field, see io/FORMAT.md");
   }
   return output;
 }

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <optional>
 
+#include "host/case/engine.hpp"
 #include "host/case/result_fields.hpp"
 #include "host/element_tests/biaxial.hpp"
-#include "host/material/rve_pool.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/record/provenance.hpp"
 #include "io/result_file.hpp"
@@ -30,18 +30,14 @@ io::TableColumn column(const char* name, const char* unit, const std::vector<Bia
   return out;
 }
 
-/// What every RVE of a mesh has, and what was asked for besides.
+/// What of a contact network every RVE of a mesh has, and what was asked for besides.
 void add_microstructure(const BiaxialCurve& curve, const kernels::MicrostructureRequest& wanted,
                         std::vector<io::TableColumn>& table) {
   if (!wanted.any()) return;
-  const auto& points = curve.points;
-  table.push_back(
-      column("coordination", "-", points, [](const BiaxialPoint& x) { return x.microstructure.coordination; }));
-  table.push_back(
-      column("grain_rotation", "rad", points, [](const BiaxialPoint& x) { return x.microstructure.grain_rotation; }));
-  for (const MicrostructureField& field : microstructure_fields(wanted)) {
-    table.push_back(
-        column(field.name, field.unit, points, [&](const BiaxialPoint& x) { return field.value(x.microstructure); }));
+  for (const ResultField& field : result_field_table) {
+    if (field.of_network == nullptr || !is_asked_for(field, wanted)) continue;
+    table.push_back(column(field.name, field.unit, curve.points,
+                           [&](const BiaxialPoint& x) { return field.of_network(x.microstructure); }));
   }
 }
 
@@ -66,9 +62,9 @@ std::vector<io::TableColumn> curve_table(const BiaxialCurve& curve, const kernel
 std::vector<PackedRve> packings_of(const Case& input, const PackingNote& note) {
   std::vector<PackedRve> all;
   for (const double pressure : input.biaxial.pressures) {
-    Case at_pressure = input;
-    at_pressure.packing.pressure = pressure;
-    for (PackedRve& rve : obtain_packings(at_pressure, seeds_of(input.packing), note, Bias::left))
+    PackingCase recipe = input.packing;
+    recipe.pressure = pressure;
+    for (PackedRve& rve : obtain_packings(input.soil, recipe, seeds_of(recipe), note, Bias::left))
       all.push_back(std::move(rve));
   }
   return all;
@@ -162,11 +158,9 @@ int run_biaxial(const Case& input, const RunOptions& options) {
   if (options.resume) std::printf("biaxial tests run all at once and have no checkpoint: they begin anew\n");
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const std::vector<PackedRve> rves = packings_of(input, note);
-  const kernels::EngineSettings settings{
-      .precision = engine_precision(input.engine), .skin = input.engine.skin, .backend = engine_backend(input.engine)};
   const BiaxialCase& test = input.biaxial;
-  const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings,
-                                    input.output.microstructure);
+  const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
+                                    engine_settings(input.engine), input.output.microstructure);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});
   Summary summary;
   bool failed = false;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/material/rve_pool.hpp"
+#include "host/case/engine.hpp"
 
 namespace voussoir::host {
 
@@ -16,11 +16,11 @@ namespace {
 std::vector<PackedRve> packings_of(const Case& input, const ParameterSet& set) {
   const std::vector<std::int64_t> seeds = seeds_of(input.packing);
   std::vector<PackedRve> all;
-  Case one = input;
-  one.soil = with_parameters(input.soil, set);
+  const SoilCase soil = with_parameters(input.soil, set);
+  PackingCase recipe = input.packing;
   for (const double pressure : input.biaxial.pressures) {
-    one.packing.pressure = pressure;
-    std::vector<PackedRve> at_pressure = obtain_packings(one, seeds, {}, Bias::left);
+    recipe.pressure = pressure;
+    std::vector<PackedRve> at_pressure = obtain_packings(soil, recipe, seeds, {}, Bias::left);
     if (at_pressure.size() != seeds.size()) {
       throw std::runtime_error(fmt::format("{} of {} packings do not come to rest at {:.4g} kPa",
                                            seeds.size() - at_pressure.size(), seeds.size(), pressure * 1e-3));
@@ -117,10 +117,9 @@ std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet>
       if (note) note(out[k].fault);
     }
   }
-  const kernels::EngineSettings settings{
-      .precision = engine_precision(input.engine), .skin = input.engine.skin, .backend = engine_backend(input.engine)};
   const BiaxialCase& test = input.biaxial;
-  std::vector<BiaxialCurve> curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings);
+  std::vector<BiaxialCurve> curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
+                                                   engine_settings(input.engine));
   for (std::size_t c = 0; c < curves.size(); ++c) {
     SetTests& of = out[owner[c]];
     of.strengths.push_back(strength_of(curves[c], test.window));

@@ -122,7 +122,11 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
   const std::vector<Probe> all = probes(input.probe.strain);
   const std::vector<double> scale = scales(input.probe.replicas);
   const std::size_t n = all.size() * scale.size();
-  RvePool pool(rve, {.engine = input.engine, .tangent = input.probe.tangent, .tangent_strain = input.probe.strain}, n);
+  RvePool pool(rve,
+               {.engine = input.engine,
+                .tangent = tangent_kind(input.probe.tangent, input.engine),
+                .tangent_strain = input.probe.strain},
+               n);
   std::vector<fem::Gradient> gradients;
   for (const double factor : scale) {
     for (const Probe& probe : all) gradients.emplace_back(factor * probe.gradient);
@@ -150,12 +154,12 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
 
 /// The packings that are probed; several are not compared with each other, so their bias is not measured.
 std::vector<PackedRve> packings_to_probe(const Case& input) {
-  Case at_pressure = input;
-  at_pressure.packing.pressure = input.probe.pressure;
-  if (input.packing.seeds.empty() || !input.packing.file.empty()) return {choose_packing(at_pressure, print)};
+  PackingCase recipe = input.packing;
+  recipe.pressure = input.probe.pressure;
+  if (recipe.seeds.empty() || !recipe.file.empty()) return {choose_packing(input.soil, recipe, print)};
   std::vector<PackedRve> rves;
-  for (const std::int64_t seed : input.packing.seeds)
-    rves.push_back(obtain_packings(at_pressure, std::span(&seed, 1), print).front());
+  for (const std::int64_t seed : recipe.seeds)
+    rves.push_back(obtain_packings(input.soil, recipe, std::span(&seed, 1), print).front());
   return rves;
 }
 

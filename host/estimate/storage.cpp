@@ -2,7 +2,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
 
 #include "host/case/result_fields.hpp"
 #include "host/estimate/work.hpp"
@@ -11,31 +10,6 @@
 
 namespace voussoir::host {
 namespace {
-
-struct FieldSize {
-  const char* name;
-  int components;
-  bool nodal = false;
-  bool of_grains = false;
-};
-
-/// The fields of host/ground.cpp and host/rve_pool.cpp; a test holds this list to what a run writes.
-constexpr std::array<FieldSize, 16> fields{{{"displacement", 2, true},
-                                            {"reaction", 2, true},
-                                            {"gauss_point_coordinates", 2},
-                                            {"stress", 3},
-                                            {"mean_stress", 1},
-                                            {"deviatoric_stress", 1},
-                                            {"strain", 3},
-                                            {"volumetric_strain", 1},
-                                            {"deviatoric_strain", 1},
-                                            {"void_ratio", 1, false, true},
-                                            {"grain_rotation", 1, false, true},
-                                            {"coordination", 1, false, true},
-                                            {"rve_status", 1, false, true},
-                                            {"unbalanced_ratio", 1, false, true},
-                                            {"inertial_number", 1, false, true},
-                                            {"steps", 1, false, true}}};
 
 // Measured: 984 RVEs of 300 grains took 179.5 MB, checkpoints of 18.94 MB and result files of 278 kB; 3344 RVEs of 700
 // grains 915.8 MB, 148.1 MB and, with five whole RVEs, 1.33 MB.
@@ -46,23 +20,19 @@ constexpr double contacts_a_grain = 1.93;
 constexpr double nodes_a_point = 0.79;  ///< of the study's meshes: 3.16 nodes an element
 constexpr double file_overhead = 30e3;  ///< attributes and groups of a result file
 
-int microstructure_components(const kernels::MicrostructureRequest& request) {
-  return request.any() ? static_cast<int>(microstructure_fields(request).size()) : 0;
-}
-
-bool is_wanted(const OutputCase& output, const std::string& name) {
-  return output.fields.empty() || std::find(output.fields.begin(), output.fields.end(), name) != output.fields.end();
+bool is_wanted(const OutputCase& output, const ResultField& field) {
+  const auto& names = output.fields;
+  return is_asked_for(field, output.microstructure) &&
+         (names.empty() || std::find(names.begin(), names.end(), field.name) != names.end());
 }
 
 /// ParaView's copies included: vectors with a third component, means over the four points of an element.
 double result_file_bytes(const Case& input, double points, double nodes) {
   double bytes = file_overhead;
-  for (const FieldSize& field : fields) {
-    if (!is_wanted(input.output, field.name) || (field.of_grains && input.material != MaterialKind::grains)) continue;
-    bytes += 8.0 * field.components * (field.nodal ? 2.5 * nodes : 1.25 * points);
+  for (const ResultField& field : result_field_table) {
+    if (!is_wanted(input.output, field) || (field.of_grains && input.material != MaterialKind::grains)) continue;
+    bytes += 8.0 * field.components * (field.location == io::FieldLocation::node ? 2.5 * nodes : 1.25 * points);
   }
-  if (input.output.fields.empty())
-    bytes += 8.0 * 1.25 * points * microstructure_components(input.output.microstructure);
   const double snapshot = 32.0 + 48.0 * contacts_a_grain;  // bytes a grain
   return bytes + static_cast<double>(input.output.rves.size()) * input.packing.grains * snapshot;
 }
@@ -73,16 +43,6 @@ std::string bytes_text(double bytes) {
 }
 
 }  // namespace
-
-int components_of_field(const std::string& name) {
-  for (const FieldSize& field : fields) {
-    if (name == field.name) return field.components;
-  }
-  for (const MicrostructureField& field : microstructure_fields({true, true, true})) {
-    if (name == field.name) return 1;
-  }
-  return 0;
-}
 
 void add_storage(const Case& input, CaseSize& size) {
   const auto points = static_cast<double>(size.points);

@@ -31,9 +31,6 @@ void add_storage(const Case& input, CaseSize& size);
 /// Throws io::InputError where output.rves names a point that the mesh has not.
 void check_snapshot_points(const Case& input, const CaseSize& size);
 
-/// Numbers at each point or node of a field of result files; 0 where there is none of that name.
-[[nodiscard]] int components_of_field(const std::string& name);
-
 /// Lines for `check`: points, increments, work, memory and disk.
 [[nodiscard]] std::vector<std::string> describe(const Case& input, const CaseSize& size);
 

@@ -68,30 +68,29 @@ std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const Packe
   return curves;
 }
 
-std::vector<std::int64_t> seeds_of(const PackingCase& packing) {
-  std::vector<std::int64_t> seeds = packing.seeds;
-  for (int k = 0; packing.seeds.empty() && k < packing.candidates; ++k) seeds.push_back(packing.seed + k);
+std::vector<std::int64_t> seeds_of(const PackingCase& recipe) {
+  std::vector<std::int64_t> seeds = recipe.seeds;
+  for (int k = 0; recipe.seeds.empty() && k < recipe.candidates; ++k) seeds.push_back(recipe.seed + k);
   return seeds;
 }
 
 namespace {
 
-void keep(const Case& input, const PackedRve& rve) {
-  const std::string recipe = recipe_text(input.soil, input.packing, rve.seed);
-  const std::string fingerprint = io::fingerprint_of(recipe);
-  std::filesystem::create_directories(input.packing.folder);
-  io::save_packing(io::packing_path(input.packing.folder, fingerprint), stored_packing(rve, recipe, fingerprint));
+void keep(const SoilCase& soil, const PackingCase& recipe, const PackedRve& rve) {
+  const std::string text = recipe_text(soil, recipe, rve.seed);
+  const std::string fingerprint = io::fingerprint_of(text);
+  std::filesystem::create_directories(recipe.folder);
+  io::save_packing(io::packing_path(recipe.folder, fingerprint), stored_packing(rve, text, fingerprint));
 }
 
-std::optional<PackedRve> find(const Case& input, std::int64_t seed) {
-  const auto file = io::find_packing(input.packing.folder,
-                                     io::fingerprint_of(recipe_text(input.soil, input.packing, seed)));
-  auto rve = file ? restored_packing(*file, input.soil) : std::nullopt;
-  return rve && rve->packing.size() == input.packing.grains ? rve : std::nullopt;
+std::optional<PackedRve> find(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
+  const auto file = io::find_packing(recipe.folder, io::fingerprint_of(recipe_text(soil, recipe, seed)));
+  auto rve = file ? restored_packing(*file, soil) : std::nullopt;
+  return rve && rve->packing.size() == recipe.grains ? rve : std::nullopt;
 }
 
 /// Bias of the packings that have none yet; kept with them.
-void measure_bias(const Case& input, std::vector<PackedRve>& rves) {
+void measure_bias(const SoilCase& soil, const PackingCase& recipe, std::vector<PackedRve>& rves) {
   std::vector<PackedRve> unknown;
   for (const PackedRve& rve : rves) {
     if (std::isnan(rve.bias)) unknown.push_back(rve);
@@ -101,26 +100,26 @@ void measure_bias(const Case& input, std::vector<PackedRve>& rves) {
     for (std::size_t k = 0; k < unknown.size(); ++k) {
       if (unknown[k].seed != rve.seed) continue;
       rve.bias = bias_of(curves[k]);
-      keep(input, rve);
+      keep(soil, recipe, rve);
     }
   }
 }
 
 }  // namespace
 
-std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note,
-                                       Bias bias) {
-  if (input.packing.file.extension() == ".h5") {
-    auto rve = restored_packing(io::load_packing(input.packing.file), input.soil);
-    if (!rve) throw std::runtime_error(input.packing.file.string() + " is no packing of this program's grains");
+std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& recipe,
+                                       std::span<const std::int64_t> seeds, const PackingNote& note, Bias bias) {
+  if (recipe.file.extension() == ".h5") {
+    auto rve = restored_packing(io::load_packing(recipe.file), soil);
+    if (!rve) throw std::runtime_error(recipe.file.string() + " is no packing of this program's grains");
     if (note) note("packing read:  " + table_line(*rve));
     return {std::move(*rve)};
   }
-  if (!input.packing.file.empty()) {
-    PackedRve rve = settle_foreign_packing(input.soil, input.packing);
+  if (!recipe.file.empty()) {
+    PackedRve rve = settle_foreign_packing(soil, recipe);
     if (rve.status != kernels::RveStatus::converged) {
       throw std::runtime_error(
-          fmt::format("{} does not come to rest: {}", input.packing.file.string(), kernels::name_of(rve.status)));
+          fmt::format("{} does not come to rest: {}", recipe.file.string(), kernels::name_of(rve.status)));
     }
     if (note)
       note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe do not count)");
@@ -128,11 +127,11 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
   }
   std::vector<std::int64_t> missing;
   for (const std::int64_t seed : seeds) {
-    if (!find(input, seed)) missing.push_back(seed);
+    if (!find(soil, recipe, seed)) missing.push_back(seed);
   }
-  for (const PackedRve& rve : make_packings(input.soil, input.packing, missing)) {
+  for (const PackedRve& rve : make_packings(soil, recipe, missing)) {
     if (rve.status == kernels::RveStatus::converged) {
-      keep(input, rve);
+      keep(soil, recipe, rve);
     } else if (note) {
       note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
                        kernels::name_of(rve.status)));
@@ -140,10 +139,10 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
   }
   std::vector<PackedRve> out;
   for (const std::int64_t seed : seeds) {
-    if (auto rve = find(input, seed)) out.push_back(std::move(*rve));
+    if (auto rve = find(soil, recipe, seed)) out.push_back(std::move(*rve));
   }
   if (out.empty()) throw std::runtime_error("no packing of this recipe comes to rest");
-  if (bias == Bias::measured && out.size() > 1) measure_bias(input, out);
+  if (bias == Bias::measured && out.size() > 1) measure_bias(soil, recipe, out);
   for (const PackedRve& rve : out) {
     const bool made = std::find(missing.begin(), missing.end(), rve.seed) != missing.end();
     if (note) note((made ? "packing made:  " : "packing found: ") + table_line(rve));
@@ -151,8 +150,8 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
   return out;
 }
 
-PackedRve choose_packing(const Case& input, const PackingNote& note) {
-  std::vector<PackedRve> all = obtain_packings(input, seeds_of(input.packing), note);
+PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note) {
+  std::vector<PackedRve> all = obtain_packings(soil, recipe, seeds_of(recipe), note);
   if (all.size() == 1) return std::move(all.front());
   const auto less_biased = [](const PackedRve& a, const PackedRve& b) {
     return a.bias != b.bias ? a.bias < b.bias : a.seed < b.seed;

@@ -48,7 +48,7 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
 int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
   const Case input = load_case(case_file, overrides);
   std::printf("%s\n", input.resolved.c_str());
-  if (uses_engine(input)) std::printf("# %s\n", engine_note(input.engine).c_str());
+  if (uses_engine(input.kind, input.material)) std::printf("# %s\n", engine_note(input.engine).c_str());
   const CaseSize size = case_size(input);
   check_snapshot_points(input, size);
   for (const std::string& line : describe(input, size)) std::printf("# %s\n", line.c_str());

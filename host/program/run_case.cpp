@@ -23,7 +23,7 @@ namespace {
 RunStatus run_column_case(const Case& input, const RunOptions& options) {
   std::filesystem::create_directories(options.folder);
   RunLog log(options.folder / "run.log", options.resume);
-  if (uses_engine(input)) log.line(engine_note(input.engine));
+  if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
   const ColumnResult column = run_column(input, options, log);
   for (const std::string& line : totals_table(column.totals)) log.line(line);
   return column.status;

@@ -161,8 +161,8 @@ RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
     log.line(fmt::format("{}: finished already, nothing to do", options.folder.string()));
     return RunStatus::finished;
   }
-  if (uses_engine(input)) log.line(engine_note(input.engine));
-  Case at_pressure = input;
+  if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
+  MaterialCase at_pressure = material_case(input);
   at_pressure.packing.pressure = test.pressure;
   const auto material = make_material(at_pressure, static_cast<std::size_t>(mesh.n_points()),
                                       [&log](const std::string& text) { log.line(text); });

@@ -109,7 +109,7 @@ ColumnResult run_column(const Case& input, const RunOptions& options, RunLog& lo
   std::vector<ColumnRow> rows;
   if (const io::Checkpoint* checkpoint = recorder.resumed()) rows = rows_from(*checkpoint);
   if (!recorder.finished()) {
-    const auto material = make_material(input, static_cast<std::size_t>(mesh.n_points()),
+    const auto material = make_material(material_case(input), static_cast<std::size_t>(mesh.n_points()),
                                         [&log](const std::string& text) { log.line(text); });
     Ground ground{input, mesh, *material, {}, {}};
     if (const io::Checkpoint* checkpoint = recorder.resumed()) {

@@ -4,42 +4,45 @@
 #include <utility>
 
 #include "fem/gauss_points.hpp"
+#include "host/case/result_fields.hpp"
 
 namespace voussoir::host {
 namespace {
 
-using io::FieldLocation;
-
 std::vector<double> flat(const Eigen::Ref<const Eigen::VectorXd>& v) { return {v.data(), v.data() + v.size()}; }
 
-/// A Gauss-point field of `components` numbers; `value(point, out)` fills one row.
+io::Field field_of(const ResultField& row, std::vector<double> values) {
+  return {row.name, row.unit, row.location, row.components, std::move(values)};
+}
+
+/// A Gauss-point field; `value(point, out)` fills the components of one point.
 template <class Value>
-io::Field gauss_field(const char* name, const char* unit, int components, std::size_t points, const Value& value) {
-  io::Field field{name, unit, FieldLocation::gauss, components, {}};
-  field.values.resize(points * static_cast<std::size_t>(components));
-  for (std::size_t p = 0; p < points; ++p) value(p, field.values.data() + p * static_cast<std::size_t>(components));
-  return field;
+io::Field gauss_field(const ResultField& row, std::size_t points, const Value& value) {
+  const auto width = static_cast<std::size_t>(row.components);
+  std::vector<double> values(points * width);
+  for (std::size_t p = 0; p < points; ++p) value(p, values.data() + p * width);
+  return field_of(row, std::move(values));
 }
 
 void add_stress_fields(std::vector<io::Field>& fields, const std::vector<fem::Stress>& stress) {
   const std::size_t n = stress.size();
-  fields.push_back(gauss_field("stress", "Pa", 3, n, [&](std::size_t p, double* out) {
+  fields.push_back(gauss_field(result_field("stress"), n, [&](std::size_t p, double* out) {
     for (int k = 0; k < 3; ++k) out[k] = stress[p][k];
   }));
   fields.push_back(
-      gauss_field("mean_stress", "Pa", 1, n, [&](std::size_t p, double* out) { *out = fem::mean_stress(stress[p]); }));
-  fields.push_back(gauss_field("deviatoric_stress", "Pa", 1, n,
+      gauss_field(result_field("mean_stress"), n, [&](std::size_t p, double* out) { *out = fem::mean_stress(stress[p]); }));
+  fields.push_back(gauss_field(result_field("deviatoric_stress"), n,
                                [&](std::size_t p, double* out) { *out = fem::deviatoric_stress(stress[p]); }));
 }
 
 void add_strain_fields(std::vector<io::Field>& fields, const std::vector<fem::PlaneTensor>& strain) {
   const std::size_t n = strain.size();
-  fields.push_back(gauss_field("strain", "-", 3, n, [&](std::size_t p, double* out) {
+  fields.push_back(gauss_field(result_field("strain"), n, [&](std::size_t p, double* out) {
     for (int k = 0; k < 3; ++k) out[k] = strain[p][k];
   }));
-  fields.push_back(gauss_field("volumetric_strain", "-", 1, n,
+  fields.push_back(gauss_field(result_field("volumetric_strain"), n,
                                [&](std::size_t p, double* out) { *out = fem::volumetric_strain(strain[p]); }));
-  fields.push_back(gauss_field("deviatoric_strain", "-", 1, n,
+  fields.push_back(gauss_field(result_field("deviatoric_strain"), n,
                                [&](std::size_t p, double* out) { *out = fem::deviatoric_strain(strain[p]); }));
 }
 
@@ -53,16 +56,16 @@ void begin_stage(Ground& ground) {
 std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd& reactions) {
   const auto n = static_cast<std::size_t>(ground.mesh.n_points());
   std::vector<io::Field> fields;
-  fields.push_back({"displacement", "m", FieldLocation::node, 2, flat(ground.state.displacement)});
-  if (reactions.size() > 0) fields.push_back({"reaction", "N/m", FieldLocation::node, 2, flat(reactions)});
+  fields.push_back(field_of(result_field("displacement"), flat(ground.state.displacement)));
+  if (reactions.size() > 0) fields.push_back(field_of(result_field("reaction"), flat(reactions)));
   const fem::GaussPoints points = fem::gauss_points(ground.mesh, ground.state.coordinates);
-  fields.push_back({"gauss_point_coordinates", "m", FieldLocation::gauss, 2, flat(points.positions.reshaped())});
+  fields.push_back(field_of(result_field("gauss_point_coordinates"), flat(points.positions.reshaped())));
   std::vector<fem::Stress> stress(n);
   ground.material.committed(stress, {});
   add_stress_fields(fields, stress);
   add_strain_fields(fields, ground.strain);
   for (fem::PointField& field : ground.material.fields()) {
-    fields.push_back({std::move(field.name), std::move(field.unit), FieldLocation::gauss, field.components,
+    fields.push_back({std::move(field.name), std::move(field.unit), io::FieldLocation::gauss, field.components,
                       std::move(field.values)});
   }
   return fields;

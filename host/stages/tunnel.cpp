@@ -33,7 +33,7 @@ RunStatus run_stages(const Case& input, const RunOptions& options, const fem::Me
 
   recorder.set_table("k0", k0_columns(column.k0));
 
-  const auto material = make_material(input, static_cast<std::size_t>(mesh.n_points()),
+  const auto material = make_material(material_case(input), static_cast<std::size_t>(mesh.n_points()),
                                       [&log](const std::string& text) { log.detail(text); });
   Ground ground{input, mesh, *material, {}, {}};
   if (const io::Checkpoint* checkpoint = recorder.resumed()) {
@@ -64,7 +64,7 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   }
   log.line(fmt::format("{}: {} elements, {} points of {}", input.name, mesh.n_elements(), mesh.n_points(),
                        to_string(input.material)));
-  if (uses_engine(input)) log.line(engine_note(input.engine));
+  if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
 
   std::vector<StageTotals> totals;
   const RunStatus status = run_stages(input, options, mesh, recorder, totals);

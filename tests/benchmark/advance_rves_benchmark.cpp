@@ -37,7 +37,7 @@ host::PackedRve packed(host::Case input) {
   input.packing.pressure = pressure;
   input.packing.folder = "out/benchmark";  // where tools/bench_peers looks for it
   const std::int64_t seed[] = {1};
-  return host::obtain_packings(input, seed).front();
+  return host::obtain_packings(input.soil, input.packing, seed).front();
 }
 
 /// CPS_D: 700 grains.

@@ -221,7 +221,7 @@ TEST_F(DeferringPool, KeepsToItsBound) {
 /// Teams run some of the RVEs as lanes do.
 TEST_F(DeferringPool, HasTheSameBitsInTeams) {
   EngineCase with_teams = engine(1e-2);
-  with_teams.backend = EngineBackend::teams;
+  with_teams.backend = kernels::Backend::teams;
   RvePool lanes(rve_, {engine(1e-2)}, 2), teams(rve_, {with_teams}, 2);
   for (const auto& second : {tiny, large, large}) {
     const fem::BatchReport by_lanes = step(lanes, {large, second});
