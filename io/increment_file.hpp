@@ -13,7 +13,6 @@ void for_each_number(Info& info, Visit&& visit) {
   visit("index", "-", info.index);
   visit("stage_index", "-", info.stage_index);
   visit("load_parameter", "-", info.load_parameter);
-  visit("volume_loss", "-", info.volume_loss);
   visit("converged", "-", info.converged);
   visit("iterations", "-", info.iterations);
   visit("evaluations", "-", info.evaluations);

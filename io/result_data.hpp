@@ -57,23 +57,24 @@ struct Quantity {
   double value = 0;
   std::string unit = "-";
 };
+using Quantities = std::map<std::string, Quantity>;  ///< by name
 
-/// Row of the table of increments, and attributes of the increment's own file.
+/// Row of the table of increments, and attributes of the increment's own file: what every increment has, whatever made
+/// it.
 struct IncrementInfo {
   int index = 0;              ///< number of the file, counted through all stages
   std::string stage = {};     ///< "column", "gravity", "volume_loss", ...
   int stage_index = 0;        ///< number within the stage
   double load_parameter = 0;  ///< of the stage: load factor of gravity, V_l of the volume loss [-]
-  double volume_loss = 0;     ///< V_l [-]
   bool converged = false;
   int iterations = 0;
   int evaluations = 0;  ///< calls of the material batch, cut tries included
   int cuts = 0;         ///< times the increment was halved
   double residual = 0;  ///< ||R_free|| relative to its reference [-]
   double particle_steps = 0;
-  double wall_s = 0;                           ///< [s]
-  std::map<std::string, Quantity> extra = {};  ///< further columns
-  std::vector<double> residual_history = {};   ///< relative residual of each iterate [-]
+  double wall_s = 0;                          ///< [s]
+  Quantities extra = {};                      ///< columns that only some kinds of runs have
+  std::vector<double> residual_history = {};  ///< relative residual of each iterate [-]
 };
 
 /// One column of a named table of run.h5.

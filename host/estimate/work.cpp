@@ -6,7 +6,7 @@
 
 #include "host/element_tests/calibration.hpp"
 #include "host/packing/packings.hpp"
-#include "host/stages/stages.hpp"
+#include "host/stages/ground_loads.hpp"
 #include "host/stages/tunnel.hpp"
 
 namespace voussoir::host {
@@ -115,7 +115,7 @@ CaseSize search_size(const Case& input) {
 CaseSize ground_size(const Case& input) {
   CaseSize size;
   const bool with_tunnel = input.kind == CaseKind::tunnel;
-  const std::size_t gravity = gravity_targets(input).size();
+  const std::size_t gravity = gravity_targets(input.ground, input.gravity).size();
   const auto loss = with_tunnel ? static_cast<std::size_t>(input.volume_loss.increments) : std::size_t{0};
   size.column_points = static_cast<std::size_t>(4 * input.column.elements);
   size.points = with_tunnel ? static_cast<std::size_t>(tunnel_mesh(input.ground).n_points()) : size.column_points;

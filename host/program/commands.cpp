@@ -33,7 +33,7 @@ void print_increments(const std::vector<io::IncrementInfo>& increments) {
 int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides, RunOptions options) {
   const Case input = load_case(case_file, overrides);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
-  check_folder(options, input);
+  check_folder(options, input.fingerprint);
   Kokkos::InitializationSettings settings;
   settings.set_disable_warnings(true);
   if (options.threads > 0) settings.set_num_threads(options.threads);

@@ -1,11 +1,10 @@
-// Ground to checkpoint and back.
+#include "host/stages/ground_checkpoint.hpp"
+
 #include <array>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <string>
-
-#include "host/stages/ground.hpp"
 
 namespace voussoir::host {
 namespace {
