@@ -7,11 +7,11 @@
 
 namespace voussoir::fem {
 
-/// The load as a function of the parameter, given by the stage.
+/// The load as a function of the load parameter. The stage gives it.
 struct LoadPath {
   std::function<Eigen::VectorXd(double parameter)> external_force;          ///< n_dofs [N/m]
-  std::function<Constraints(double from, double to)> prescribed_increment;  ///< [m]; always the same dofs
-  double reference_force = 0;                                               ///< as IncrementLoad::reference_force
+  std::function<Constraints(double from, double to)> prescribed_increment;  ///< [m]; the same dofs in every increment
+  double reference_force = 0;                                               ///< as IncrementLoad::reference_force [N/m]
 };
 
 }  // namespace voussoir::fem

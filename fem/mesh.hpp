@@ -40,8 +40,8 @@ struct Mesh {
   [[nodiscard]] const std::vector<int>& node_set(const std::string& name) const;
 };
 
-/// Area between a boundary chain and the line x = 0 (or of a closed chain), from the Q8 edges themselves [m2]; positive
-/// where the soil is inside. For the opening it is minus the area of the (half) hole.
+/// Area between a boundary chain and the line x = 0, or within a closed chain, integrated along the curved edges [m2].
+/// It is positive where the soil is inside, so that the opening's is minus the area of its (half) hole.
 [[nodiscard]] double area_left_of(const Coordinates& coordinates, const std::vector<Edge>& chain);
 
 }  // namespace voussoir::fem

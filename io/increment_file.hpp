@@ -1,5 +1,6 @@
 #pragma once
-/// One increment's HDF5 file, and its XDMF grid. Private to io; FORMAT.md describes the contents.
+/// The HDF5 file of one increment, and its XDMF grid. FORMAT.md describes the contents. result_file.hpp is the
+/// interface for other folders.
 
 #include "io/result_file.hpp"
 

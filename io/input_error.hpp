@@ -6,7 +6,7 @@
 
 namespace voussoir::io {
 
-/// What a user wrote wrong, as one line: "case.toml:12: ground.depth: must be positive, is -3 m". The place is
+/// A mistake of the user, as one line: "case.toml:12: ground.depth: must be positive, is -3 m". The place is
 /// "file:line", or "--set" for a value given on the command line.
 class InputError : public std::runtime_error {
  public:

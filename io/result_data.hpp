@@ -23,7 +23,7 @@ struct MeshData {
   [[nodiscard]] std::size_t elements() const { return connectivity.size() / 8; }
 };
 
-/// Where a run comes from; what no one can know stays "unknown".
+/// Where a run comes from. Values that nobody has set stay "unknown".
 struct Provenance {
   std::string case_kind = "unknown";
   std::string input = {};        ///< the resolved case, TOML
@@ -68,8 +68,8 @@ struct IncrementInfo {
   double load_parameter = 0;  ///< of the stage: load factor of gravity, V_l of the volume loss [-]
   bool converged = false;
   int iterations = 0;
-  int evaluations = 0;  ///< calls of the material batch, cut tries included
-  int cuts = 0;         ///< times the increment was halved
+  int evaluations = 0;  ///< calls of the material batch, those of tries that were cut included
+  int cuts = 0;         ///< tries that did not converge and were cut
   double residual = 0;  ///< ||R_free|| relative to its reference [-]
   double particle_steps = 0;
   double wall_s = 0;                          ///< [s]
@@ -85,7 +85,7 @@ struct TableColumn {
 };
 using Tables = std::map<std::string, std::vector<TableColumn>>;
 
-/// One RVE in full, for pictures and fabric analysis.
+/// All grains and contacts of one RVE, for pictures and the analysis of its fabric.
 struct RveSnapshot {
   std::string name = {};                            ///< name of the group, e.g. "element_0012_point_3"
   std::array<double, 4> cell = {};                  ///< [a_x b_x; a_y b_y] row by row, cell vectors are columns [m]

@@ -14,11 +14,11 @@ namespace voussoir::io {
 /// Writes the results of one run. All members throw std::runtime_error naming file and reason.
 class ResultWriter {
  public:
-  /// Starts a new result: earlier results in `folder` are removed, run.h5 and result.xdmf written without increments.
-  /// `mesh` may be empty (element tests), then no XDMF file is written.
+  /// Starts a new result: removes earlier results in `folder`, then writes run.h5 and result.xdmf without increments.
+  /// Element tests have an empty `mesh`; no XDMF file is written for them.
   [[nodiscard]] static ResultWriter create(const std::filesystem::path& folder, Provenance provenance, MeshData mesh);
 
-  /// Continues after increment `last`: later increments are removed, earlier ones stay and are listed, tables stay.
+  /// Continues after increment `last`: removes later increments; earlier ones and all tables stay.
   [[nodiscard]] static ResultWriter resume(const std::filesystem::path& folder, Provenance provenance, MeshData mesh,
                                            int last);
 
@@ -50,7 +50,7 @@ class ResultWriter {
 /// Path of increment `index` below a result folder.
 [[nodiscard]] std::filesystem::path increment_path(const std::filesystem::path& folder, int index);
 
-/// What `voussoir info` prints and resume relies on. Throws std::runtime_error where a file is missing or damaged.
+/// Reads the parts of a result back. All of these throw std::runtime_error where a file is missing or damaged.
 [[nodiscard]] Provenance read_provenance(const std::filesystem::path& run_file);
 [[nodiscard]] MeshData read_mesh(const std::filesystem::path& run_file);
 [[nodiscard]] std::vector<IncrementInfo> read_increments(const std::filesystem::path& run_file);

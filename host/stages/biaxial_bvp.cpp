@@ -82,8 +82,9 @@ std::string cost_line(const std::filesystem::path& folder) {
     wall += info.wall_s;
   }
   const auto n = static_cast<double>(all.size());
-  return fmt::format("{} increments: {:.1f} evaluations, {:.3g} particle-steps and {:.3g} s each", all.size(),
-                     evaluations / n, work / n, wall / n);
+  return fmt::format(
+      "an increment took {1:.1f} evaluations, {2:.3g} particle-steps and {3:.3g} s in the mean of {0} increments",
+      all.size(), evaluations / n, work / n, wall / n);
 }
 
 /// `ground`, `test` and `specimen` must outlive the stage.

@@ -30,15 +30,15 @@ void GroundRun::open_ground(const MaterialCase& material, const PackingNote& not
   ground_.emplace(Ground{mesh_, *material_, {}, {}});
   if (const io::Checkpoint* checkpoint = recorder_.resumed()) {
     restore(*ground_, *checkpoint);
-    log().line(
-        fmt::format("resumed behind increment {} of {}", recorder_.resumed_stage_index(), recorder_.resumed_stage()));
+    log().line(fmt::format("the run goes on behind increment {} of {}", recorder_.resumed_stage_index(),
+                           recorder_.resumed_stage()));
   } else {
     begin_stage(*ground_);
   }
 }
 
 void GroundRun::report_finished() {
-  log().line(fmt::format("{}: finished already, nothing to do", recorder_.folder().string()));
+  log().line(fmt::format("the run in {} is finished already, there is nothing to do", recorder_.folder().string()));
 }
 
 }  // namespace voussoir::host
