@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "host/case/engine.hpp"
+#include "host/case/load_case.hpp"
 #include "host/estimate/work.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <numeric>
 
+#include "host/case/load_case.hpp"
 #include "host/packing/recipe.hpp"
 #include "io/case_file.hpp"
 
