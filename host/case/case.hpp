@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernels/state/network.hpp"
@@ -237,14 +238,20 @@ struct Case {
   std::string fingerprint;  ///< of everything that decides the numbers; in SI to 12 digits, however it was written
 };
 
-/// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) on anything
-/// wrong: unknown keys, wrong units, values outside their limits, values that do not fit together.
-[[nodiscard]] Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
-
 /// Kinds that advance in load increments on a mesh: with checkpoints, and interrupted between two of them.
 [[nodiscard]] constexpr bool runs_on_a_mesh(CaseKind kind) {
   return kind == CaseKind::biaxial_bvp || kind == CaseKind::column || kind == CaseKind::tunnel;
 }
+
+/// As the key `kind` of a case file has them.
+inline constexpr std::array<std::pair<CaseKind, const char*>, 7> case_kind_names{
+    {{CaseKind::pack, "pack"},
+     {CaseKind::biaxial, "biaxial"},
+     {CaseKind::calibrate, "calibrate"},
+     {CaseKind::probe, "probe"},
+     {CaseKind::biaxial_bvp, "biaxial_bvp"},
+     {CaseKind::column, "column"},
+     {CaseKind::tunnel, "tunnel"}}};
 
 [[nodiscard]] std::string to_string(CaseKind kind);
 [[nodiscard]] std::string to_string(MaterialKind kind);

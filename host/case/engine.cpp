@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "host/case/keys.hpp"
 #include "kernels/advance_rves.hpp"
 
 namespace voussoir::host {
@@ -65,6 +66,44 @@ std::string overridden(const EngineCase& engine, const EngineCase& preset) {
 }
 
 }  // namespace
+
+EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
+  EngineCase engine = engine_preset(table.choice("preset", engine_preset_names(), EngineCase{}.preset));
+  const char* width = engine.precision == kernels::Precision::float32 ? "float" : "double";
+  engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? kernels::Precision::float32
+                                                                                      : kernels::Precision::float64;
+  const std::string backend = table.choice("backend", {"auto", "lanes", "teams"}, "auto");
+  engine.backend = backend == "lanes"   ? kernels::Backend::lanes
+                   : backend == "teams" ? kernels::Backend::teams
+                                        : kernels::Backend::automatic;
+  read_quantity(table, "inertial_number", io::Dimension::none, engine.inertial_number,
+                {.at_least = "1e-6", .at_most = "1e-2"});
+  read_quantity(table, "hold_tolerance", io::Dimension::none, engine.hold_tolerance,
+                {.at_least = "1e-6", .at_most = "0.1"});
+  read_integer(table, "hold_cap", engine.hold_cap, {.at_least = 0, .at_most = 10'000'000});
+  read_quantity(table, "skin", io::Dimension::none, engine.skin, {.at_least = "0.005", .at_most = "1"});
+  read_integer(table, "minimum_steps", engine.minimum_steps, {.at_least = 1, .at_most = 10'000'000});
+  read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
+  if (!on_a_mesh) engine.defer = 0;  // whatever the preset says
+  read_quantity(table, "defer", io::Dimension::none, engine.defer, {.at_least = "0", .at_most = "0.1"});
+  if (!on_a_mesh && engine.defer > 0)
+    throw table.error("defer", "is for kinds with a mesh: without one all grains are to run");
+  if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
+  return engine;
+}
+
+TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise) {
+  using enum kernels::TangentKind;
+  const std::string automatic = "auto";
+  std::vector<std::string> names{automatic};
+  for (const kernels::TangentKind kind : {contact, elastic, static_, loading})
+    names.emplace_back(kernels::name_of(kind));
+  const std::string name = table.choice("tangent", names, otherwise ? kernels::name_of(*otherwise) : automatic);
+  for (const kernels::TangentKind kind : {contact, elastic, static_, loading}) {
+    if (name == kernels::name_of(kind)) return kind;
+  }
+  return {};
+}
 
 std::vector<std::string> engine_preset_names() {
   std::vector<std::string> names;

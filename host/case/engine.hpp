@@ -6,8 +6,15 @@
 #include <vector>
 
 #include "host/case/case.hpp"
+#include "io/case_file.hpp"
 
 namespace voussoir::host {
+
+/// The table [engine]. Throws io::InputError. @param on_a_mesh a kind with a mesh: only there RVEs may be deferred
+[[nodiscard]] EngineCase read_engine(const io::Table& table, bool on_a_mesh);
+
+/// The key `tangent`. Throws io::InputError.
+[[nodiscard]] TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise);
 
 [[nodiscard]] std::vector<std::string> engine_preset_names();
 

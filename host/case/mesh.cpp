@@ -1,14 +1,13 @@
-// The tables of what has a mesh: [ground], [column], [gravity], [volume_loss], [biaxial_bvp], [newton], [output],
-// [elastic].
+#include "host/case/mesh.hpp"
+
 #include <cmath>
 #include <set>
 #include <string>
-#include <vector>
 
+#include "host/case/engine.hpp"
+#include "host/case/keys.hpp"
 #include "host/case/result_fields.hpp"
-#include "host/case/tables.hpp"
 #include "io/units.hpp"
-#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::host {
 
@@ -83,19 +82,6 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
     throw table.error("strain_step", "does not divide the strain");
   }
   return test;
-}
-
-TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise) {
-  using enum kernels::TangentKind;
-  const std::string automatic = "auto";
-  std::vector<std::string> names{automatic};
-  for (const kernels::TangentKind kind : {contact, elastic, static_, loading})
-    names.emplace_back(kernels::name_of(kind));
-  const std::string name = table.choice("tangent", names, otherwise ? kernels::name_of(*otherwise) : automatic);
-  for (const kernels::TangentKind kind : {contact, elastic, static_, loading}) {
-    if (name == kernels::name_of(kind)) return kind;
-  }
-  return {};
 }
 
 NewtonCase read_newton(const io::Table& table) {

@@ -1,4 +1,4 @@
-// The case kind "biaxial".
+#include "host/element_tests/biaxial_run.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -12,6 +12,8 @@
 #include "host/case/engine.hpp"
 #include "host/case/result_fields.hpp"
 #include "host/element_tests/biaxial.hpp"
+#include "host/element_tests/strength.hpp"
+#include "host/packing/packings.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/record/provenance.hpp"
 #include "io/result_file.hpp"
@@ -59,12 +61,12 @@ std::vector<io::TableColumn> curve_table(const BiaxialCurve& curve, const kernel
 }
 
 /// All tests of a case: every seed at every pressure, each packing consolidated at its test's pressure.
-std::vector<PackedRve> packings_of(const Case& input, const PackingNote& note) {
+std::vector<PackedRve> packings_of(const SoilCase& soil, PackingCase recipe, std::span<const double> pressures,
+                                   const PackingNote& note) {
   std::vector<PackedRve> all;
-  for (const double pressure : input.biaxial.pressures) {
-    PackingCase recipe = input.packing;
+  for (const double pressure : pressures) {
     recipe.pressure = pressure;
-    for (PackedRve& rve : obtain_packings(input.soil, recipe, seeds_of(recipe), note, Bias::left))
+    for (PackedRve& rve : obtain_packings(soil, recipe, seeds_of(recipe), note, Bias::left))
       all.push_back(std::move(rve));
   }
   return all;
@@ -129,12 +131,12 @@ struct Summary {
 };
 
 /// Tests that a case asks for; a packing that does not come to rest leaves some out. A file is one packing a pressure.
-std::size_t wanted_tests(const Case& input) {
-  return (input.packing.file.empty() ? seeds_of(input.packing).size() : 1) * input.biaxial.pressures.size();
+std::size_t wanted_tests(const PackingCase& recipe, const BiaxialCase& test) {
+  return (recipe.file.empty() ? seeds_of(recipe).size() : 1) * test.pressures.size();
 }
 
 /// Exit code of the tests that a finished run has left; nothing where there is none.
-std::optional<int> finished_before(const Case& input, const RunOptions& options) {
+std::optional<int> finished_before(std::size_t wanted, const RunOptions& options) {
   const std::filesystem::path file = options.folder / "run.h5";
   if (!options.resume || !std::filesystem::exists(file)) return {};
   const io::Tables tables = io::read_tables(file);
@@ -143,7 +145,7 @@ std::optional<int> finished_before(const Case& input, const RunOptions& options)
   for (const io::TableColumn& column : strength->second) {
     if (column.name != "valid") continue;
     const auto held = static_cast<std::size_t>(std::count(column.values.begin(), column.values.end(), 1.0));
-    return held < wanted_tests(input) ? exit_numerical : exit_ok;
+    return held < wanted ? exit_numerical : exit_ok;
   }
   return {};
 }
@@ -151,14 +153,15 @@ std::optional<int> finished_before(const Case& input, const RunOptions& options)
 }  // namespace
 
 int run_biaxial(const Case& input, const RunOptions& options) {
-  if (const std::optional<int> before = finished_before(input, options)) {
+  const BiaxialCase& test = input.biaxial;
+  const std::size_t wanted = wanted_tests(input.packing, test);
+  if (const std::optional<int> before = finished_before(wanted, options)) {
     std::printf("%s: finished already, nothing to do\n", options.folder.string().c_str());
     return *before;
   }
   if (options.resume) std::printf("biaxial tests run all at once and have no checkpoint: they begin anew\n");
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
-  const std::vector<PackedRve> rves = packings_of(input, note);
-  const BiaxialCase& test = input.biaxial;
+  const std::vector<PackedRve> rves = packings_of(input.soil, input.packing, test.pressures, note);
   const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
                                     engine_settings(input.engine), input.output.microstructure);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});
@@ -181,7 +184,6 @@ int run_biaxial(const Case& input, const RunOptions& options) {
         common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
         *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
   }
-  const std::size_t wanted = wanted_tests(input);
   if (curves.size() < wanted) {
     std::fprintf(stderr, "biaxial: %zu of %zu tests have no packing that comes to rest\n", wanted - curves.size(),
                  wanted);

@@ -9,6 +9,7 @@
 #include "host/case/engine.hpp"
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
+#include "host/material/deformation.hpp"
 #include "kernels/state/committed_contacts.hpp"
 
 namespace voussoir::host {
@@ -17,8 +18,6 @@ namespace {
 
 /// An evaluation asking for this many times the frozen steps gets more after all: the predictor was far off.
 constexpr int step_regret = 2;
-
-kernels::Mat2 relative_gradient(const fem::Gradient& h) { return {1.0 + h(0, 0), h(0, 1), h(1, 0), 1.0 + h(1, 1)}; }
 
 kernels::EngineSettings settings_of(const PoolOptions& options) {
   kernels::EngineSettings settings = engine_settings(options.engine);
@@ -76,7 +75,7 @@ int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
 /// @param anew whatever the steps were before
 void RvePool::choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew) {
   kernels::StrainRequest& request = requests_[rve];
-  request.f_rel = relative_gradient(gradient);
+  request.f_rel = deformation_of(gradient);
   const int steps = steps_for(rve, request.f_rel);
   if (anew || steps > step_regret * request.strain_steps) request.strain_steps = steps;
   request.hold_cap = engine_.hold_cap;

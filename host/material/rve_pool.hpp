@@ -3,10 +3,12 @@
 /// tangent.
 
 #include "fem/material_batch.hpp"
+#include "host/case/case.hpp"
 #include "host/material/deferral.hpp"
-#include "host/material/rve_pool_state.hpp"
 #include "host/material/snapshot_source.hpp"
-#include "host/packing/packings.hpp"
+#include "host/material/state_records.hpp"
+#include "host/packing/packed_rve.hpp"
+#include "kernels/advance_rves.hpp"
 
 namespace voussoir::host {
 

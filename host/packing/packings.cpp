@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/packing/bias.hpp"
+#include "host/packing/recipe.hpp"
 #include "host/packing/stored_packing.hpp"
 #include "io/hash.hpp"
 #include "io/packing_file.hpp"
@@ -17,21 +19,6 @@ namespace voussoir::host {
 
 namespace {
 
-// The test behind `bias`. A change here must raise recipe_version: biases are kept with the packings.
-constexpr double oedometric_end = 700.0e3;       ///< [Pa], the deepest ground of the study
-constexpr double oedometric_increment = 1.0e-3;  ///< axial strain [-]
-constexpr int most_increments = 200;
-constexpr double bias_floor = 20.0e3;  ///< below it tau_xy is what consolidation left [Pa]
-
-/// Largest |tau_xy|/sigma_yy of a curve above the floor.
-double bias_of(const std::vector<OedometricPoint>& curve) {
-  double bias = 0;
-  for (const OedometricPoint& point : curve) {
-    if (point.stress_yy >= bias_floor) bias = std::max(bias, std::abs(point.stress_xy) / point.stress_yy);
-  }
-  return bias;
-}
-
 std::string table_line(const PackedRve& rve) {
   const std::string bias = std::isnan(rve.bias) ? "" : fmt::format("  bias {:.4f}", rve.bias);
   return fmt::format(
@@ -39,42 +26,6 @@ std::string table_line(const PackedRve& rve) {
       rve.seed, rve.packing.size(), rve.consolidation_friction, rve.void_ratio, rve.pressure, rve.coordination,
       rve.unbalanced, bias);
 }
-
-}  // namespace
-
-std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const PackedRve> rves, double stress) {
-  std::vector<std::vector<OedometricPoint>> curves(rves.size());
-  if (rves.empty()) return curves;
-  kernels::RveBatch batch = batch_of(rves);
-  const kernels::EngineSettings settings{.precision = kernels::Precision::float64};
-  std::vector<kernels::RveReport> reports(rves.size());
-  std::vector<char> ended(rves.size(), 0);
-  double total = 0;
-  for (int increment = 0; increment < most_increments && std::count(ended.begin(), ended.end(), 0) > 0; ++increment) {
-    const double strain = increment < 4 ? 0.25 * oedometric_increment : oedometric_increment;  // fine while it is soft
-    const std::vector<kernels::StrainRequest> requests(
-        rves.size(), {.f_rel = {1, 0, 0, std::exp(-strain)}, .strain_steps = 1000, .hold_cap = 2000});
-    kernels::advance(batch, std::span<const kernels::StrainRequest>(requests), settings, reports);
-    kernels::commit(batch);
-    total += strain;
-    for (std::size_t k = 0; k < rves.size(); ++k) {
-      const double* s = reports[k].stress;
-      if (kernels::is_failure(reports[k].status)) ended[k] = 1;
-      if (ended[k] != 0) continue;
-      curves[k].push_back({total, -s[3], -s[0], -0.5 * (s[1] + s[2])});
-      if (-s[3] >= stress) ended[k] = 1;
-    }
-  }
-  return curves;
-}
-
-std::vector<std::int64_t> seeds_of(const PackingCase& recipe) {
-  std::vector<std::int64_t> seeds = recipe.seeds;
-  for (int k = 0; recipe.seeds.empty() && k < recipe.candidates; ++k) seeds.push_back(recipe.seed + k);
-  return seeds;
-}
-
-namespace {
 
 void keep(const SoilCase& soil, const PackingCase& recipe, const PackedRve& rve) {
   const std::string text = recipe_text(soil, recipe, rve.seed);
@@ -95,17 +46,23 @@ void measure_bias(const SoilCase& soil, const PackingCase& recipe, std::vector<P
   for (const PackedRve& rve : rves) {
     if (std::isnan(rve.bias)) unknown.push_back(rve);
   }
-  const auto curves = oedometric_tests(unknown, oedometric_end);
+  const std::vector<double> biases = biases_of(unknown);
   for (PackedRve& rve : rves) {
     for (std::size_t k = 0; k < unknown.size(); ++k) {
       if (unknown[k].seed != rve.seed) continue;
-      rve.bias = bias_of(curves[k]);
+      rve.bias = biases[k];
       keep(soil, recipe, rve);
     }
   }
 }
 
 }  // namespace
+
+std::vector<std::int64_t> seeds_of(const PackingCase& recipe) {
+  std::vector<std::int64_t> seeds = recipe.seeds;
+  for (int k = 0; recipe.seeds.empty() && k < recipe.candidates; ++k) seeds.push_back(recipe.seed + k);
+  return seeds;
+}
 
 std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& recipe,
                                        std::span<const std::int64_t> seeds, const PackingNote& note, Bias bias) {

@@ -1,13 +1,11 @@
 #pragma once
-/// Packings of a case: made once, kept in the case's packing folder, chosen by least bias; and the case kinds that show
-/// them.
+/// Packings of a case: made once, kept in the recipe's folder, chosen by least bias.
 
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "host/packing/recipe.hpp"
-#include "host/record/folder.hpp"
+#include "host/packing/packed_rve.hpp"
 
 namespace voussoir::host {
 
@@ -31,18 +29,5 @@ enum class Bias { measured, left };
 /// Of the recipe's candidate seeds the packing with the least bias: one packing cloned everywhere biases tau_xy
 /// everywhere (method.md §4).
 [[nodiscard]] PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note = {});
-
-/// One increment of the oedometric test.
-struct OedometricPoint {
-  double strain, stress_yy, stress_xx, stress_xy;  ///< axial log strain [-], compression-positive stresses [Pa]
-};
-
-/// Each packing compressed along y without lateral strain from its own pressure until sigma_yy has reached `stress`
-/// [Pa]; one curve per packing, which ends early where an increment fails.
-[[nodiscard]] std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const PackedRve> rves,
-                                                                         double stress);
-
-/// `kind = "pack"`: makes the packings and prints their table. Returns an exit code.
-[[nodiscard]] int run_pack(const Case& input, const RunOptions& options);
 
 }  // namespace voussoir::host

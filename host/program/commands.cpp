@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "host/case/engine.hpp"
+#include "host/case/load_case.hpp"
+#include "host/estimate/report.hpp"
 #include "host/estimate/work.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
@@ -50,8 +52,9 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
   std::printf("%s\n", input.resolved.c_str());
   if (uses_engine(input.kind, input.material)) std::printf("# %s\n", engine_note(input.engine).c_str());
   const CaseSize size = case_size(input);
-  check_snapshot_points(input, size);
-  for (const std::string& line : describe(input, size)) std::printf("# %s\n", line.c_str());
+  check_snapshot_points(input.output, size, input.name);
+  for (const std::string& line : describe(size, input.material, input.packing, input.output))
+    std::printf("# %s\n", line.c_str());
   return exit_ok;
 }
 

@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <cstdio>
 
-#include "host/element_tests/biaxial.hpp"
-#include "host/element_tests/calibrate_tests.hpp"
+#include "host/element_tests/biaxial_run.hpp"
+#include "host/element_tests/calibrate_run.hpp"
+#include "host/element_tests/pack.hpp"
 #include "host/element_tests/probe.hpp"
+#include "host/estimate/report.hpp"
 #include "host/estimate/work.hpp"
-#include "host/packing/packings.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/stages/biaxial_bvp.hpp"
 #include "host/stages/column.hpp"
@@ -37,7 +38,7 @@ int answer(RunStatus status, const RunOptions& options) {
 }  // namespace
 
 int run_case(const Case& input, const RunOptions& options) {
-  if (!input.output.rves.empty()) check_snapshot_points(input, case_size(input));
+  if (!input.output.rves.empty()) check_snapshot_points(input.output, case_size(input), input.name);
   if (options.replace) remove_earlier_run(options);
   switch (input.kind) {
     case CaseKind::tunnel:
@@ -47,7 +48,7 @@ int run_case(const Case& input, const RunOptions& options) {
     case CaseKind::biaxial_bvp:
       return answer(run_biaxial_bvp(input, options), options);
     case CaseKind::pack:
-      return run_pack(input, options);
+      return run_pack(input);
     case CaseKind::probe:
       return run_probe(input, options);
     case CaseKind::biaxial:

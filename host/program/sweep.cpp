@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "host/case/load_case.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/program/commands.hpp"

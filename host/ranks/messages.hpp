@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "host/material/rve_pool.hpp"
-#include "host/packing/packings.hpp"
+#include "host/packing/packed_rve.hpp"
 #include "host/ranks/channel.hpp"
 #include "io/byte_stream.hpp"
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "host/process/profiling.hpp"
 #include "host/stages/ground_checkpoint.hpp"
+#include "host/stages/profiling.hpp"
 
 namespace voussoir::host {
 

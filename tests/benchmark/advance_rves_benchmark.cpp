@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "host/case/load_case.hpp"
 #include "host/packing/packings.hpp"
 #include "kernels/contact/lane.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/case/case.hpp"
+#include "host/case/load_case.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "host/case/case.hpp"
+#include "host/case/load_case.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {

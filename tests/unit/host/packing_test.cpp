@@ -10,6 +10,7 @@
 #include <string>
 
 #include "host/material/rve_pool.hpp"
+#include "host/packing/recipe.hpp"
 
 namespace voussoir::host {
 namespace {

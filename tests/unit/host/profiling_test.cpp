@@ -1,5 +1,5 @@
 // What a profiler sees of a run: the parts of the mesh's work as regions, by their names.
-#include "host/process/profiling.hpp"
+#include "host/stages/profiling.hpp"
 
 #include <gtest/gtest.h>
 

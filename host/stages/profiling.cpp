@@ -1,4 +1,4 @@
-#include "host/process/profiling.hpp"
+#include "host/stages/profiling.hpp"
 
 #include <Kokkos_Core.hpp>
 
