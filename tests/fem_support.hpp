@@ -60,6 +60,7 @@ class SofteningMaterial : public fem::MaterialBatch {
     ++evaluations;
     fem::BatchReport report;
     report.work = size();
+    report.lane_steps = 3 * size();
     report.stress_noise = options_.noise;
     for (std::size_t i = 0; i < size(); ++i) {
       const fem::Gradient& h = gradients[i];
