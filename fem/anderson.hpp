@@ -23,8 +23,9 @@ class AndersonHistory {
     Eigen::VectorXd accelerated;  ///< f - (dU + dF) gamma, gamma = argmin |f - dF gamma|
   };
 
-  /// The next step with the solver's present K. Residual differences, not old corrections, are stored: dF = K^-1 dR is
-  /// made anew, so the history stays consistent when K changes (a few triangular solves, far below one evaluation).
+  /// The next step with the solver's present K. The history keeps differences of residuals, not old corrections, and
+  /// dF = K^-1 dR is made anew from them, so that it stays consistent when K changes. That takes a few triangular
+  /// solutions, which cost far less than one evaluation.
   [[nodiscard]] Step step(SparseSolver& solver) const;
 
  private:

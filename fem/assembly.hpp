@@ -1,6 +1,6 @@
 #pragma once
-/// Stiffness and internal force of a mesh. The pattern holds every degree of freedom; constrained ones keep their rows
-/// as a scaled identity, so that one symbolic factorisation serves every stage of a mesh.
+/// Stiffness and internal force of a mesh. The pattern of the matrix holds every degree of freedom. Constrained ones
+/// keep their rows as a scaled identity, so that one symbolic factorisation serves every stage of a mesh.
 
 #include "fem/gauss_points.hpp"
 #include "fem/sparse_solver.hpp"
@@ -22,7 +22,8 @@ class StiffnessAssembler {
  private:
   const Mesh& mesh_;
   SparsePattern pattern_;
-  std::vector<std::array<int, 136>> scatter_;  ///< entry of each of the 16 * 17 / 2 lower element entries
+  std::vector<std::array<int, 136>> scatter_;  ///< place in the matrix of each of an element's 16 * 17 / 2 lower
+                                               ///< entries
 };
 
 struct InternalForce {

@@ -12,14 +12,15 @@ namespace voussoir::fem {
 /// Prescribed displacement increments by degree of freedom (2 * node + axis) [m].
 using Constraints = std::map<int, double>;
 
-/// Adds `value` on one axis (0: x, 1: y) of the nodes. Throws std::invalid_argument where a different value stands.
+/// Prescribes `value` on one axis (0: x, 1: y) of the nodes. Throws std::invalid_argument where another value is
+/// prescribed already.
 void constrain(Constraints& constraints, const std::vector<int>& nodes, int axis, double value);
 
 /// Eccentric volume loss, eqs. (17)-(19) as a homothety about the invert: u = (sqrt(1 - V_l) - 1)(x - x_invert) [m], x
 /// on the original coordinates and V_l the total loss. Increments are differences of two calls. 0 <= V_l < 1.
 [[nodiscard]] Point volume_loss_displacement(const Point& x, const Point& invert, double volume_loss);
 
-/// The increment of volume loss from V_l = from to V_l = to on the nodes of "opening"; both axes.
+/// Prescribes the increment of volume loss from V_l = from to V_l = to on the nodes of "opening", on both axes.
 void constrain_volume_loss(Constraints& constraints, const Mesh& mesh, double from, double to);
 
 using StressField = std::function<Stress(const Point&)>;  ///< Cauchy stress at a point of the boundary [Pa]

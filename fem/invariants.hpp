@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace voussoir::host {
+namespace voussoir::fem {
 
 using PlaneTensor = Eigen::Vector3d;  ///< (xx, yy, xy), tensor components
 
@@ -31,4 +31,4 @@ using PlaneTensor = Eigen::Vector3d;  ///< (xx, yy, xy), tensor components
   return angle <= -0.5 * std::numbers::pi ? angle + std::numbers::pi : angle;
 }
 
-}  // namespace voussoir::host
+}  // namespace voussoir::fem

@@ -1,5 +1,6 @@
 #pragma once
-/// Isotropic linear elasticity in plane strain, as a batch: verifies the finite-element part on closed forms.
+/// Isotropic linear elasticity in plane strain as a batch, with which the finite-element part is verified on closed
+/// forms.
 
 #include "fem/material_batch.hpp"
 
@@ -7,7 +8,7 @@ namespace voussoir::fem {
 
 enum class ElasticStrain {
   infinitesimal,  ///< sigma = sigma_n + D sym(F_rel - I)
-  logarithmic     ///< sigma = R sigma_n R^T + D ln V, F_rel = V R: a rigid rotation rotates the stress and nothing else
+  logarithmic     ///< sigma = R sigma_n R^T + D ln V with F_rel = V R, so that a rigid rotation only rotates the stress
 };
 
 struct ElasticOptions {

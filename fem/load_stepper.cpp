@@ -52,7 +52,7 @@ std::string describe(const NewtonReport& newton, double from, double to) {
        << newton.residual << " N/m, allowed " << newton.residual_bound << " N/m, " << newton.iterations
        << " iterations";
   if (newton.relaxations > 0)
-    text << ", " << newton.relaxations << " of them substeps of a relaxation that did not calm";
+    text << ", " << newton.relaxations << " of them substeps of a relaxation that found no equilibrium";
   text << ")";
   if (!newton.material.message.empty()) text << ": " << newton.material.message;
   return text.str();

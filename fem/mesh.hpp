@@ -40,25 +40,8 @@ struct Mesh {
   [[nodiscard]] const std::vector<int>& node_set(const std::string& name) const;
 };
 
-struct HalfTunnelOptions {
-  double width = 35.0;     ///< of the half domain [m]
-  double height = 35.0;    ///< [m]
-  double diameter = 5.0;   ///< D of the circular opening [m]
-  double cover = 10.0;     ///< C, from the crown to the top [m]; the invert is at y = height - C - D
-  double size_near = 0.5;  ///< element edge at the opening [m]; between crown and surface about 1.5 times that
-  double size_far = 2.5;   ///< largest element edge [m]
-};
-
-/// Half of the ground around a circular opening, x = 0 the symmetry axis. Corner and midside nodes of the opening lie
-/// on the circle. All elements are quadrilaterals with a positive Jacobian at every Gauss point, the same bits for the
-/// same options. Throws std::invalid_argument on options that make no mesh, std::runtime_error if Gmsh fails.
-[[nodiscard]] Mesh make_half_tunnel(const HalfTunnelOptions& options);
-
-/// A rectangle of nx * ny elements with the boundaries "base", "side", "top", "axis". Throws std::invalid_argument.
-[[nodiscard]] Mesh make_rectangle(double width, double height, int nx, int ny);
-
-/// Area between a boundary chain and the line x = 0 (or of a closed chain), from the Q8 edges themselves [m2]; positive
-/// where the soil is inside. For the opening it is minus the area of the (half) hole.
+/// Area between a boundary chain and the line x = 0, or within a closed chain, integrated along the curved edges [m2].
+/// It is positive where the soil is inside, so that the opening's is minus the area of its (half) hole.
 [[nodiscard]] double area_left_of(const Coordinates& coordinates, const std::vector<Edge>& chain);
 
 }  // namespace voussoir::fem

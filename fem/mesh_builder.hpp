@@ -1,5 +1,5 @@
 #pragma once
-/// From four-node quadrilaterals to a Q8 mesh with named boundaries; shared by the makers of meshes.
+/// Makes a Q8 mesh with named boundaries from four-node quadrilaterals; every mesh is made in this way.
 
 #include <functional>
 

@@ -1,6 +1,6 @@
 #pragma once
-/// What the finite-element side remembers between increments: plain data, all of it needed (and enough) for a
-/// checkpoint that resumes with the same bits. The material's own memory is `MaterialBatch::state()`.
+/// What the finite-element side remembers between increments. A checkpoint needs all of these plain data, and with
+/// `MaterialBatch::state()` they are enough to resume with the same bits.
 
 #include <vector>
 
@@ -20,17 +20,18 @@ struct MeshState {
   Coordinates coordinates;               ///< on which the next increment is integrated [m]
   std::vector<Gradient> deformation;     ///< F_n - I since the stage began, n_points [-]
   std::vector<Tangent> initial_tangent;  ///< of the material when the stage began, n_points [Pa]
-  std::vector<Tangent> tangent;          ///< of the last matrix of an increment that was committed, n_points [Pa]
-  Eigen::VectorXd last_increment;        ///< displacement of the last converged increment, n_dofs [m]
-  double last_step = 0;                  ///< load parameter it spanned; 0: there was none
-  double start = 0;                      ///< load parameter when the stage began
-  double parameter = 0;                  ///< load parameter reached
-  double step_limit = 0;                 ///< largest step after cuts; 0: not limited
-  double relaxation_factor = 1;  ///< of the last relaxation's end: the next one begins with it (relaxation.hpp) [-]
+  std::vector<Tangent> tangent;    ///< from which the last matrix was made in a committed increment, n_points [Pa]
+  Eigen::VectorXd last_increment;  ///< displacement of the last converged increment, n_dofs [m]
+  double last_step = 0;            ///< load parameter that this increment spanned; 0 where there was none
+  double start = 0;                ///< load parameter when the stage began
+  double parameter = 0;            ///< load parameter reached
+  double step_limit = 0;           ///< largest step after cuts; 0 where steps are not limited
+  double relaxation_factor = 1;    ///< at the end of the last relaxation; the next one begins with it (relaxation.hpp)
+                                   ///< [-]
 };
 
-/// A stage begins: displacement and deformation are zero, coordinates those of `coordinates` (usually
-/// mesh.coordinates), the initial tangent is the material's committed one.
+/// The state at the start of a stage: displacement and deformation are zero, the coordinates are `coordinates` (usually
+/// mesh.coordinates), and the initial tangent is that of the material's committed state.
 [[nodiscard]] MeshState begin_stage(const Mesh& mesh, const Coordinates& coordinates, const MaterialBatch& material,
                                     double parameter = 0);
 

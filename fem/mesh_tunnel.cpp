@@ -1,3 +1,5 @@
+#include "fem/mesh_tunnel.hpp"
+
 #include <gmsh.h>
 #include <omp.h>
 

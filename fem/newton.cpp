@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "fem/anderson.hpp"
+#include "fem/noise.hpp"
 
 namespace voussoir::fem {
 
@@ -137,7 +138,7 @@ Failure NewtonSolver::Workspace::predict() {
   Eigen::VectorXd right = -internal_force(mesh, increment.points, stress).force;
   if (load.predictor_ratio == 0) right += load.external_force;
   for (const auto& [dof, value] : load.prescribed) right[dof] = 0;
-  const PartTimer timer(report.times.solve);
+  const PartTimer timer(report.times, Part::solution);
   step = guess + lift + solver.solver_.solve(right);
   for (const auto& [dof, value] : load.prescribed) step[dof] = value;
   return step.allFinite() ? Failure{} : Failure{NewtonStatus::not_finite};
@@ -181,6 +182,7 @@ void NewtonSolver::Workspace::restore(Trial&& trial) {
   increment = std::move(trial.increment);
   trial.report.evaluations = report.evaluations;
   trial.report.work = report.work;
+  trial.report.lane_steps = report.lane_steps;
   trial.report.times = report.times;
   report = std::move(trial.report);
 }
@@ -190,7 +192,7 @@ Failure NewtonSolver::Workspace::evaluate() {
   const Mesh& mesh = solver.mesh_;
   if (!increment.displacement.allFinite()) return NewtonStatus::not_finite;
   {
-    const PartTimer timer(report.times.assembly);
+    const PartTimer timer(report.times, Part::assembly);
     displacement_gradients(mesh, increment.points, increment.displacement, displacement_gradient);
   }
   for (int i = 0; i < mesh.n_points(); ++i) {
@@ -200,16 +202,17 @@ Failure NewtonSolver::Workspace::evaluate() {
     if (!((Eigen::Matrix2d::Identity() + h).determinant() > 0)) return NewtonStatus::inverted_element;
     increment.gradients[i] = h;
   }
-  const PartTimer timer(report.times.material);
+  const PartTimer timer(report.times, Part::material);
   const std::span<Tangent> wanted = renews_matrix() ? std::span(increment.tangent) : std::span<Tangent>();
   report.material = solver.material_.evaluate(increment.gradients, increment.stress, wanted);
   ++report.evaluations;
   report.work += report.material.work;
+  report.lane_steps += report.material.lane_steps;
   return report.material.usable ? Failure{} : Failure{NewtonStatus::material_failed};
 }
 
 void NewtonSolver::Workspace::form_residual() {
-  const PartTimer timer(report.times.assembly);
+  const PartTimer timer(report.times, Part::assembly);
   const Mesh& mesh = solver.mesh_;
   const NewtonOptions& options = solver.options_;
   const InternalForce internal = internal_force(mesh, increment.points, increment.stress);
@@ -240,7 +243,7 @@ void NewtonSolver::Workspace::form_residual() {
 
 /// Entries of K from the present tangents plus a share of the initial ones, which steers the iteration, not the answer.
 std::vector<double> NewtonSolver::Workspace::stiffness(double share) {
-  const PartTimer timer(report.times.assembly);
+  const PartTimer timer(report.times, Part::assembly);
   std::vector<Tangent> tangents = increment.tangent;
   for (std::size_t i = 0; i < tangents.size(); ++i) tangents[i] += share * state.initial_tangent[i];
   return solver.assembler_.assemble(increment.points, tangents, constrained);
@@ -258,7 +261,7 @@ Failure NewtonSolver::Workspace::refactor() {
     const std::vector<double> values = stiffness(share);
     if (std::any_of(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }))
       return NewtonStatus::not_finite;
-    const PartTimer timer(report.times.solve);
+    const PartTimer timer(report.times, Part::solution);
     const FactorStatus status = solver.solver_.factorise(values);
     ++report.factorisations;
     if (status == FactorStatus::ok) return {};
@@ -269,7 +272,7 @@ Failure NewtonSolver::Workspace::refactor() {
 }
 
 Failure NewtonSolver::Workspace::find_step() {
-  const PartTimer timer(report.times.solve);
+  const PartTimer timer(report.times, Part::solution);
   const NewtonOptions& options = solver.options_;
   const AndersonHistory::Step next = history.step(solver.solver_);
   if (!next.accelerated.allFinite()) return NewtonStatus::not_finite;

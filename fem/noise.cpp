@@ -1,7 +1,9 @@
+#include "fem/noise.hpp"
+
 #include <cmath>
 #include <random>
 
-#include "fem/newton.hpp"
+#include "fem/assembly.hpp"
 
 namespace voussoir::fem {
 

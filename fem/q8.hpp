@@ -2,9 +2,10 @@
 /// The eight-node serendipity quadrilateral: shape functions, their gradients, 2x2 Gauss points, and the three-node
 /// edge.
 ///
-/// 2x2 points integrate the forces of a constant stress exactly even in curved elements (dN/dxi * dx/deta is at most
-/// cubic in each variable), so the patch test and the equilibrium of a constant stress with its edge tractions hold to
-/// rounding; the one spurious mode of the reduced rule does not survive in a mesh of more than one element.
+/// 2x2 points integrate the forces of a constant stress exactly, even in curved elements, because dN/dxi * dx/deta is
+/// at most cubic in each variable. The patch test and the equilibrium of a constant stress with its edge tractions
+/// therefore hold to rounding. The reduced rule has one spurious mode, which does not survive in a mesh of more than
+/// one element.
 
 #include <Eigen/Dense>
 #include <array>

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "fem/load_stepper.hpp"
-
 namespace voussoir::fem {
 
 namespace {
@@ -29,6 +27,7 @@ void tally(NewtonReport& whole, NewtonReport&& part) {
   part.evaluations += whole.evaluations;
   part.factorisations += whole.factorisations;
   part.work += whole.work;
+  part.lane_steps += whole.lane_steps;
   part.times += whole.times;
   part.relaxations = whole.relaxations + 1;
   part.viscous_work += whole.viscous_work;

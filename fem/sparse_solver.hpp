@@ -1,5 +1,5 @@
 #pragma once
-/// Direct solution of symmetric positive definite systems with CHOLMOD; the symbolic factorisation is made once.
+/// Direct solution of symmetric positive definite systems with CHOLMOD. The symbolic factorisation is made only once.
 
 #include <Eigen/Dense>
 #include <memory>

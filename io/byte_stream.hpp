@@ -1,6 +1,6 @@
 #pragma once
-/// Numbers to bytes and back, bit for bit and without padding: checkpoints of RVEs, messages between processes of one
-/// build.
+/// Numbers to bytes and back, bit for bit and without padding, for checkpoints of RVEs and for messages between
+/// processes of one build.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace voussoir::host {
+namespace voussoir::io {
 
 class ByteWriter {
  public:
@@ -30,7 +30,7 @@ class ByteWriter {
   void value(const T& v) {
     (*this)(&v, 1);
   }
-  /// With its length before it.
+  /// Writes the number of values before the values.
   template <class List>
   void list(const List& values) {
     value(static_cast<std::uint64_t>(values.size()));
@@ -43,8 +43,9 @@ class ByteWriter {
 
 class ByteReader {
  public:
-  /// @param complaint what the std::runtime_error says that is thrown where the bytes end too early
-  explicit ByteReader(std::span<const std::byte> bytes, const char* complaint = "a message between ranks is too short")
+  /// @param complaint message of the std::runtime_error that is thrown where the bytes end too early
+  explicit ByteReader(std::span<const std::byte> bytes,
+                      const char* complaint = "the bytes end before the last value that is read from them")
       : bytes_(bytes), complaint_(complaint) {}
 
   template <class T>
@@ -71,7 +72,7 @@ class ByteReader {
     const std::vector<char> letters = list<char>();
     return {letters.begin(), letters.end()};
   }
-  /// The next `n` things of `size` bytes each, where they lie.
+  /// The bytes of the next `n` values of `size` bytes each, without a copy.
   [[nodiscard]] std::span<const std::byte> take(std::uint64_t n, std::size_t size = 1) {
     if (n > bytes_.size() / size) throw std::runtime_error(complaint_);
     const std::span<const std::byte> piece = bytes_.first(n * size);
@@ -85,4 +86,4 @@ class ByteReader {
   const char* complaint_;
 };
 
-}  // namespace voussoir::host
+}  // namespace voussoir::io

@@ -14,12 +14,6 @@ namespace {
 
 using Kind = CaseNode::Kind;
 
-std::string one_line(const std::string& place, const std::string& key, const std::string& sentence) {
-  const std::string separator = place == "--set" ? " " : ": ";
-  return key.empty() ? fmt::format("{}: {}", place, sentence)
-                     : fmt::format("{}{}{}: {}", place, separator, key, sentence);
-}
-
 [[noreturn]] void fail(const CaseNode& node, const std::string& sentence) {
   throw InputError(node.place, node.key, sentence);
 }
@@ -136,9 +130,6 @@ std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Defaul
 }
 
 }  // namespace
-
-InputError::InputError(const std::string& place, const std::string& key, const std::string& sentence)
-    : std::runtime_error(one_line(place, key, sentence)) {}
 
 CaseNode* Table::find(std::string_view key) const {
   CaseNode* node = node_->find(key);

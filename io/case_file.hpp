@@ -1,6 +1,6 @@
 #pragma once
-/// Case files (TOML) with checked values: every key read is recorded, so that unknown keys are errors and the resolved
-/// case (defaults and overrides included) can be printed and stored.
+/// Case files (TOML) with checked values. Every key that is read is noted, so that unknown keys are errors and the
+/// resolved case, with its defaults and overrides, can be printed and stored.
 ///
 ///     CaseFile file = CaseFile::load("case.toml", {"mesh.size=0.5 m"});
 ///     Table ground = file.root().table("ground");
@@ -12,21 +12,14 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/input_error.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::io {
-
-/// What a user wrote wrong, as one line: "case.toml:12: ground.depth: must be positive, is -3 m". The place is
-/// "file:line", or "--set" for a value given on the command line.
-class InputError : public std::runtime_error {
- public:
-  InputError(const std::string& place, const std::string& key, const std::string& sentence);
-};
 
 /// Limits of a quantity, written like the user's own values ("1 kPa"); without a fallback the key is required.
 struct QuantityRule {
@@ -42,30 +35,31 @@ struct IntegerRule {
   std::optional<std::int64_t> at_most = {};
 };
 
-struct CaseNode;   // a key of the file, its place, and what was made of it
+struct CaseNode;   // a key of the file, its place, and the value that was read from it
 struct CaseState;  // the whole file
 
 /// A view of one table of a case file; cheap to copy. A table that the file lacks reads as an empty one, so that
 /// defaults apply and required keys are reported as missing. All reading functions throw InputError.
 class Table {
  public:
-  /// The key stands in the file or was set on the command line. Does not count as reading it.
+  /// Whether the key stands in the file or was set on the command line. This does not count as reading the key.
   [[nodiscard]] bool has(std::string_view key) const;
 
-  /// SI value of "5 mm"; plain numbers and "%" for Dimension::none.
+  /// The SI value of a text such as "5 mm"; Dimension::none takes plain numbers and "%".
   [[nodiscard]] double quantity(std::string_view key, Dimension dimension, const QuantityRule& rule = {}) const;
   /// Dimensionless quantity.
   [[nodiscard]] double number(std::string_view key, const QuantityRule& rule = {}) const;
   [[nodiscard]] std::int64_t integer(std::string_view key, const IntegerRule& rule = {}) const;
   [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = {}) const;
   [[nodiscard]] std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
-  /// One of `choices`; the message of an error lists them.
+  /// A text that is one of `choices`; the message of an error lists them.
   [[nodiscard]] std::string choice(std::string_view key, const std::vector<std::string>& choices,
                                    std::optional<std::string> fallback = {}) const;
-  /// An existing file or folder, relative to the folder of the file that names it (of the case file with --set).
+  /// An existing file or folder. The name is relative to the folder of the file that says it, with --set to that of the
+  /// case file.
   [[nodiscard]] std::filesystem::path path(std::string_view key) const;
 
-  /// Arrays; the rule's limits hold for each entry, its fallback is not used.
+  /// Arrays. The limits of the rule hold for each entry; its fallback is not used.
   [[nodiscard]] std::vector<double> quantities(std::string_view key, Dimension dimension, const QuantityRule& rule = {},
                                                std::optional<std::vector<std::string>> fallback = {}) const;
   [[nodiscard]] std::vector<std::int64_t> integers(std::string_view key, const IntegerRule& rule = {},
@@ -74,7 +68,7 @@ class Table {
                                                std::optional<std::vector<std::string>> fallback = {}) const;
 
   [[nodiscard]] Table table(std::string_view key) const;
-  /// [[key]] tables in the order of the file, empty when there is none.
+  /// The [[key]] tables in the order of the file; empty where there are none.
   [[nodiscard]] std::vector<Table> tables(std::string_view key) const;
 
   /// An error at this key's place in the file, for checks that need more than one value.

@@ -1,5 +1,5 @@
 #pragma once
-/// The tree behind a case file: what the user wrote, where, and what was made of it. Private to io.
+/// The tree behind a case file: what the user wrote, where it stands, and the values that were read. Private to io.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,10 +21,10 @@ struct CaseNode {
   Kind kind = Kind::absent;
   std::variant<std::monostate, bool, std::int64_t, double, std::string> value = {};
   std::vector<std::unique_ptr<CaseNode>> children = {};
-  bool written = false;       ///< by the user; else a default took its place
-  bool read = false;          ///< the program knows this key
+  bool written = false;       ///< the user wrote it; otherwise the default holds
+  bool read = false;          ///< the program has read it, so that the key is a known one
   std::string resolved = {};  ///< value as TOML, once read
-  std::string meaning = {};   ///< value in SI, the same however it was written; what the fingerprint is made of
+  std::string meaning = {};   ///< value in SI, the same however it was written; the fingerprint is made of these
 
   [[nodiscard]] CaseNode* find(std::string_view child_name);
   CaseNode& add(std::string child_name, std::string child_place);

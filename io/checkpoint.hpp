@@ -1,6 +1,6 @@
 #pragma once
 /// Checkpoints: named blobs, bit-exact, with a checksum over the whole file and the fingerprint of the resolved case.
-/// The last two are kept, so that one damaged by a full disk or a kill costs one increment, not the run.
+/// The last two checkpoints are kept, so that damage by a full disk or a kill costs one increment and not the run.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace voussoir::io {
 
-/// Named values to store. `get...` throw std::runtime_error when the name is missing or its size is no multiple of the
-/// element's.
+/// The named values of one checkpoint. The functions `get...` throw std::runtime_error where the name is missing or the
+/// size of its bytes is no multiple of the element's.
 class Checkpoint {
  public:
   void put(const std::string& name, std::vector<std::byte> bytes);
@@ -39,7 +39,7 @@ class CheckpointStore {
  public:
   CheckpointStore(std::filesystem::path folder, std::string fingerprint);
 
-  /// Written beside, synced, renamed; then all but the last two are removed. Throws std::runtime_error.
+  /// Writes a file beside, syncs it and renames it; then removes all but the last two. Throws std::runtime_error.
   void save(int increment, const Checkpoint& checkpoint) const;
 
   struct Loaded {
@@ -48,11 +48,11 @@ class CheckpointStore {
     std::vector<std::string> skipped = {};  ///< one sentence for each damaged file passed over
   };
 
-  /// The newest undamaged checkpoint; nothing when there is none. Throws std::runtime_error when the newest undamaged
-  /// one belongs to another case, or when files exist and all are damaged.
+  /// The newest checkpoint that is not damaged; nothing where there are no files. Throws std::runtime_error where that
+  /// checkpoint belongs to another case, or where files exist and all are damaged.
   [[nodiscard]] std::optional<Loaded> load_latest() const;
 
-  /// Removes all checkpoints of the folder (a new run starts).
+  /// Removes all checkpoints of the folder, because a new run starts.
   void clear() const;
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
-/// One increment's HDF5 file, and its XDMF grid. Private to io; FORMAT.md describes the contents.
+/// The HDF5 file of one increment, and its XDMF grid. FORMAT.md describes the contents. result_file.hpp is the
+/// interface for other folders.
 
 #include "io/result_file.hpp"
 
@@ -13,7 +14,6 @@ void for_each_number(Info& info, Visit&& visit) {
   visit("index", "-", info.index);
   visit("stage_index", "-", info.stage_index);
   visit("load_parameter", "-", info.load_parameter);
-  visit("volume_loss", "-", info.volume_loss);
   visit("converged", "-", info.converged);
   visit("iterations", "-", info.iterations);
   visit("evaluations", "-", info.evaluations);

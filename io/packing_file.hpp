@@ -1,5 +1,5 @@
 #pragma once
-/// Packings of grains on disk, so that a packing made once is not made again, and packings of other codes can be read.
+/// Packings of grains on disk. A packing is made only once, and packings of other programs can be read.
 
 #include <array>
 #include <cstdint>

@@ -9,6 +9,7 @@
 #include "fem/boundary.hpp"
 #include "fem/linear_elastic.hpp"
 #include "fem/load_stepper.hpp"
+#include "fem/mesh_rectangle.hpp"
 
 namespace voussoir::fem_support {
 
@@ -59,6 +60,7 @@ class SofteningMaterial : public fem::MaterialBatch {
     ++evaluations;
     fem::BatchReport report;
     report.work = size();
+    report.lane_steps = 3 * size();
     report.stress_noise = options_.noise;
     for (std::size_t i = 0; i < size(); ++i) {
       const fem::Gradient& h = gradients[i];

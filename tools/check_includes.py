@@ -3,6 +3,8 @@
 
 Checks, over all files of the checkout (or of the folder given as the only argument):
   - an include stays within the lines of the table FOLDERS, for our folders and for third-party libraries;
+  - within a folder of several rooms (the table ROOMS) an include points to a room on a lower level, never upwards or to
+    a room beside it, and every sub-folder is one of these rooms;
   - an include of ours is written from the root of the repository and the file exists;
   - a source file has at most 400 lines;
   - a folder has a README.md.
@@ -26,6 +28,23 @@ FOLDERS = {
     "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX", "MPI"}),
     "tests": (set(OURS), None),  # None: any
     "tools": (set(), {"CUDA"}),
+}
+
+# folder -> its rooms (sub-folders) level by level, the lowest first; rooms that stand on one level do not include one
+# another. Files at the top of the folder stand above all of its rooms.
+ROOMS = {
+    "kernels": (("contact",), ("state",), ("course",), ("tangents",), ("lanes", "teams")),
+    "host": (
+        ("process",),
+        ("case",),
+        ("packing",),
+        ("material",),
+        ("ranks",),
+        ("record",),
+        ("stages", "element_tests"),
+        ("estimate",),
+        ("program",),
+    ),
 }
 
 # Libraries that even their own folder keeps in a few files.
@@ -75,6 +94,31 @@ def library_of(header):
     return next((name for name, pattern in LIBRARIES.items() if re.fullmatch(pattern, header)), None)
 
 
+def room_of(path):
+    """Room and level of a file in a folder of rooms; (None, level) at the folder's top, None where it has no rooms."""
+    levels = ROOMS.get(path.parts[0])
+    if levels is None:
+        return None
+    if len(path.parts) == 2:
+        return None, len(levels)
+    return next(((path.parts[1], level) for level, rooms in enumerate(levels) if path.parts[1] in rooms), None)
+
+
+def level_fault(path, header):
+    """What is wrong with an include of `header` from the file `path` of the same folder, or None."""
+    folder = path.parts[0]
+    if folder not in ROOMS:
+        return None
+    source, target = room_of(path), room_of(Path(header))
+    if target is None:
+        return f"{header} is in no room of {folder} that tools/check_includes.py knows"
+    if source[0] == target[0] or target[1] < source[1]:
+        return None
+    where = f"{folder}/{source[0]}" if source[0] else f"the top of {folder}"
+    sense = "beside it" if target[1] == source[1] else "above it"
+    return f"{where} may not include {header}, which stands {sense}"
+
+
 def include_fault(root, path, quote, header):
     """What is wrong with one include of the file `path` (relative to root), or None."""
     folder = path.parts[0]
@@ -85,7 +129,9 @@ def include_fault(root, path, quote, header):
         other = header.split("/")[0]
         if other not in ours:
             return f"{folder} may not include {other} ({header})"
-        return None if (root / header).is_file() else f"no such file: {header}"
+        if not (root / header).is_file():
+            return f"no such file: {header}"
+        return level_fault(path, header) if other == folder else None
     library = library_of(header)
     if library is None and quote == '"':
         return f'write "{header}" from the root of the repository'
@@ -103,6 +149,9 @@ def file_findings(root, path):
     if len(lines) > LONGEST:
         yield f"{path}:{len(lines)}: longer than {LONGEST} lines"
     if path.suffix == ".py":
+        return
+    if path.suffix in SOURCES and path.parts[0] in ROOMS and room_of(path) is None:
+        yield f"{path}:1: is in no room of {path.parts[0]} that tools/check_includes.py knows"
         return
     for number, line in enumerate(lines, 1):
         match = INCLUDE.match(line)

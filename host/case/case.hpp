@@ -7,18 +7,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernels/state/network.hpp"
+#include "kernels/state/requests.hpp"
 
 namespace voussoir::host {
 
 enum class CaseKind { pack, probe, biaxial, biaxial_bvp, calibrate, column, tunnel };
 enum class MaterialKind { grains, linear_elastic };
-enum class Precision { single_precision, double_precision };
-enum class TangentChoice { automatic, contact, elastic, static_, loading };
-enum class EngineBackend { automatic, lanes, teams };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
 
 /// [[soil.class]] Grains up to a size, made of one stuff (Table 1). Keys that are not given are those of [soil].
@@ -63,19 +63,18 @@ struct PackingCase {
   double pressure = 1.0e3;  ///< isotropic pressure of the finished packing [Pa]
 };
 
-/// [engine] Speed and accuracy of the grain engine: a preset (engine_presets.hpp), whose values single keys override.
+/// [engine] Speed and accuracy of the grain engine: a preset (engine.hpp), whose values single keys override.
 /// What each key costs and buys is measured in docs/trade.md. The defaults are the preset `standard`.
 struct EngineCase {
   std::string preset = "standard";  ///< fast, standard or reference; counts for the fingerprint through its values only
-  Precision precision = Precision::single_precision;  ///< value type of the pair loop
-  double inertial_number = 3.0e-4;                    ///< target inertial number of an increment [-]
-  double hold_tolerance = 3.0e-4;                     ///< unbalanced force ratio that ends the hold [-]
-  EngineBackend backend = EngineBackend::automatic;  ///< one SIMD lane or one team of threads per RVE; automatic: teams
-                                                     ///< on a GPU
-  int hold_cap = 4000;                               ///< most steps of a hold
-  double skin = 0.1;                                 ///< neighbour skin over the mean grain diameter [-]
-  int minimum_steps = 50;                            ///< fewest strain steps of an increment
-  int maximum_steps = 2000;                          ///< most strain steps of an increment
+  kernels::Precision precision = kernels::Precision::float32;  ///< value type of the pair loop
+  double inertial_number = 3.0e-4;                             ///< target inertial number of an increment [-]
+  double hold_tolerance = 3.0e-4;                              ///< unbalanced force ratio that ends the hold [-]
+  kernels::Backend backend = kernels::Backend::automatic;      ///< one SIMD lane or one team of threads per RVE
+  int hold_cap = 4000;                                         ///< most steps of a hold
+  double skin = 0.1;                                           ///< neighbour skin over the mean grain diameter [-]
+  int minimum_steps = 50;                                      ///< fewest strain steps of an increment
+  int maximum_steps = 2000;                                    ///< most strain steps of an increment
   double defer = 0;  ///< change of stress over pressure up to which RVEs answer by their tangent [-]; 0: never
 };
 
@@ -115,16 +114,19 @@ struct VolumeLossCase {
   LossGeometry geometry = LossGeometry::updated_lagrangian;
 };
 
+/// The key `tangent`: of the tangents that the engine knows the one that it shall find, or none by name ("auto"), which
+/// leaves the choice to the engine (tangent_kind in engine.hpp).
+using TangentChoice = std::optional<kernels::TangentKind>;
+
 /// [newton] What "converged" means (design.md, The continuum), and how it is reached.
 struct NewtonCase {
   double tolerance = 1.0e-3;               ///< of the free residual, relative to the external force [-]
   double displacement_tolerance = 1.0e-2;  ///< of the last correction, relative to the increment [-]
   int maximum_iterations = 40;
-  int anderson_depth = 5;                            ///< 0: plain Newton
-  TangentChoice tangent = TangentChoice::automatic;  ///< of the RVEs, once an increment; automatic: elastic, on a GPU
-                                                     ///< contact
-  double tangent_strain = 1.0e-6;                    ///< of a loading tangent, the strain it is the secant of [-]
-  double initial_tangent_fraction = 0.02;            ///< share of the stage's initial tangent added to the tangent [-]
+  int anderson_depth = 5;                  ///< 0: plain Newton
+  TangentChoice tangent = {};              ///< of the RVEs, once an increment
+  double tangent_strain = 1.0e-6;          ///< of a loading tangent, the strain it is the secant of [-]
+  double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
   double relax_below = 1.0;          ///< share of a planned step up to which a failed step is relaxed, not cut [-]
   int relax_attempts = 3;            ///< iterates from the committed state before an increment is relaxed
   double relax_near = 0.4;           ///< residual below which these end at once, relative as `tolerance` [-]
@@ -162,8 +164,8 @@ struct ProbeCase {
   double strain = 1.0e-4;   ///< size of each probe [-]
   int replicas = 1;  ///< copies of path and probes whose gradients differ by 1e-6 of their size: what chaos makes of
                      ///< them
-  TangentChoice tangent = TangentChoice::contact;  ///< that is reported; kernels/README.md, "Static tangent"; a loading
-                                                   ///< one of `strain`
+  TangentChoice tangent = kernels::TangentKind::contact;  ///< that is reported; kernels/README.md, "Static tangent"; a
+                                                          ///< loading one of `strain`
   std::vector<PathSegment> path;
 };
 
@@ -236,14 +238,20 @@ struct Case {
   std::string fingerprint;  ///< of everything that decides the numbers; in SI to 12 digits, however it was written
 };
 
-/// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) on anything
-/// wrong: unknown keys, wrong units, values outside their limits, values that do not fit together.
-[[nodiscard]] Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
-
 /// Kinds that advance in load increments on a mesh: with checkpoints, and interrupted between two of them.
 [[nodiscard]] constexpr bool runs_on_a_mesh(CaseKind kind) {
   return kind == CaseKind::biaxial_bvp || kind == CaseKind::column || kind == CaseKind::tunnel;
 }
+
+/// As the key `kind` of a case file has them.
+inline constexpr std::array<std::pair<CaseKind, const char*>, 7> case_kind_names{
+    {{CaseKind::pack, "pack"},
+     {CaseKind::biaxial, "biaxial"},
+     {CaseKind::calibrate, "calibrate"},
+     {CaseKind::probe, "probe"},
+     {CaseKind::biaxial_bvp, "biaxial_bvp"},
+     {CaseKind::column, "column"},
+     {CaseKind::tunnel, "tunnel"}}};
 
 [[nodiscard]] std::string to_string(CaseKind kind);
 [[nodiscard]] std::string to_string(MaterialKind kind);

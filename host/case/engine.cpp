@@ -5,6 +5,9 @@
 #include <array>
 #include <stdexcept>
 
+#include "host/case/keys.hpp"
+#include "kernels/advance_rves.hpp"
+
 namespace voussoir::host {
 
 namespace {
@@ -27,7 +30,7 @@ const std::array<Preset, 3>& presets() {
       {{.preset = "standard"},
        "stress off by 2 % of p at 1 kPa, 0.3 % at 100 kPa, 0.04 % at 800 kPa (rms of 8 packings)"},
       {{.preset = "reference",
-        .precision = Precision::double_precision,
+        .precision = kernels::Precision::float64,
         .inertial_number = 3e-5,
         .hold_tolerance = 1e-4,
         .hold_cap = 10000,
@@ -64,6 +67,44 @@ std::string overridden(const EngineCase& engine, const EngineCase& preset) {
 
 }  // namespace
 
+EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
+  EngineCase engine = engine_preset(table.choice("preset", engine_preset_names(), EngineCase{}.preset));
+  const char* width = engine.precision == kernels::Precision::float32 ? "float" : "double";
+  engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? kernels::Precision::float32
+                                                                                      : kernels::Precision::float64;
+  const std::string backend = table.choice("backend", {"auto", "lanes", "teams"}, "auto");
+  engine.backend = backend == "lanes"   ? kernels::Backend::lanes
+                   : backend == "teams" ? kernels::Backend::teams
+                                        : kernels::Backend::automatic;
+  read_quantity(table, "inertial_number", io::Dimension::none, engine.inertial_number,
+                {.at_least = "1e-6", .at_most = "1e-2"});
+  read_quantity(table, "hold_tolerance", io::Dimension::none, engine.hold_tolerance,
+                {.at_least = "1e-6", .at_most = "0.1"});
+  read_integer(table, "hold_cap", engine.hold_cap, {.at_least = 0, .at_most = 10'000'000});
+  read_quantity(table, "skin", io::Dimension::none, engine.skin, {.at_least = "0.005", .at_most = "1"});
+  read_integer(table, "minimum_steps", engine.minimum_steps, {.at_least = 1, .at_most = 10'000'000});
+  read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
+  if (!on_a_mesh) engine.defer = 0;  // whatever the preset says
+  read_quantity(table, "defer", io::Dimension::none, engine.defer, {.at_least = "0", .at_most = "0.1"});
+  if (!on_a_mesh && engine.defer > 0)
+    throw table.error("defer", "is for kinds with a mesh: without one all grains are to run");
+  if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
+  return engine;
+}
+
+TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise) {
+  using enum kernels::TangentKind;
+  const std::string automatic = "auto";
+  std::vector<std::string> names{automatic};
+  for (const kernels::TangentKind kind : {contact, elastic, static_, loading})
+    names.emplace_back(kernels::name_of(kind));
+  const std::string name = table.choice("tangent", names, otherwise ? kernels::name_of(*otherwise) : automatic);
+  for (const kernels::TangentKind kind : {contact, elastic, static_, loading}) {
+    if (name == kernels::name_of(kind)) return kind;
+  }
+  return {};
+}
+
 std::vector<std::string> engine_preset_names() {
   std::vector<std::string> names;
   for (const Preset& preset : presets()) names.push_back(preset.values.preset);
@@ -89,9 +130,20 @@ std::string engine_note(const EngineCase& engine) {
   return note;
 }
 
-bool uses_engine(const Case& input) {
-  if (input.kind == CaseKind::probe) return true;
-  return runs_on_a_mesh(input.kind) && input.material == MaterialKind::grains;
+kernels::TangentKind tangent_kind(TangentChoice choice, const EngineCase& engine) {
+  const bool on_teams = kernels::takes_teams(engine.backend);
+  return choice.value_or(on_teams ? kernels::TangentKind::contact : kernels::TangentKind::elastic);
+}
+
+kernels::EngineSettings engine_settings(const EngineCase& engine) {
+  return {.precision = engine.precision,
+          .skin = engine.skin,
+          .hold_tolerance = engine.hold_tolerance,
+          .backend = engine.backend};
+}
+
+bool uses_engine(CaseKind kind, MaterialKind material) {
+  return kind == CaseKind::probe || (runs_on_a_mesh(kind) && material == MaterialKind::grains);
 }
 
 }  // namespace voussoir::host

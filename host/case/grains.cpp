@@ -1,29 +1,17 @@
-// The tables of the grains: [soil], [packing], [engine], [probe], [biaxial].
-#include <algorithm>
+#include "host/case/grains.hpp"
+
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "host/case/engine.hpp"
-#include "host/case/tables.hpp"
+#include "host/case/keys.hpp"
 #include "io/packing_file.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::host {
 
 using io::Dimension;
-
-void read_quantity(const io::Table& table, const char* key, Dimension dimension, double& member,
-                   io::QuantityRule rule) {
-  rule.fallback = io::format_quantity(member, dimension);
-  member = table.quantity(key, dimension, rule);
-}
-
-void read_integer(const io::Table& table, const char* key, int& member, io::IntegerRule rule) {
-  rule.fallback = member;
-  member = static_cast<int>(table.integer(key, rule));
-}
 
 namespace {
 
@@ -122,89 +110,6 @@ PackingCase read_packing(const io::Table& table) {
     }
   }
   return packing;
-}
-
-EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
-  EngineCase engine = engine_preset(table.choice("preset", engine_preset_names(), EngineCase{}.preset));
-  const char* width = engine.precision == Precision::single_precision ? "float" : "double";
-  engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? Precision::single_precision
-                                                                                      : Precision::double_precision;
-  const std::string backend = table.choice("backend", {"auto", "lanes", "teams"}, "auto");
-  engine.backend = backend == "lanes"   ? EngineBackend::lanes
-                   : backend == "teams" ? EngineBackend::teams
-                                        : EngineBackend::automatic;
-  read_quantity(table, "inertial_number", Dimension::none, engine.inertial_number,
-                {.at_least = "1e-6", .at_most = "1e-2"});
-  read_quantity(table, "hold_tolerance", Dimension::none, engine.hold_tolerance,
-                {.at_least = "1e-6", .at_most = "0.1"});
-  read_integer(table, "hold_cap", engine.hold_cap, {.at_least = 0, .at_most = 10'000'000});
-  read_quantity(table, "skin", Dimension::none, engine.skin, {.at_least = "0.005", .at_most = "1"});
-  read_integer(table, "minimum_steps", engine.minimum_steps, {.at_least = 1, .at_most = 10'000'000});
-  read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
-  if (!on_a_mesh) engine.defer = 0;  // whatever the preset says
-  read_quantity(table, "defer", Dimension::none, engine.defer, {.at_least = "0", .at_most = "0.1"});
-  if (!on_a_mesh && engine.defer > 0)
-    throw table.error("defer", "is for kinds with a mesh: without one all grains are to run");
-  if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
-  return engine;
-}
-
-BiaxialCase read_biaxial(const io::Table& table) {
-  BiaxialCase test;
-  test.pressures = table.quantities("pressures", Dimension::pressure, {.at_least = "100 Pa", .at_most = "10 MPa"},
-                                    std::vector<std::string>{"100 kPa", "200 kPa", "400 kPa"});
-  if (test.pressures.empty()) throw table.error("pressures", "names no pressure");
-  read_quantity(table, "strain", Dimension::none, test.strain, {.at_least = "1e-4", .at_most = "1"});
-  read_quantity(table, "inertial_number", Dimension::none, test.inertial_number,
-                {.at_least = "1e-6", .at_most = "1e-2"});
-  read_quantity(table, "window", Dimension::none, test.window, {.at_least = "1e-5", .at_most = "0.1"});
-  read_integer(table, "samples", test.samples, {.at_least = 20, .at_most = 100'000});
-  if (test.strain < 2.0 * test.window) throw table.error("window", "is more than half of the strain");
-  if (test.samples < 5.0 * test.strain / test.window)
-    throw table.error("samples", "leaves fewer than five points in a window");
-  for (std::size_t k = 1; k < test.pressures.size(); ++k) {
-    if (std::find(test.pressures.begin(), test.pressures.begin() + static_cast<std::ptrdiff_t>(k), test.pressures[k]) !=
-        test.pressures.begin() + static_cast<std::ptrdiff_t>(k)) {
-      throw table.error("pressures", "names a pressure twice");
-    }
-  }
-  return test;
-}
-
-namespace {
-
-std::vector<PathSegment> read_path(const io::Table& table) {
-  std::vector<PathSegment> path;
-  for (const io::Table& entry : table.tables("path")) {
-    PathSegment segment;
-    const auto gradient = entry.quantities("gradient", Dimension::none, {.at_least = "-0.5", .at_most = "0.5"});
-    if (gradient.size() != 4) throw entry.error("gradient", "must have the four entries xx, xy, yx, yy");
-    std::copy(gradient.begin(), gradient.end(), segment.gradient.begin());
-    read_integer(entry, "increments", segment.increments, {.at_least = 1, .at_most = 1'000'000});
-    segment.constant_xx = entry.boolean("constant_xx", false);
-    const auto [xx, xy, yx, yy] = segment.gradient;
-    if (segment.constant_xx && xx != 0) throw entry.error("gradient", "must have no xx where constant_xx finds it");
-    if (segment.constant_xx && xy == 0 && yx == 0 && yy == 0) {
-      throw entry.error("gradient",
-                        "must not be 0 where constant_xx is to find its xx, which is sought within its size");
-    }
-    if (!((1 + xx) * (1 + yy) - xy * yx > 0))
-      throw entry.error("gradient", "leaves no area: det(1 + gradient) must be positive");
-    path.push_back(segment);
-  }
-  return path;
-}
-
-}  // namespace
-
-ProbeCase read_probe(const io::Table& table) {
-  ProbeCase probe;
-  read_quantity(table, "pressure", Dimension::pressure, probe.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
-  read_quantity(table, "strain", Dimension::none, probe.strain, {.at_least = "1e-7", .at_most = "0.1"});
-  read_integer(table, "replicas", probe.replicas, {.at_least = 1, .at_most = 10'000});
-  probe.tangent = read_tangent(table, probe.tangent);
-  probe.path = read_path(table);
-  return probe;
 }
 
 }  // namespace voussoir::host

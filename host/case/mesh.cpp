@@ -1,14 +1,12 @@
-// The tables of what has a mesh: [ground], [column], [gravity], [volume_loss], [biaxial_bvp], [newton], [output],
-// [elastic].
-#include <algorithm>
-#include <array>
+#include "host/case/mesh.hpp"
+
 #include <cmath>
 #include <set>
 #include <string>
 
+#include "host/case/engine.hpp"
+#include "host/case/keys.hpp"
 #include "host/case/result_fields.hpp"
-#include "host/case/tables.hpp"
-#include "host/estimate/work.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::host {
@@ -86,15 +84,6 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
   return test;
 }
 
-TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise) {
-  constexpr std::array<const char*, 5> names{"auto", "contact", "elastic", "static", "loading"};  // as the enumeration
-                                                                                                  // counts them
-  const std::string tangent = table.choice("tangent", {names.begin(), names.end()},
-                                           names[static_cast<std::size_t>(otherwise)]);
-  const auto found = std::find(names.begin(), names.end(), tangent);
-  return static_cast<TangentChoice>(found - names.begin());
-}
-
 NewtonCase read_newton(const io::Table& table) {
   NewtonCase newton;
   read_quantity(table, "tolerance", Dimension::none, newton.tolerance, {.at_most = "0.1", .positive = true});
@@ -125,7 +114,8 @@ OutputCase read_output(const io::Table& table) {
   output.microstructure = read_microstructure(table);
   output.fields = table.texts("fields", std::vector<std::string>{});
   for (const std::string& name : output.fields) {
-    if (components_of_field(name) == 0) throw table.error("fields", "\"" + name + "\" is no field, see io/FORMAT.md");
+    if (find_result_field(name) == nullptr)
+      throw table.error("fields", "\"" + name + "\" is no field, see io/FORMAT.md");
   }
   return output;
 }

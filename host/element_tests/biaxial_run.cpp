@@ -1,4 +1,4 @@
-// The case kind "biaxial".
+#include "host/element_tests/biaxial_run.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -9,9 +9,11 @@
 #include <numbers>
 #include <optional>
 
+#include "host/case/engine.hpp"
 #include "host/case/result_fields.hpp"
 #include "host/element_tests/biaxial.hpp"
-#include "host/material/rve_pool.hpp"
+#include "host/element_tests/strength.hpp"
+#include "host/packing/packings.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/record/provenance.hpp"
 #include "io/result_file.hpp"
@@ -30,18 +32,14 @@ io::TableColumn column(const char* name, const char* unit, const std::vector<Bia
   return out;
 }
 
-/// What every RVE of a mesh has, and what was asked for besides.
+/// What of a contact network every RVE of a mesh has, and what was asked for besides.
 void add_microstructure(const BiaxialCurve& curve, const kernels::MicrostructureRequest& wanted,
                         std::vector<io::TableColumn>& table) {
   if (!wanted.any()) return;
-  const auto& points = curve.points;
-  table.push_back(
-      column("coordination", "-", points, [](const BiaxialPoint& x) { return x.microstructure.coordination; }));
-  table.push_back(
-      column("grain_rotation", "rad", points, [](const BiaxialPoint& x) { return x.microstructure.grain_rotation; }));
-  for (const MicrostructureField& field : microstructure_fields(wanted)) {
-    table.push_back(
-        column(field.name, field.unit, points, [&](const BiaxialPoint& x) { return field.value(x.microstructure); }));
+  for (const ResultField& field : result_field_table) {
+    if (field.of_network == nullptr || !is_asked_for(field, wanted)) continue;
+    table.push_back(column(field.name, field.unit, curve.points,
+                           [&](const BiaxialPoint& x) { return field.of_network(x.microstructure); }));
   }
 }
 
@@ -63,12 +61,12 @@ std::vector<io::TableColumn> curve_table(const BiaxialCurve& curve, const kernel
 }
 
 /// All tests of a case: every seed at every pressure, each packing consolidated at its test's pressure.
-std::vector<PackedRve> packings_of(const Case& input, const PackingNote& note) {
+std::vector<PackedRve> packings_of(const SoilCase& soil, PackingCase recipe, std::span<const double> pressures,
+                                   const PackingNote& note) {
   std::vector<PackedRve> all;
-  for (const double pressure : input.biaxial.pressures) {
-    Case at_pressure = input;
-    at_pressure.packing.pressure = pressure;
-    for (PackedRve& rve : obtain_packings(at_pressure, seeds_of(input.packing), note, Bias::left))
+  for (const double pressure : pressures) {
+    recipe.pressure = pressure;
+    for (PackedRve& rve : obtain_packings(soil, recipe, seeds_of(recipe), note, Bias::left))
       all.push_back(std::move(rve));
   }
   return all;
@@ -133,12 +131,12 @@ struct Summary {
 };
 
 /// Tests that a case asks for; a packing that does not come to rest leaves some out. A file is one packing a pressure.
-std::size_t wanted_tests(const Case& input) {
-  return (input.packing.file.empty() ? seeds_of(input.packing).size() : 1) * input.biaxial.pressures.size();
+std::size_t wanted_tests(const PackingCase& recipe, const BiaxialCase& test) {
+  return (recipe.file.empty() ? seeds_of(recipe).size() : 1) * test.pressures.size();
 }
 
 /// Exit code of the tests that a finished run has left; nothing where there is none.
-std::optional<int> finished_before(const Case& input, const RunOptions& options) {
+std::optional<int> finished_before(std::size_t wanted, const RunOptions& options) {
   const std::filesystem::path file = options.folder / "run.h5";
   if (!options.resume || !std::filesystem::exists(file)) return {};
   const io::Tables tables = io::read_tables(file);
@@ -147,7 +145,7 @@ std::optional<int> finished_before(const Case& input, const RunOptions& options)
   for (const io::TableColumn& column : strength->second) {
     if (column.name != "valid") continue;
     const auto held = static_cast<std::size_t>(std::count(column.values.begin(), column.values.end(), 1.0));
-    return held < wanted_tests(input) ? exit_numerical : exit_ok;
+    return held < wanted ? exit_numerical : exit_ok;
   }
   return {};
 }
@@ -155,18 +153,17 @@ std::optional<int> finished_before(const Case& input, const RunOptions& options)
 }  // namespace
 
 int run_biaxial(const Case& input, const RunOptions& options) {
-  if (const std::optional<int> before = finished_before(input, options)) {
+  const BiaxialCase& test = input.biaxial;
+  const std::size_t wanted = wanted_tests(input.packing, test);
+  if (const std::optional<int> before = finished_before(wanted, options)) {
     std::printf("%s: finished already, nothing to do\n", options.folder.string().c_str());
     return *before;
   }
   if (options.resume) std::printf("biaxial tests run all at once and have no checkpoint: they begin anew\n");
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
-  const std::vector<PackedRve> rves = packings_of(input, note);
-  const kernels::EngineSettings settings{
-      .precision = engine_precision(input.engine), .skin = input.engine.skin, .backend = engine_backend(input.engine)};
-  const BiaxialCase& test = input.biaxial;
-  const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings,
-                                    input.output.microstructure);
+  const std::vector<PackedRve> rves = packings_of(input.soil, input.packing, test.pressures, note);
+  const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
+                                    engine_settings(input.engine), input.output.microstructure);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});
   Summary summary;
   bool failed = false;
@@ -187,7 +184,6 @@ int run_biaxial(const Case& input, const RunOptions& options) {
         common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
         *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
   }
-  const std::size_t wanted = wanted_tests(input);
   if (curves.size() < wanted) {
     std::fprintf(stderr, "biaxial: %zu of %zu tests have no packing that comes to rest\n", wanted - curves.size(),
                  wanted);

@@ -1,4 +1,4 @@
-// The case kind "calibrate".
+#include "host/element_tests/calibrate_run.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -100,12 +100,12 @@ struct Search {
   }
 };
 
-/// The case with which the optimum is confirmed.
-Case confirmation(Case input) {
-  input.packing.grains = input.calibrate.confirm_grains;
-  input.packing.seeds = input.calibrate.confirm_seeds;
-  input.biaxial.inertial_number = input.calibrate.confirm_inertial_number;
-  return input;
+/// The tests with which the optimum is confirmed.
+TestProgram confirmation(TestProgram program, const CalibrateCase& targets) {
+  program.packing.grains = targets.confirm_grains;
+  program.packing.seeds = targets.confirm_seeds;
+  program.biaxial.inertial_number = targets.confirm_inertial_number;
+  return program;
 }
 
 void print_fit(const SetTests& fit, const CalibrateCase& targets) {
@@ -183,13 +183,14 @@ std::vector<io::TableColumn> test_table(const std::vector<SetTests>& sets) {
 int run_calibrate(const Case& input, const RunOptions& options) {
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const CalibrateCase& targets = input.calibrate;
-  const SearchBox box(targets, input.soil);
+  const TestProgram program{input.soil, input.packing, input.engine, input.biaxial};
+  const SearchBox box(targets, program.soil);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "calibrate"), {});
   Search search;
   std::vector<ParameterSet> next = box.grid();
   Optimum optimum;
   for (int round = 0; round <= targets.rounds; ++round) {
-    search.add(test_sets(input, next, note), round, targets);
+    search.add(test_sets(program, next, note), round, targets);
     writer.set_table("search", table_of(search.sets, search.rounds, targets));
     const std::vector<Measured> usable = search.usable();
     if (usable.empty()) {
@@ -199,8 +200,8 @@ int run_calibrate(const Case& input, const RunOptions& options) {
     optimum = find_optimum(box, usable, targets, round);
     next = around(box, optimum.set, round + 1);
   }
-  const std::vector<ParameterSet> last{optimum.set, parameters_of(input.soil)};
-  const std::vector<SetTests> confirmed = test_sets(confirmation(input), last, note);
+  const std::vector<ParameterSet> last{optimum.set, parameters_of(program.soil)};
+  const std::vector<SetTests> confirmed = test_sets(confirmation(program, targets), last, note);
   writer.set_table("fit", table_of(confirmed, {0, 1}, targets));
   writer.set_table("tests", test_table(confirmed));
   writer.set_table("sensitivity", sensitivity_table(optimum));

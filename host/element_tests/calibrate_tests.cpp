@@ -6,21 +6,21 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "host/material/rve_pool.hpp"
+#include "host/case/engine.hpp"
 
 namespace voussoir::host {
 
 namespace {
 
 /// Packings of one set at all pressures, pressure by pressure. Throws std::runtime_error where a seed is lost.
-std::vector<PackedRve> packings_of(const Case& input, const ParameterSet& set) {
-  const std::vector<std::int64_t> seeds = seeds_of(input.packing);
+std::vector<PackedRve> packings_of(const TestProgram& program, const ParameterSet& set) {
+  const std::vector<std::int64_t> seeds = seeds_of(program.packing);
   std::vector<PackedRve> all;
-  Case one = input;
-  one.soil = with_parameters(input.soil, set);
-  for (const double pressure : input.biaxial.pressures) {
-    one.packing.pressure = pressure;
-    std::vector<PackedRve> at_pressure = obtain_packings(one, seeds, {}, Bias::left);
+  const SoilCase soil = with_parameters(program.soil, set);
+  PackingCase recipe = program.packing;
+  for (const double pressure : program.biaxial.pressures) {
+    recipe.pressure = pressure;
+    std::vector<PackedRve> at_pressure = obtain_packings(soil, recipe, seeds, {}, Bias::left);
     if (at_pressure.size() != seeds.size()) {
       throw std::runtime_error(fmt::format("{} of {} packings do not come to rest at {:.4g} kPa",
                                            seeds.size() - at_pressure.size(), seeds.size(), pressure * 1e-3));
@@ -97,18 +97,15 @@ void summarise(SetTests& tests, const std::vector<std::int64_t>& seeds, const st
   if (tests.usable()) take_means(tests, pressures);
 }
 
-std::size_t tests_of_a_set(const Case& input) {
-  return seeds_of(input.packing).size() * input.biaxial.pressures.size();
-}
-
-std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet> sets, const PackingNote& note) {
+std::vector<SetTests> test_sets(const TestProgram& program, std::span<const ParameterSet> sets,
+                                const PackingNote& note) {
   std::vector<SetTests> out(sets.size());
   std::vector<PackedRve> rves;
   std::vector<std::size_t> owner;
   for (std::size_t k = 0; k < sets.size(); ++k) {
     out[k].set = sets[k];
     try {
-      for (PackedRve& rve : packings_of(input, sets[k])) {
+      for (PackedRve& rve : packings_of(program, sets[k])) {
         rves.push_back(std::move(rve));
         owner.push_back(k);
       }
@@ -117,10 +114,9 @@ std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet>
       if (note) note(out[k].fault);
     }
   }
-  const kernels::EngineSettings settings{
-      .precision = engine_precision(input.engine), .skin = input.engine.skin, .backend = engine_backend(input.engine)};
-  const BiaxialCase& test = input.biaxial;
-  std::vector<BiaxialCurve> curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples, settings);
+  const BiaxialCase& test = program.biaxial;
+  std::vector<BiaxialCurve> curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
+                                                   engine_settings(program.engine));
   for (std::size_t c = 0; c < curves.size(); ++c) {
     SetTests& of = out[owner[c]];
     of.strengths.push_back(strength_of(curves[c], test.window));
@@ -129,7 +125,7 @@ std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet>
     of.curves.push_back(std::move(curves[c]));
   }
   for (SetTests& one : out) {
-    summarise(one, seeds_of(input.packing), test.pressures);
+    summarise(one, seeds_of(program.packing), test.pressures);
   }
   return out;
 }

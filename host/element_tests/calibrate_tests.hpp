@@ -7,6 +7,8 @@
 
 #include "host/element_tests/biaxial.hpp"
 #include "host/element_tests/calibration.hpp"
+#include "host/element_tests/strength.hpp"
+#include "host/packing/packings.hpp"
 
 namespace voussoir::host {
 
@@ -34,16 +36,17 @@ struct SetTests {
 /// What a set's tests (curves and strengths, in any order) show: held seeds, and means where they are enough.
 void summarise(SetTests& tests, const std::vector<std::int64_t>& seeds, const std::vector<double>& pressures);
 
-/// Packings of each set at the pressures of input.biaxial (kept in input.packing.folder), then all tests side by side.
-/// A set whose packings do not come to rest says so.
-[[nodiscard]] std::vector<SetTests> test_sets(const Case& input, std::span<const ParameterSet> sets,
+/// What all sets have in common.
+struct TestProgram {
+  SoilCase soil;        ///< in which a set replaces its parameters
+  PackingCase packing;  ///< of each set; its pressure is each of the tests' in turn
+  EngineCase engine;
+  BiaxialCase biaxial;
+};
+
+/// Packings of each set at the pressures of the tests (kept in the recipe's folder), then all tests side by side. A set
+/// whose packings do not come to rest says so.
+[[nodiscard]] std::vector<SetTests> test_sets(const TestProgram& program, std::span<const ParameterSet> sets,
                                               const PackingNote& note);
-
-/// Tests that one set needs.
-[[nodiscard]] std::size_t tests_of_a_set(const Case& input);
-
-/// `kind = "calibrate"`: grid, refinements, confirmation; tables `search`, `fit`, `tests` and `sensitivity` of run.h5,
-/// a summary to standard output. Returns an exit code.
-[[nodiscard]] int run_calibrate(const Case& input, const RunOptions& options);
 
 }  // namespace voussoir::host

@@ -152,7 +152,7 @@ Optimum find_optimum(const SearchBox& box, std::span<const Measured> points, con
   // Twice: the best of the points may be a lucky one, the surface around it sees its neighbours.
   for (int k = 0; k < 2; ++k) center = lowest(box, ResponseSurface(box, points, center, range), targets, center, range);
   const ResponseSurface surface(box, points, center, range);
-  Optimum best{.set = box.set_at(center), .expected = surface.at(center), .scatter = surface.scatter()};
+  Optimum best{.set = box.set_at(center), .scatter = surface.scatter()};
   for (std::size_t d = 0; d < box.dimensions(); ++d) {
     constexpr double side = 0.05;
     std::vector<double> low = center, high = center;

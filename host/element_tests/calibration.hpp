@@ -76,7 +76,6 @@ class ResponseSurface {
 /// The optimum of all that was measured, as the surface sees it after `round` refinements.
 struct Optimum {
   ParameterSet set{};
-  Observation expected{};  ///< of the surface there
   Observation scatter{};
   std::array<Observation, Parameter::count> per_doubling{};  ///< change of the observables when a parameter doubles; 0:
                                                              ///< not searched

@@ -1,4 +1,4 @@
-// The case kind `pack`.
+#include "host/element_tests/pack.hpp"
 
 #include <cstdio>
 
@@ -7,10 +7,10 @@
 
 namespace voussoir::host {
 
-int run_pack(const Case& input, const RunOptions&) {
+int run_pack(const Case& input) {
   const PackingNote print = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const std::vector<std::int64_t> seeds = seeds_of(input.packing);
-  const std::size_t made = obtain_packings(input, seeds, print).size();
+  const std::size_t made = obtain_packings(input.soil, input.packing, seeds, print).size();
   if (made == seeds.size() || !input.packing.file.empty()) return exit_ok;
   std::fprintf(stderr, "pack: %zu of %zu packings do not come to rest\n", seeds.size() - made, seeds.size());
   return exit_numerical;

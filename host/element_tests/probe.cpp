@@ -93,10 +93,10 @@ void print_tangent(const kernels::RveReport& report) {
 }
 
 /// The path; its end into `rve`. Returns what failed.
-std::string take_path(const Case& input, PackedRve& rve, Tables& tables) {
-  const std::vector<double> scale = scales(input.probe.replicas);
-  RvePool pool(rve, {input.engine}, scale.size());
-  const PathEnd end = walk_path(pool, input.probe.path, scale, [&](const PathPoint& at) {
+std::string take_path(const ProbeCase& probe, const EngineCase& engine, PackedRve& rve, Tables& tables) {
+  const std::vector<double> scale = scales(probe.replicas);
+  RvePool pool(rve, {engine}, scale.size());
+  const PathEnd end = walk_path(pool, probe.path, scale, [&](const PathPoint& at) {
     tables.path += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, at.rve,
                                at.increment, at.evaluations, at.strain.xx, at.strain.yy,
                                0.5 * (at.strain.xy + at.strain.yx), at.stress(0), at.stress(1), at.stress(2),
@@ -118,11 +118,13 @@ std::string take_path(const Case& input, PackedRve& rve, Tables& tables) {
 }
 
 /// All probes of all replicas from the state `rve`. Returns what failed.
-std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables, bool show) {
-  const std::vector<Probe> all = probes(input.probe.strain);
-  const std::vector<double> scale = scales(input.probe.replicas);
+std::string take_probes(const ProbeCase& wanted, const EngineCase& engine, const PackedRve& rve, Tables& tables,
+                        bool show) {
+  const std::vector<Probe> all = probes(wanted.strain);
+  const std::vector<double> scale = scales(wanted.replicas);
   const std::size_t n = all.size() * scale.size();
-  RvePool pool(rve, {.engine = input.engine, .tangent = input.probe.tangent, .tangent_strain = input.probe.strain}, n);
+  RvePool pool(rve,
+               {.engine = engine, .tangent = tangent_kind(wanted.tangent, engine), .tangent_strain = wanted.strain}, n);
   std::vector<fem::Gradient> gradients;
   for (const double factor : scale) {
     for (const Probe& probe : all) gradients.emplace_back(factor * probe.gradient);
@@ -139,7 +141,7 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
   for (std::size_t k = 0; k < n; ++k) {
     const Probe& probe = all[k % all.size()];
     const fem::Stress change = after[k] - before[k];
-    if (show && k < all.size()) print_probe(probe, change, input.probe.strain);
+    if (show && k < all.size()) print_probe(probe, change, wanted.strain);
     tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, k / all.size(),
                                 probe.name, after[k](0), after[k](1), after[k](2), change(0), change(1), change(2)) +
                     cells_of(start) + cells_of(pool.committed_reports()[k]) + end_of_row(pool.committed_reports()[k]);
@@ -149,13 +151,12 @@ std::string take_probes(const Case& input, const PackedRve& rve, Tables& tables,
 }
 
 /// The packings that are probed; several are not compared with each other, so their bias is not measured.
-std::vector<PackedRve> packings_to_probe(const Case& input) {
-  Case at_pressure = input;
-  at_pressure.packing.pressure = input.probe.pressure;
-  if (input.packing.seeds.empty() || !input.packing.file.empty()) return {choose_packing(at_pressure, print)};
+std::vector<PackedRve> packings_to_probe(const SoilCase& soil, PackingCase recipe, double pressure) {
+  recipe.pressure = pressure;
+  if (recipe.seeds.empty() || !recipe.file.empty()) return {choose_packing(soil, recipe, print)};
   std::vector<PackedRve> rves;
-  for (const std::int64_t seed : input.packing.seeds)
-    rves.push_back(obtain_packings(at_pressure, std::span(&seed, 1), print).front());
+  for (const std::int64_t seed : recipe.seeds)
+    rves.push_back(obtain_packings(soil, recipe, std::span(&seed, 1), print).front());
   return rves;
 }
 
@@ -163,7 +164,7 @@ std::vector<PackedRve> packings_to_probe(const Case& input) {
 
 int run_probe(const Case& input, const RunOptions& options) {
   std::printf("%s\n", engine_note(input.engine).c_str());
-  std::vector<PackedRve> rves = packings_to_probe(input);
+  std::vector<PackedRve> rves = packings_to_probe(input.soil, input.packing, input.probe.pressure);
   std::filesystem::create_directories(options.folder);
   Tables tables;
   int code = exit_ok;
@@ -174,11 +175,11 @@ int run_probe(const Case& input, const RunOptions& options) {
   };
   for (PackedRve& rve : rves) {
     if (!input.probe.path.empty()) {
-      if (note_failure(take_path(input, rve, tables))) continue;
+      if (note_failure(take_path(input.probe, input.engine, rve, tables))) continue;
       io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed),
                        stored_packing(rve, "path of " + input.name, input.fingerprint));
     }
-    note_failure(take_probes(input, rve, tables, &rve == &rves.front()));
+    note_failure(take_probes(input.probe, input.engine, rve, tables, &rve == &rves.front()));
   }
   if (!input.probe.path.empty()) io::write_text(options.folder / "path.csv", tables.path);
   io::write_text(options.folder / "probe.csv", tables.probe);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "host/material/deformation.hpp"
+
 namespace voussoir::host {
 
 namespace {
@@ -41,8 +43,6 @@ class LateralSearch {
   bool seen_ = false, found_ = false;
 };
 
-kernels::Mat2 map_of(const fem::Gradient& h) { return {1.0 + h(0, 0), h(0, 1), h(1, 0), 1.0 + h(1, 1)}; }
-
 fem::Gradient gradient_of(const PathSegment& segment, double scale) {
   fem::Gradient h;
   h << segment.gradient[0], segment.gradient[1], segment.gradient[2], segment.gradient[3];
@@ -74,7 +74,6 @@ struct Walk {
 struct IncrementEnd {
   fem::BatchReport report;
   int evaluations = 0;
-  double particle_steps = 0;
   double miss = 0;  ///< largest, where sigma_xx was held [-]
 };
 
@@ -82,7 +81,6 @@ IncrementEnd evaluate_given(Walk& walk) {
   IncrementEnd end;
   end.report = walk.pool.evaluate(walk.gradients, walk.stress, walk.tangent);
   end.evaluations = 1;
-  end.particle_steps = static_cast<double>(end.report.work);
   return end;
 }
 
@@ -97,7 +95,6 @@ IncrementEnd evaluate_held(Walk& walk) {
   while (end.evaluations < most_evaluations) {
     for (std::size_t k = 0; k < searches.size(); ++k) walk.gradients[k](0, 0) = searches[k].gradient();
     end.report = walk.pool.evaluate(walk.gradients, walk.stress, walk.tangent);
-    end.particle_steps += static_cast<double>(end.report.work);
     ++end.evaluations;
     if (!end.report.usable) break;
     for (std::size_t k = 0; k < searches.size(); ++k)
@@ -138,7 +135,6 @@ PathEnd walk_path(RvePool& pool, std::span<const PathSegment> segments, std::spa
       for (std::size_t rve = 0; rve < pool.size(); ++rve) walk.gradients[rve] = gradient_of(segment, scale[rve]);
       pool.begin_increment();
       const IncrementEnd done = segment.constant_xx ? evaluate_held(walk) : evaluate_given(walk);
-      end.particle_steps += done.particle_steps;
       ++increment;
       if (!done.report.usable) {
         end.usable = false;
@@ -148,7 +144,8 @@ PathEnd walk_path(RvePool& pool, std::span<const PathSegment> segments, std::spa
       if (done.miss > lateral_tolerance) ++end.missed;
       end.largest_miss = std::max(end.largest_miss, done.miss);
       pool.commit();
-      for (std::size_t rve = 0; rve < pool.size(); ++rve) walk.f[rve] = map_of(walk.gradients[rve]) * walk.f[rve];
+      for (std::size_t rve = 0; rve < pool.size(); ++rve)
+        walk.f[rve] = deformation_of(walk.gradients[rve]) * walk.f[rve];
       note_all(walk, increment, done.evaluations, note);
     }
   }

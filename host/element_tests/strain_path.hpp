@@ -24,10 +24,9 @@ struct PathPoint {
 /// How a path ended.
 struct PathEnd {
   bool usable = true;
-  std::string message;        ///< what failed and when; empty when usable
-  double particle_steps = 0;  ///< of all RVEs
-  int missed = 0;             ///< increments that end beyond `lateral_tolerance`: `most_evaluations` did not do
-  double largest_miss = 0;    ///< of all RVEs and held increments, |sigma_xx - wanted| over the wanted one [-]
+  std::string message;      ///< what failed and when; empty when usable
+  int missed = 0;           ///< increments that end beyond `lateral_tolerance`: `most_evaluations` did not do
+  double largest_miss = 0;  ///< of all RVEs and held increments, |sigma_xx - wanted| over the wanted one [-]
 };
 
 /// Walks all RVEs of `pool` along the segments, each increment by `evaluate` and `commit`. Where a segment holds

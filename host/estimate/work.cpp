@@ -5,8 +5,9 @@
 #include <numeric>
 
 #include "host/element_tests/calibration.hpp"
+#include "host/estimate/storage.hpp"
 #include "host/packing/packings.hpp"
-#include "host/stages/stages.hpp"
+#include "host/stages/ground_loads.hpp"
 #include "host/stages/tunnel.hpp"
 
 namespace voussoir::host {
@@ -37,74 +38,72 @@ double inertial_steps(const SoilCase& soil, double strain, double pressure, doub
 }
 
 /// Steps of one evaluation of one RVE.
-double steps_per_evaluation(const Case& input, double strain, double pressure) {
-  const double steps = inertial_steps(input.soil, strain, pressure, input.engine.inertial_number);
-  return std::clamp(steps, static_cast<double>(input.engine.minimum_steps),
-                    static_cast<double>(input.engine.maximum_steps)) +
-         std::min(hold_steps, static_cast<double>(input.engine.hold_cap));
+double steps_per_evaluation(const SoilCase& soil, const EngineCase& engine, double strain, double pressure) {
+  const double steps = inertial_steps(soil, strain, pressure, engine.inertial_number);
+  return std::clamp(steps, static_cast<double>(engine.minimum_steps), static_cast<double>(engine.maximum_steps)) +
+         std::min(hold_steps, static_cast<double>(engine.hold_cap));
 }
 
 /// Packings of one pressure.
-std::size_t packings(const Case& input) {
-  return input.packing.file.empty() ? seeds_of(input.packing).size() : std::size_t{1};
+std::size_t packings(const PackingCase& recipe) {
+  return recipe.file.empty() ? seeds_of(recipe).size() : std::size_t{1};
 }
 
-/// `biaxial` and `probe`: tests of packings, no mesh.
-CaseSize test_size(const Case& input) {
+CaseSize probe_size(const ProbeCase& probe, const SoilCase& soil, const PackingCase& recipe, const EngineCase& engine) {
+  double steps = 6.0 * steps_per_evaluation(soil, engine, probe.strain, probe.pressure);
+  for (const PathSegment& segment : probe.path) {
+    const auto& g = segment.gradient;
+    const double strain = std::sqrt(g[0] * g[0] + g[3] * g[3] + 0.5 * (g[1] + g[2]) * (g[1] + g[2]));
+    steps += segment.increments * steps_per_evaluation(soil, engine, strain, probe.pressure);
+  }
+  const std::size_t copies = packings(recipe) * static_cast<std::size_t>(probe.replicas);
   CaseSize size;
-  if (input.kind == CaseKind::probe) {
-    const ProbeCase& probe = input.probe;
-    double steps = 6.0 * steps_per_evaluation(input, probe.strain, probe.pressure);
-    for (const PathSegment& segment : probe.path) {
-      const auto& g = segment.gradient;
-      const double strain = std::sqrt(g[0] * g[0] + g[3] * g[3] + 0.5 * (g[1] + g[2]) * (g[1] + g[2]));
-      steps += segment.increments * steps_per_evaluation(input, strain, probe.pressure);
-    }
-    const std::size_t copies = packings(input) * static_cast<std::size_t>(probe.replicas);
-    size.tests = 6 * copies;
-    size.particle_steps = static_cast<double>(copies) * input.packing.grains * steps;
-    return size;
-  }
-  const BiaxialCase& test = input.biaxial;
-  for (const double pressure : test.pressures) {
-    const double steps = inertial_steps(input.soil, test.strain, pressure, test.inertial_number);
-    size.particle_steps += static_cast<double>(packings(input)) * input.packing.grains * steps;
-  }
-  size.tests = packings(input) * test.pressures.size();
+  size.tests = 6 * copies;
+  size.particle_steps = static_cast<double>(copies) * recipe.grains * steps;
   return size;
 }
 
-CaseSize specimen_size(const Case& input) {
-  const BiaxialBvpCase& test = input.biaxial_bvp;
+CaseSize biaxial_size(const BiaxialCase& test, const SoilCase& soil, const PackingCase& recipe) {
+  CaseSize size;
+  for (const double pressure : test.pressures) {
+    const double steps = inertial_steps(soil, test.strain, pressure, test.inertial_number);
+    size.particle_steps += static_cast<double>(packings(recipe)) * recipe.grains * steps;
+  }
+  size.tests = packings(recipe) * test.pressures.size();
+  return size;
+}
+
+CaseSize specimen_size(const BiaxialBvpCase& test, MaterialKind material, const SoilCase& soil,
+                       const PackingCase& recipe, const EngineCase& engine) {
   CaseSize size;
   size.points = static_cast<std::size_t>(4 * test.columns * test.rows);
   size.increments = static_cast<std::size_t>(test.increments());
-  if (input.material != MaterialKind::grains) return size;
-  size.grains = static_cast<double>(size.points) * input.packing.grains;
+  if (material != MaterialKind::grains) return size;
+  size.grains = static_cast<double>(size.points) * recipe.grains;
   size.particle_steps = size.grains * specimen_evaluations * test.increments() *
-                        steps_per_evaluation(input, specimen_strain * test.strain_step, 2 * test.pressure);
+                        steps_per_evaluation(soil, engine, specimen_strain * test.strain_step, 2 * test.pressure);
   return size;
 }
 
 /// Grid, refinements and confirmation of a search.
-CaseSize search_size(const Case& input) {
-  const CalibrateCase& search = input.calibrate;
-  const SearchBox box(search, input.soil);
+CaseSize search_size(const CalibrateCase& search, const BiaxialCase& test, const SoilCase& given,
+                     const PackingCase& recipe) {
+  const SearchBox box(search, given);
   const std::vector<ParameterSet> grid = box.grid();
   const std::size_t stars = static_cast<std::size_t>(search.rounds) * (2 * box.dimensions() + 1);
-  const std::size_t seeds = seeds_of(input.packing).size();
+  const std::size_t seeds = seeds_of(recipe).size();
   CaseSize size;
-  size.tests = ((grid.size() + stars) * seeds + 2 * search.confirm_seeds.size()) * input.biaxial.pressures.size();
+  size.tests = ((grid.size() + stars) * seeds + 2 * search.confirm_seeds.size()) * test.pressures.size();
   const double thickness_of_grid = std::accumulate(grid.begin(), grid.end(), 0.0,
                                                    [](double sum, const ParameterSet& set) {
                                                      return sum + set[Parameter::thickness];
                                                    }) /
                                    static_cast<double>(grid.size());
-  SoilCase soil = input.soil;
+  SoilCase soil = given;
   soil.thickness = thickness_of_grid;
-  for (const double pressure : input.biaxial.pressures) {
-    const double steps = inertial_steps(soil, input.biaxial.strain, pressure, 1.0);
-    size.particle_steps += steps / input.biaxial.inertial_number * input.packing.grains *
+  for (const double pressure : test.pressures) {
+    const double steps = inertial_steps(soil, test.strain, pressure, 1.0);
+    size.particle_steps += steps / test.inertial_number * recipe.grains *
                            static_cast<double>((grid.size() + stars) * seeds);
     size.particle_steps += steps / search.confirm_inertial_number * search.confirm_grains * 2.0 *
                            static_cast<double>(search.confirm_seeds.size());
@@ -115,7 +114,7 @@ CaseSize search_size(const Case& input) {
 CaseSize ground_size(const Case& input) {
   CaseSize size;
   const bool with_tunnel = input.kind == CaseKind::tunnel;
-  const std::size_t gravity = gravity_targets(input).size();
+  const std::size_t gravity = gravity_targets(input.ground, input.gravity).size();
   const auto loss = with_tunnel ? static_cast<std::size_t>(input.volume_loss.increments) : std::size_t{0};
   size.column_points = static_cast<std::size_t>(4 * input.column.elements);
   size.points = with_tunnel ? static_cast<std::size_t>(tunnel_mesh(input.ground).n_points()) : size.column_points;
@@ -125,14 +124,15 @@ CaseSize ground_size(const Case& input) {
   const auto points = static_cast<double>(size.points);
   const double pressure = 0.5 * input.ground.unit_weight * input.ground.height;  // at half the depth
   const double under_gravity = gravity_evaluations * static_cast<double>(gravity) *
-                               steps_per_evaluation(input, gravity_strain * input.gravity.uniform_step, pressure);
+                               steps_per_evaluation(input.soil, input.engine,
+                                                    gravity_strain * input.gravity.uniform_step, pressure);
   size.grains = points * input.packing.grains;
   size.particle_steps = size.grains * under_gravity;
   if (with_tunnel) {
     const double step = input.volume_loss.total / static_cast<double>(loss);
     size.particle_steps += static_cast<double>(size.column_points) * input.packing.grains * under_gravity;
     size.particle_steps += size.grains * loss_evaluations * static_cast<double>(loss) *
-                           steps_per_evaluation(input, loss_strain * step, pressure);
+                           steps_per_evaluation(input.soil, input.engine, loss_strain * step, pressure);
   }
   return size;
 }
@@ -141,12 +141,14 @@ CaseSize ground_size(const Case& input) {
 
 CaseSize case_size(const Case& input) {
   CaseSize size;
-  if (input.kind == CaseKind::biaxial || input.kind == CaseKind::probe) size = test_size(input);
-  if (input.kind == CaseKind::biaxial_bvp) size = specimen_size(input);
-  if (input.kind == CaseKind::calibrate) size = search_size(input);
+  if (input.kind == CaseKind::probe) size = probe_size(input.probe, input.soil, input.packing, input.engine);
+  if (input.kind == CaseKind::biaxial) size = biaxial_size(input.biaxial, input.soil, input.packing);
+  if (input.kind == CaseKind::biaxial_bvp)
+    size = specimen_size(input.biaxial_bvp, input.material, input.soil, input.packing, input.engine);
+  if (input.kind == CaseKind::calibrate) size = search_size(input.calibrate, input.biaxial, input.soil, input.packing);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) size = ground_size(input);
-  if (size.points > 0) add_storage(input, size);
-  size.packings = packings(input) * (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
+  if (size.points > 0) add_storage(size, input.material, input.packing, input.output);
+  size.packings = packings(input.packing) * (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
   return size;
 }
 

@@ -1,40 +1,12 @@
 #pragma once
-/// How large a case is, and what it will cost, before it is run.
-
-#include <cstddef>
-#include <string>
-#include <vector>
+/// How much work a case is, before it is run.
 
 #include "host/case/case.hpp"
+#include "host/estimate/case_size.hpp"
 
 namespace voussoir::host {
 
-struct CaseSize {
-  std::size_t points = 0;         ///< Gauss points of the largest mesh
-  std::size_t column_points = 0;  ///< of the column
-  std::size_t increments = 0;     ///< planned, all stages
-  double grains = 0;              ///< of all RVEs of the largest mesh; 0 without grains
-  double particle_steps = 0;      ///< estimate of the whole run [grains x steps], packings apart; 0 without grains
-  std::size_t tests = 0;          ///< of packings, for kinds without a mesh
-  std::size_t packings = 0;       ///< to be made or found
-  double memory = 0;              ///< estimate of the first process [bytes]; 0 without a mesh
-  double result_file = 0;         ///< estimate [bytes]; 0 without a mesh
-  double checkpoint = 0;          ///< estimate; two are kept [bytes]
-};
-
-/// Makes the mesh to count its points. The estimate of particle steps is good to a factor of 2: see case_size.cpp.
+/// Makes the mesh to count its points. The estimate of particle steps is good to a factor of 2: see work.cpp.
 [[nodiscard]] CaseSize case_size(const Case& input);
-
-/// Adds what the case takes of memory and disk. @param size with its points and grains
-void add_storage(const Case& input, CaseSize& size);
-
-/// Throws io::InputError where output.rves names a point that the mesh has not.
-void check_snapshot_points(const Case& input, const CaseSize& size);
-
-/// Numbers at each point or node of a field of result files; 0 where there is none of that name.
-[[nodiscard]] int components_of_field(const std::string& name);
-
-/// Lines for `check`: points, increments, work, memory and disk.
-[[nodiscard]] std::vector<std::string> describe(const Case& input, const CaseSize& size);
 
 }  // namespace voussoir::host

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/material/answers.hpp"
+#include "host/material/deformation.hpp"
 #include "kernels/contact/kinematics.hpp"
 
 namespace voussoir::host {
@@ -33,7 +34,7 @@ void set_answer(const Extrapolation& from, kernels::RveReport& report) {
 }  // namespace
 
 Extrapolation extrapolate(const kernels::RveReport& grains, const fem::Gradient& gradient) {
-  const kernels::Mat2 f{1 + gradient(0, 0), gradient(0, 1), gradient(1, 0), 1 + gradient(1, 1)};
+  const kernels::Mat2 f = deformation_of(gradient);
   const double angle = std::atan2(f.yx - f.xy, f.xx + f.yy);
   const double c = std::cos(angle);
   const double s = std::sin(angle);

@@ -1,6 +1,7 @@
 #include "host/material/mirrored_batch.hpp"
 
 #include <numbers>
+#include <stdexcept>
 
 #include "host/case/result_fields.hpp"
 
@@ -56,12 +57,14 @@ void MirroredBatch::committed(std::span<fem::Stress> stress, std::span<fem::Tang
 std::vector<fem::PointField> MirroredBatch::fields() const {
   std::vector<fem::PointField> fields = batch_->fields();
   for (fem::PointField& field : fields) {
-    const bool is_direction = field.name == fabric_direction;
-    if (field.name != "grain_rotation" && !is_direction) continue;
+    const ResultField* row = find_result_field(field.name);
+    if (row == nullptr) throw std::logic_error("nobody knows the mirror image of the field " + field.name);
+    if (row->mirror == Mirror::none) continue;
+    const bool is_axis = row->mirror == Mirror::axis_from_x;
     for (std::size_t p = 0; p < field.values.size(); ++p) {
       if (!is_mirrored(p)) continue;
-      // A direction is half a circle's: its vertical, pi/2, is its own mirror image.
-      if (!is_direction || field.values[p] < 0.5 * std::numbers::pi) field.values[p] = -field.values[p];
+      // The angles of an axis fill half a circle: the vertical one, pi/2, is its own mirror image.
+      if (!is_axis || field.values[p] < 0.5 * std::numbers::pi) field.values[p] = -field.values[p];
     }
   }
   return fields;

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "host/case/engine.hpp"
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
-#include "host/ranks/session.hpp"
+#include "host/material/deformation.hpp"
 #include "kernels/state/committed_contacts.hpp"
 
 namespace voussoir::host {
@@ -18,27 +19,13 @@ namespace {
 /// An evaluation asking for this many times the frozen steps gets more after all: the predictor was far off.
 constexpr int step_regret = 2;
 
-/// Of the static tangents that steer the mesh's iterates: some 32 iterations. Run out, they need no fewer evaluations
-/// (fem/README.md).
-constexpr double newton_tangent_tolerance = 0.1;
-
-kernels::TangentKind kernel_tangent(TangentChoice choice, kernels::Backend backend) {
-  switch (choice) {
-    case TangentChoice::automatic:
-      return kernels::takes_teams(backend) ? kernels::TangentKind::contact : kernels::TangentKind::elastic;
-    case TangentChoice::elastic:
-      return kernels::TangentKind::elastic;
-    case TangentChoice::static_:
-      return kernels::TangentKind::static_;
-    case TangentChoice::loading:
-      return kernels::TangentKind::loading;
-    case TangentChoice::contact:
-      break;
-  }
-  return kernels::TangentKind::contact;
+kernels::EngineSettings settings_of(const PoolOptions& options) {
+  kernels::EngineSettings settings = engine_settings(options.engine);
+  settings.tangent = options.tangent;
+  settings.tangent_tolerance = options.tangent_tolerance;
+  settings.tangent_strain = options.tangent_strain;
+  return settings;
 }
-
-kernels::Mat2 relative_gradient(const fem::Gradient& h) { return {1.0 + h(0, 0), h(0, 1), h(1, 0), 1.0 + h(1, 1)}; }
 
 /// Next number of the series 1.25^k: counts on a coarse grid, so that a predictor's rounding does not change them.
 int round_up(double steps) {
@@ -47,31 +34,9 @@ int round_up(double steps) {
 
 }  // namespace
 
-kernels::Backend engine_backend(const EngineCase& engine) {
-  switch (engine.backend) {
-    case EngineBackend::lanes:
-      return kernels::Backend::lanes;
-    case EngineBackend::teams:
-      return kernels::Backend::teams;
-    case EngineBackend::automatic:
-      break;
-  }
-  return kernels::Backend::automatic;
-}
-
-kernels::Precision engine_precision(const EngineCase& engine) {
-  return engine.precision == Precision::single_precision ? kernels::Precision::float32 : kernels::Precision::float64;
-}
-
 RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n)
     : engine_(options.engine),
-      settings_{.precision = engine_precision(engine_),
-                .skin = engine_.skin,
-                .hold_tolerance = engine_.hold_tolerance,
-                .backend = engine_backend(engine_),
-                .tangent = kernel_tangent(options.tangent, engine_backend(engine_)),
-                .tangent_tolerance = options.tangent_tolerance,
-                .tangent_strain = options.tangent_strain},
+      settings_(settings_of(options)),
       microstructure_(options.microstructure),
       batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
       requests_(n),
@@ -110,7 +75,7 @@ int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
 /// @param anew whatever the steps were before
 void RvePool::choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew) {
   kernels::StrainRequest& request = requests_[rve];
-  request.f_rel = relative_gradient(gradient);
+  request.f_rel = deformation_of(gradient);
   const int steps = steps_for(rve, request.f_rel);
   if (anew || steps > step_regret * request.strain_steps) request.strain_steps = steps;
   request.hold_cap = engine_.hold_cap;
@@ -152,6 +117,7 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
   copy_answers(trial_reports_, stress, tangent);
   fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor);
   report.work = work.particle_steps;
+  report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_.error();
   return report;
 }
@@ -172,29 +138,31 @@ void RvePool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> t
 
 std::vector<fem::PointField> RvePool::fields() const {
   std::vector<fem::PointField> out;
-  const auto add = [&](const char* name, const char* unit, auto&& value) {
-    fem::PointField field{name, unit, 1, std::vector<double>(size())};
+  const auto add = [&](const ResultField& row, auto&& value) {
+    fem::PointField field{row.name, row.unit, row.components, std::vector<double>(size())};
     for (std::size_t k = 0; k < size(); ++k) field.values[k] = value(k);
     out.push_back(std::move(field));
   };
   const auto& reports = committed_reports_;
   const kernels::RveStates& s = batch_.committed;
-  add("void_ratio", "-", [&](std::size_t k) { return void_ratio_of(k); });
-  add("grain_rotation", "rad", [&](std::size_t k) {
+  add(result_field("void_ratio"), [&](std::size_t k) { return void_ratio_of(k); });
+  add(result_field("grain_rotation"), [&](std::size_t k) {
     double sum = 0;
     for (int i = 0; i < batch_.packing(k).size(); ++i) sum += s.rotation(k, static_cast<std::size_t>(i));
     return sum / batch_.packing(k).size();
   });
-  add("coordination", "-", [&](std::size_t k) { return 2.0 * reports[k].contacts / batch_.packing(k).size(); });
-  add("rve_status", "-", [&](std::size_t k) { return static_cast<double>(reports[k].status); });
-  add("unbalanced_ratio", "-", [&](std::size_t k) { return reports[k].unbalanced; });
-  add("inertial_number", "-", [&](std::size_t k) { return reports[k].inertial_number; });
-  add("steps", "-", [&](std::size_t k) { return static_cast<double>(reports[k].steps); });
+  add(result_field("coordination"),
+      [&](std::size_t k) { return 2.0 * reports[k].contacts / batch_.packing(k).size(); });
+  add(result_field("rve_status"), [&](std::size_t k) { return static_cast<double>(reports[k].status); });
+  add(result_field("unbalanced_ratio"), [&](std::size_t k) { return reports[k].unbalanced; });
+  add(result_field("inertial_number"), [&](std::size_t k) { return reports[k].inertial_number; });
+  add(result_field("steps"), [&](std::size_t k) { return static_cast<double>(reports[k].steps); });
   if (!microstructure_.any()) return out;
   std::vector<kernels::Microstructure> all(size());
   kernels::describe_committed(batch_, microstructure_, all);
-  for (const MicrostructureField& field : microstructure_fields(microstructure_)) {
-    add(field.name, field.unit, [&](std::size_t k) { return field.value(all[k]); });
+  for (const ResultField& row : result_field_table) {
+    if (row.request == nullptr || !is_asked_for(row, microstructure_)) continue;
+    add(row, [&](std::size_t k) { return row.of_network(all[k]); });
   }
   return out;
 }
@@ -250,18 +218,6 @@ std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> po
     out.push_back(snapshot(static_cast<std::size_t>(point)));
   }
   return out;
-}
-
-std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points, const PackingNote& note) {
-  PackedRve rve = choose_packing(input, note);
-  PoolOptions options{.engine = input.engine,
-                      .tangent = input.newton.tangent,
-                      .tangent_strain = input.newton.tangent_strain,
-                      .microstructure = input.output.microstructure};
-  // To a tenth, a loading tangent would be little else than the elastic one that it starts from.
-  if (options.tangent != TangentChoice::loading) options.tangent_tolerance = newton_tangent_tolerance;
-  if (rank_count() > 1) return make_rank_pool(std::move(rve), options, n_points, note);
-  return std::make_unique<RvePool>(rve, options, n_points);
 }
 
 }  // namespace voussoir::host

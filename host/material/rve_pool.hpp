@@ -2,26 +2,20 @@
 /// One RVE per Gauss point behind fem's one door: chooses step counts, runs the engine, answers with stress and
 /// tangent.
 
-#include <memory>
-
 #include "fem/material_batch.hpp"
+#include "host/case/case.hpp"
 #include "host/material/deferral.hpp"
-#include "host/material/rve_pool_state.hpp"
 #include "host/material/snapshot_source.hpp"
-#include "host/packing/packings.hpp"
+#include "host/material/state_records.hpp"
+#include "host/packing/packed_rve.hpp"
+#include "kernels/advance_rves.hpp"
 
 namespace voussoir::host {
-
-/// The case's value type as the engine names it.
-[[nodiscard]] kernels::Precision engine_precision(const EngineCase& engine);
-
-/// The case's backend as the engine names it.
-[[nodiscard]] kernels::Backend engine_backend(const EngineCase& engine);
 
 /// What a pool is told besides its packing and its size.
 struct PoolOptions {
   EngineCase engine;
-  TangentChoice tangent = TangentChoice::contact;
+  kernels::TangentKind tangent = kernels::TangentKind::contact;
   double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< of a static one [-]
   double tangent_strain = 1.0e-6;                                          ///< of a loading tangent [-]
   kernels::MicrostructureRequest microstructure = {};  ///< what fields() shall hold besides; computed there, at each
@@ -80,9 +74,5 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
 
 /// Name of a point's snapshot.
 [[nodiscard]] std::string point_name(std::size_t point);
-
-/// The case's chosen packing at `n_points` Gauss points.
-[[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_rve_pool(const Case& input, std::size_t n_points,
-                                                                const PackingNote& note = {});
 
 }  // namespace voussoir::host

@@ -1,12 +1,10 @@
-// The committed state of a pool as bytes: what an evaluation starts from, nothing derived.
-
-#include "host/material/rve_pool_state.hpp"
-
+// The committed state of a pool as bytes: all that an evaluation starts from, nothing derived from it.
 #include <array>
 #include <numeric>
 #include <stdexcept>
 
 #include "host/material/rve_pool.hpp"
+#include "host/material/state_records.hpp"
 #include "io/byte_stream.hpp"
 #include "io/hash.hpp"
 
@@ -61,31 +59,7 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
 /// Raised when the bytes of a record mean something else than before.
 constexpr std::uint64_t record_version = 2;
 
-constexpr const char* not_of_this_case = "the checkpoint's RVEs are not those of this case";
-
 }  // namespace
-
-std::vector<std::byte> join_state(std::uint64_t identity, std::span<const StateRecord> records) {
-  std::size_t size = 2 * sizeof(std::uint64_t);
-  for (const StateRecord& record : records) size += sizeof(std::uint64_t) + record.size();
-  std::vector<std::byte> bytes;
-  bytes.reserve(size);
-  ByteWriter write(bytes);
-  write.value(static_cast<std::uint64_t>(records.size()));
-  write.value(identity);
-  for (const StateRecord& record : records) write.list(record);
-  return bytes;
-}
-
-std::vector<StateRecord> split_state(std::span<const std::byte> bytes, std::uint64_t identity, std::size_t n) {
-  ByteReader read(bytes, not_of_this_case);
-  if (read.value<std::uint64_t>() != n) throw std::runtime_error("the checkpoint has another number of RVEs");
-  if (read.value<std::uint64_t>() != identity) throw std::runtime_error("the checkpoint's RVEs are of another packing");
-  std::vector<StateRecord> records(n);
-  for (StateRecord& record : records) record = read.take(read.value<std::uint64_t>());
-  if (!read.at_end()) throw std::runtime_error(not_of_this_case);
-  return records;
-}
 
 std::uint64_t RvePool::identity() const {
   std::uint64_t hash = io::fnv_start;
@@ -108,7 +82,7 @@ std::vector<std::byte> RvePool::state_of(std::size_t rve) const {
   const auto grains = static_cast<std::size_t>(batch_.packing(rve).size());
   // 24 bytes a grain, 20 a contact, of which there are about two a grain; more makes the vector grow once.
   bytes.reserve(256 + 72 * grains);
-  ByteWriter write(bytes);
+  io::ByteWriter write(bytes);
   transfer_report(write, committed_reports_[rve]);
   transfer_deferral(write, deferral_, rve);
   transfer_rve(write, batch_.committed, rve, grains);
@@ -117,7 +91,7 @@ std::vector<std::byte> RvePool::state_of(std::size_t rve) const {
 
 void RvePool::set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records) {
   for (std::size_t k = 0; k < rves.size(); ++k) {
-    ByteReader read(records[k], not_of_this_case);
+    io::ByteReader read(records[k], not_of_this_case);
     transfer_report(read, committed_reports_[rves[k]]);
     transfer_deferral(read, deferral_, rves[k]);
     transfer_rve(read, batch_.committed, rves[k], static_cast<std::size_t>(batch_.packing(rves[k]).size()));

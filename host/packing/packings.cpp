@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/packing/bias.hpp"
+#include "host/packing/recipe.hpp"
 #include "host/packing/stored_packing.hpp"
 #include "io/hash.hpp"
 #include "io/packing_file.hpp"
@@ -16,21 +18,6 @@
 namespace voussoir::host {
 
 namespace {
-
-// The test behind `bias`. A change here must raise recipe_version: biases are kept with the packings.
-constexpr double oedometric_end = 700.0e3;       ///< [Pa], the deepest ground of the study
-constexpr double oedometric_increment = 1.0e-3;  ///< axial strain [-]
-constexpr int most_increments = 200;
-constexpr double bias_floor = 20.0e3;  ///< below it tau_xy is what consolidation left [Pa]
-
-/// Largest |tau_xy|/sigma_yy of a curve above the floor.
-double bias_of(const std::vector<OedometricPoint>& curve) {
-  double bias = 0;
-  for (const OedometricPoint& point : curve) {
-    if (point.stress_yy >= bias_floor) bias = std::max(bias, std::abs(point.stress_xy) / point.stress_yy);
-  }
-  return bias;
-}
 
 std::string table_line(const PackedRve& rve) {
   const std::string bias = std::isnan(rve.bias) ? "" : fmt::format("  bias {:.4f}", rve.bias);
@@ -40,87 +27,56 @@ std::string table_line(const PackedRve& rve) {
       rve.unbalanced, bias);
 }
 
-}  // namespace
-
-std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const PackedRve> rves, double stress) {
-  std::vector<std::vector<OedometricPoint>> curves(rves.size());
-  if (rves.empty()) return curves;
-  kernels::RveBatch batch = batch_of(rves);
-  const kernels::EngineSettings settings{.precision = kernels::Precision::float64};
-  std::vector<kernels::RveReport> reports(rves.size());
-  std::vector<char> ended(rves.size(), 0);
-  double total = 0;
-  for (int increment = 0; increment < most_increments && std::count(ended.begin(), ended.end(), 0) > 0; ++increment) {
-    const double strain = increment < 4 ? 0.25 * oedometric_increment : oedometric_increment;  // fine while it is soft
-    const std::vector<kernels::StrainRequest> requests(
-        rves.size(), {.f_rel = {1, 0, 0, std::exp(-strain)}, .strain_steps = 1000, .hold_cap = 2000});
-    kernels::advance(batch, std::span<const kernels::StrainRequest>(requests), settings, reports);
-    kernels::commit(batch);
-    total += strain;
-    for (std::size_t k = 0; k < rves.size(); ++k) {
-      const double* s = reports[k].stress;
-      if (kernels::is_failure(reports[k].status)) ended[k] = 1;
-      if (ended[k] != 0) continue;
-      curves[k].push_back({total, -s[3], -s[0], -0.5 * (s[1] + s[2])});
-      if (-s[3] >= stress) ended[k] = 1;
-    }
-  }
-  return curves;
+void keep(const SoilCase& soil, const PackingCase& recipe, const PackedRve& rve) {
+  const std::string text = recipe_text(soil, recipe, rve.seed);
+  const std::string fingerprint = io::fingerprint_of(text);
+  std::filesystem::create_directories(recipe.folder);
+  io::save_packing(io::packing_path(recipe.folder, fingerprint), stored_packing(rve, text, fingerprint));
 }
 
-std::vector<std::int64_t> seeds_of(const PackingCase& packing) {
-  std::vector<std::int64_t> seeds = packing.seeds;
-  for (int k = 0; packing.seeds.empty() && k < packing.candidates; ++k) seeds.push_back(packing.seed + k);
-  return seeds;
-}
-
-namespace {
-
-void keep(const Case& input, const PackedRve& rve) {
-  const std::string recipe = recipe_text(input.soil, input.packing, rve.seed);
-  const std::string fingerprint = io::fingerprint_of(recipe);
-  std::filesystem::create_directories(input.packing.folder);
-  io::save_packing(io::packing_path(input.packing.folder, fingerprint), stored_packing(rve, recipe, fingerprint));
-}
-
-std::optional<PackedRve> find(const Case& input, std::int64_t seed) {
-  const auto file = io::find_packing(input.packing.folder,
-                                     io::fingerprint_of(recipe_text(input.soil, input.packing, seed)));
-  auto rve = file ? restored_packing(*file, input.soil) : std::nullopt;
-  return rve && rve->packing.size() == input.packing.grains ? rve : std::nullopt;
+std::optional<PackedRve> find(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
+  const auto file = io::find_packing(recipe.folder, io::fingerprint_of(recipe_text(soil, recipe, seed)));
+  auto rve = file ? restored_packing(*file, soil) : std::nullopt;
+  return rve && rve->packing.size() == recipe.grains ? rve : std::nullopt;
 }
 
 /// Bias of the packings that have none yet; kept with them.
-void measure_bias(const Case& input, std::vector<PackedRve>& rves) {
+void measure_bias(const SoilCase& soil, const PackingCase& recipe, std::vector<PackedRve>& rves) {
   std::vector<PackedRve> unknown;
   for (const PackedRve& rve : rves) {
     if (std::isnan(rve.bias)) unknown.push_back(rve);
   }
-  const auto curves = oedometric_tests(unknown, oedometric_end);
+  const std::vector<double> biases = biases_of(unknown);
   for (PackedRve& rve : rves) {
     for (std::size_t k = 0; k < unknown.size(); ++k) {
       if (unknown[k].seed != rve.seed) continue;
-      rve.bias = bias_of(curves[k]);
-      keep(input, rve);
+      rve.bias = biases[k];
+      keep(soil, recipe, rve);
     }
   }
 }
 
 }  // namespace
 
-std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::int64_t> seeds, const PackingNote& note,
-                                       Bias bias) {
-  if (input.packing.file.extension() == ".h5") {
-    auto rve = restored_packing(io::load_packing(input.packing.file), input.soil);
-    if (!rve) throw std::runtime_error(input.packing.file.string() + " is no packing of this program's grains");
+std::vector<std::int64_t> seeds_of(const PackingCase& recipe) {
+  std::vector<std::int64_t> seeds = recipe.seeds;
+  for (int k = 0; recipe.seeds.empty() && k < recipe.candidates; ++k) seeds.push_back(recipe.seed + k);
+  return seeds;
+}
+
+std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& recipe,
+                                       std::span<const std::int64_t> seeds, const PackingNote& note, Bias bias) {
+  if (recipe.file.extension() == ".h5") {
+    auto rve = restored_packing(io::load_packing(recipe.file), soil);
+    if (!rve) throw std::runtime_error(recipe.file.string() + " is no packing of this program's grains");
     if (note) note("packing read:  " + table_line(*rve));
     return {std::move(*rve)};
   }
-  if (!input.packing.file.empty()) {
-    PackedRve rve = settle_foreign_packing(input.soil, input.packing);
+  if (!recipe.file.empty()) {
+    PackedRve rve = settle_foreign_packing(soil, recipe);
     if (rve.status != kernels::RveStatus::converged) {
       throw std::runtime_error(
-          fmt::format("{} does not come to rest: {}", input.packing.file.string(), kernels::name_of(rve.status)));
+          fmt::format("{} does not come to rest: {}", recipe.file.string(), kernels::name_of(rve.status)));
     }
     if (note)
       note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe do not count)");
@@ -128,11 +84,11 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
   }
   std::vector<std::int64_t> missing;
   for (const std::int64_t seed : seeds) {
-    if (!find(input, seed)) missing.push_back(seed);
+    if (!find(soil, recipe, seed)) missing.push_back(seed);
   }
-  for (const PackedRve& rve : make_packings(input.soil, input.packing, missing)) {
+  for (const PackedRve& rve : make_packings(soil, recipe, missing)) {
     if (rve.status == kernels::RveStatus::converged) {
-      keep(input, rve);
+      keep(soil, recipe, rve);
     } else if (note) {
       note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
                        kernels::name_of(rve.status)));
@@ -140,10 +96,10 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
   }
   std::vector<PackedRve> out;
   for (const std::int64_t seed : seeds) {
-    if (auto rve = find(input, seed)) out.push_back(std::move(*rve));
+    if (auto rve = find(soil, recipe, seed)) out.push_back(std::move(*rve));
   }
   if (out.empty()) throw std::runtime_error("no packing of this recipe comes to rest");
-  if (bias == Bias::measured && out.size() > 1) measure_bias(input, out);
+  if (bias == Bias::measured && out.size() > 1) measure_bias(soil, recipe, out);
   for (const PackedRve& rve : out) {
     const bool made = std::find(missing.begin(), missing.end(), rve.seed) != missing.end();
     if (note) note((made ? "packing made:  " : "packing found: ") + table_line(rve));
@@ -151,8 +107,8 @@ std::vector<PackedRve> obtain_packings(const Case& input, std::span<const std::i
   return out;
 }
 
-PackedRve choose_packing(const Case& input, const PackingNote& note) {
-  std::vector<PackedRve> all = obtain_packings(input, seeds_of(input.packing), note);
+PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note) {
+  std::vector<PackedRve> all = obtain_packings(soil, recipe, seeds_of(recipe), note);
   if (all.size() == 1) return std::move(all.front());
   const auto less_biased = [](const PackedRve& a, const PackedRve& b) {
     return a.bias != b.bias ? a.bias < b.bias : a.seed < b.seed;

@@ -2,11 +2,10 @@
 /// One RVE as a packing file of io (FORMAT.md), with its contacts' histories: read back, it is the same state bit for
 /// bit.
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
-#include "host/packing/recipe.hpp"
+#include "host/packing/packed_rve.hpp"
 #include "io/packing_file.hpp"
 
 namespace voussoir::host {

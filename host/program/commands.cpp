@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "host/case/engine.hpp"
+#include "host/case/load_case.hpp"
+#include "host/estimate/report.hpp"
 #include "host/estimate/work.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
@@ -33,7 +35,7 @@ void print_increments(const std::vector<io::IncrementInfo>& increments) {
 int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides, RunOptions options) {
   const Case input = load_case(case_file, overrides);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
-  check_folder(options, input);
+  check_folder(options, input.fingerprint);
   Kokkos::InitializationSettings settings;
   settings.set_disable_warnings(true);
   if (options.threads > 0) settings.set_num_threads(options.threads);
@@ -48,10 +50,11 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
 int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
   const Case input = load_case(case_file, overrides);
   std::printf("%s\n", input.resolved.c_str());
-  if (uses_engine(input)) std::printf("# %s\n", engine_note(input.engine).c_str());
+  if (uses_engine(input.kind, input.material)) std::printf("# %s\n", engine_note(input.engine).c_str());
   const CaseSize size = case_size(input);
-  check_snapshot_points(input, size);
-  for (const std::string& line : describe(input, size)) std::printf("# %s\n", line.c_str());
+  check_snapshot_points(input.output, size, input.name);
+  for (const std::string& line : describe(size, input.material, input.packing, input.output))
+    std::printf("# %s\n", line.c_str());
   return exit_ok;
 }
 

@@ -4,30 +4,21 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 
-#include "host/case/engine.hpp"
-#include "host/element_tests/biaxial.hpp"
-#include "host/element_tests/calibrate_tests.hpp"
+#include "host/element_tests/biaxial_run.hpp"
+#include "host/element_tests/calibrate_run.hpp"
+#include "host/element_tests/pack.hpp"
 #include "host/element_tests/probe.hpp"
+#include "host/estimate/report.hpp"
 #include "host/estimate/work.hpp"
-#include "host/packing/packings.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/stages/biaxial_bvp.hpp"
+#include "host/stages/column.hpp"
 #include "host/stages/tunnel.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {
 namespace {
-
-RunStatus run_column_case(const Case& input, const RunOptions& options) {
-  std::filesystem::create_directories(options.folder);
-  RunLog log(options.folder / "run.log", options.resume);
-  if (uses_engine(input)) log.line(engine_note(input.engine));
-  const ColumnResult column = run_column(input, options, log);
-  for (const std::string& line : totals_table(column.totals)) log.line(line);
-  return column.status;
-}
 
 int answer(RunStatus status, const RunOptions& options) {
   const std::string folder = options.folder.string();
@@ -47,17 +38,17 @@ int answer(RunStatus status, const RunOptions& options) {
 }  // namespace
 
 int run_case(const Case& input, const RunOptions& options) {
-  if (!input.output.rves.empty()) check_snapshot_points(input, case_size(input));
+  if (!input.output.rves.empty()) check_snapshot_points(input.output, case_size(input), input.name);
   if (options.replace) remove_earlier_run(options);
   switch (input.kind) {
     case CaseKind::tunnel:
       return answer(run_tunnel(input, options), options);
     case CaseKind::column:
-      return answer(run_column_case(input, options), options);
+      return answer(run_column(input, options), options);
     case CaseKind::biaxial_bvp:
       return answer(run_biaxial_bvp(input, options), options);
     case CaseKind::pack:
-      return run_pack(input, options);
+      return run_pack(input);
     case CaseKind::probe:
       return run_probe(input, options);
     case CaseKind::biaxial:

@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "host/case/load_case.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/program/commands.hpp"
@@ -57,7 +58,8 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
     if (!is_plain(run.name)) throw table.error("name", "must be of letters, digits and _ . - and not begin with a dot");
     if (!names.insert(run.name).second) throw table.error("name", "names two runs");
     run.folder = options.folder / run.name;
-    check_folder({.folder = run.folder, .resume = options.resume, .command = {}}, load_case(sweep.base, run.overrides));
+    check_folder({.folder = run.folder, .resume = options.resume, .command = {}},
+                 load_case(sweep.base, run.overrides).fingerprint);
     sweep.runs.push_back(std::move(run));
   }
   if (sweep.runs.empty()) throw text.root().error("run", "there is no [[run]] in this sweep");
@@ -144,6 +146,7 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
     tables.push_back(has_results ? io::read_increments(run.folder / "run.h5") : std::vector<io::IncrementInfo>{});
     if (tables.back().empty()) continue;
     for (const auto& [name, value] : tables.back().back().extra) columns.insert(name);
+    columns.erase("volume_loss");  // it is the load parameter of the stage that loses volume
   }
   std::string text = "name,status,exit_code,stage,load_parameter,iterations,particle_steps,wall_s";
   for (const std::string& column : columns) text += "," + column;

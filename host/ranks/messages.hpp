@@ -5,11 +5,14 @@
 #include <cstdint>
 
 #include "host/material/rve_pool.hpp"
-#include "host/packing/packings.hpp"
+#include "host/packing/packed_rve.hpp"
 #include "host/ranks/channel.hpp"
 #include "io/byte_stream.hpp"
 
 namespace voussoir::host {
+
+using io::ByteReader;
+using io::ByteWriter;
 
 enum class Command : std::uint8_t {
   start,            ///< build's revision, threads -> host's name, threads

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "io/atomic_file.hpp"
-#include "io/case_file.hpp"
+#include "io/input_error.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -43,7 +43,7 @@ std::string fingerprint_of_results(const RunOptions& options) {
 
 }  // namespace
 
-void check_folder(const RunOptions& options, const Case& input) {
+void check_folder(const RunOptions& options, const std::string& fingerprint) {
   namespace fs = std::filesystem;
   const std::string folder = options.folder.string();
   if (!fs::exists(options.folder)) return;
@@ -61,9 +61,9 @@ void check_folder(const RunOptions& options, const Case& input) {
   }
   const std::string theirs = fingerprint_of_results(options);
   if (options.resume) {
-    if (theirs == input.fingerprint) return;
+    if (theirs == fingerprint) return;
     throw io::InputError("--resume", folder,
-                         "was made by another case (fingerprint " + theirs + ", this case has " + input.fingerprint +
+                         "was made by another case (fingerprint " + theirs + ", this case has " + fingerprint +
                              "): resume needs the same case file and --set values");
   }
   if (!options.replace) {

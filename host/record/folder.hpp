@@ -4,24 +4,23 @@
 #include <filesystem>
 #include <string>
 
-#include "host/case/case.hpp"
-
 namespace voussoir::host {
 
 struct RunOptions {
   std::filesystem::path folder;  ///< of the results
   bool resume = false;           ///< go on from the last checkpoint
   bool replace = false;          ///< results of an earlier run may be removed
-  std::string command;           ///< command line, for the record
+  std::string command;           ///< command line, which the provenance repeats
   int threads = 1;
 };
 
-/// Throws io::InputError where the run must not start: the folder holds results and neither resume nor replace is asked
-/// for; it holds other files and no results; or resume is asked for and the results belong to another case. What a run
-/// leaves that was killed before it had a run.h5 is no obstacle.
-void check_folder(const RunOptions& options, const Case& input);
+/// Throws io::InputError where the run of the case with this fingerprint must not start: the folder holds results and
+/// neither resume nor replace is asked for; it holds other files and no results; or resume is asked for and the results
+/// belong to another case. A run that was killed before it had a run.h5 leaves files that are no obstacle.
+void check_folder(const RunOptions& options, const std::string& fingerprint);
 
-/// For options.replace: removes all that a run of any kind leaves in options.folder, checked before by check_folder.
+/// Removes everything that a run of any kind leaves in options.folder, which check_folder has accepted before. Called
+/// where options.replace is set.
 void remove_earlier_run(const RunOptions& options);
 
 }  // namespace voussoir::host

@@ -1,6 +1,6 @@
 #pragma once
-/// What a run says while it runs: plain lines with their time in DIR/run.log and on the terminal, and one live line at
-/// the foot of a terminal, which is never written to a file.
+/// The log of a run: lines with their time in DIR/run.log, the same lines without it on standard output, and one live
+/// line at the foot of a terminal, which shows the progress and is never written to a file.
 
 #include <filesystem>
 #include <memory>
@@ -20,10 +20,10 @@ class RunLog {
   RunLog(const RunLog&) = delete;
   RunLog& operator=(const RunLog&) = delete;
 
-  void line(const std::string& text);     ///< to the file and to standard output
-  void warning(const std::string& text);  ///< the same, marked
-  void detail(const std::string& text);   ///< to the file only
-  void live(const std::string& text);     ///< replaces the live line; nothing where standard output is no terminal
+  void line(const std::string& text);     ///< writes to the file and to standard output
+  void warning(const std::string& text);  ///< writes to both and marks the line as a warning
+  void detail(const std::string& text);   ///< writes to the file only
+  void live(const std::string& text);     ///< replaces the live line; does nothing unless standard output is a terminal
 
  private:
   void clear_live();

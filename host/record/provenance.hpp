@@ -1,5 +1,5 @@
 #pragma once
-/// Where a result comes from.
+/// Where a result comes from: the case, the program and its build, the command, the date, threads and ranks.
 
 #include <string>
 
@@ -9,7 +9,7 @@
 
 namespace voussoir::host {
 
-/// @param kind of the results, e.g. "column" for the column of a tunnel
+/// @param kind names the kind of results, e.g. "column" for the column of a tunnel
 [[nodiscard]] io::Provenance provenance_of(const RunOptions& options, const Case& input, const std::string& kind);
 
 }  // namespace voussoir::host

@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "host/record/provenance.hpp"
-
 namespace voussoir::host {
 namespace {
 
@@ -19,14 +17,29 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+/// What a reader of the log should know of an increment besides its residual.
+std::string remarks(const EquilibriumReport& found) {
+  std::string text;
+  if (found.relaxations > 0) text += fmt::format(", relaxed in {} substeps", found.relaxations);
+  if (found.open_points > 0) text += fmt::format(", {} RVEs without contacts", found.open_points);
+  if (found.step_limit_points > 0) text += fmt::format(", {} RVEs at the step limit", found.step_limit_points);
+  if (found.deferred_points.value_or(0) > 0) text += fmt::format(", {} RVEs deferred", *found.deferred_points);
+  if (found.deferral_error.value_or(0) > 0) {
+    text += fmt::format(", deferred answers were off by up to {:.1e} of the pressure", *found.deferral_error);
+  }
+  if (found.slowest_point && found.slowest_steps) {
+    text += fmt::format(", the slowest RVE was {} with {} steps", *found.slowest_point, *found.slowest_steps);
+  }
+  return text;
+}
+
 }  // namespace
 
-RunRecorder::RunRecorder(const RunOptions& options, const Case& input, const std::string& kind, io::MeshData mesh,
-                         RunLog& log)
+RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& provenance, io::MeshData mesh, RunLog& log)
     : folder_(options.folder),
       log_(log),
-      store_(options.folder / "checkpoints", input.fingerprint),
-      provenance_(provenance_of(options, input, kind)),
+      store_(options.folder / "checkpoints", provenance.fingerprint),
+      provenance_(provenance),
       mesh_(std::move(mesh)) {
   if (options.resume) loaded_ = store_.load_latest();
   if (!loaded_) {
@@ -66,37 +79,30 @@ std::string RunRecorder::time_left(int done) const {
 }
 
 void RunRecorder::show_iterate(double load_parameter, const fem::Iterate& iterate) {
-  log_.live(fmt::format("{} {}/{}  at {:.4g}  iteration {}  residual {:.2e} of {:.2e} N/m  stage ends in {}", stage_,
-                        stage_current_ + 1, stage_planned_, load_parameter, iterate.iteration, iterate.residual,
+  log_.live(fmt::format("{} {}/{}  at {:.4g}  iteration {}  residual {:.2e} of {:.2e} N/m  the stage ends in {}",
+                        stage_, stage_current_ + 1, stage_planned_, load_parameter, iterate.iteration, iterate.residual,
                         iterate.bound, time_left(stage_current_)));
 }
 
-void RunRecorder::report(const io::IncrementInfo& info) {
+void RunRecorder::report(const IncrementReport& increment) {
+  const io::IncrementInfo& info = increment.info;
   stage_current_ = info.stage_index;
   std::string text = fmt::format("{} {}/{}: at {:.5g}, {} iterations, residual {:.1e}, {:.2g} s", info.stage,
                                  info.stage_index, stage_planned_, info.load_parameter, info.iterations, info.residual,
                                  info.wall_s);
-  if (info.cuts > 0) text += fmt::format(", cut {} times", info.cuts);
-  const auto column = [&](const char* name) { return info.extra.contains(name) ? info.extra.at(name).value : 0.0; };
-  if (column("relaxations") > 0) text += fmt::format(", relaxed in {} substeps", column("relaxations"));
-  if (column("open_points") > 0) text += fmt::format(", {} points open", column("open_points"));
-  if (column("step_limit_points") > 0)
-    text += fmt::format(", {} points at the step limit", column("step_limit_points"));
-  if (column("deferred_points") > 0) text += fmt::format(", {} points deferred", column("deferred_points"));
-  if (column("deferral_error") > 0) text += fmt::format(", deferral was off by {:.1e} p", column("deferral_error"));
-  if (column("slowest_steps") > 0) {
-    text += fmt::format(", slowest RVE {} with {} steps", column("slowest_point"), column("slowest_steps"));
-  }
-  if (stage_current_ < stage_planned_) text += fmt::format("; stage ends in {}", time_left(stage_current_));
+  if (info.cuts > 0) text += fmt::format(", the step was cut {} times", info.cuts);
+  if (increment.equilibrium) text += remarks(*increment.equilibrium);
+  if (stage_current_ < stage_planned_) text += fmt::format("; the stage ends in {}", time_left(stage_current_));
   log_.line(text);
 }
 
-void RunRecorder::write(io::IncrementInfo info, const std::vector<io::Field>& fields,
+void RunRecorder::write(const IncrementReport& increment, const std::vector<io::Field>& fields,
                         const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates) {
-  info.index = ++result_index_;
-  writer_->write(info, fields, snapshots, coordinates);
+  io::IncrementInfo row = row_of(increment);
+  row.index = ++result_index_;
+  writer_->write(row, fields, snapshots, coordinates);
   ++files_;
-  file_bytes_ += static_cast<double>(std::filesystem::file_size(io::increment_path(folder_, info.index)));
+  file_bytes_ += static_cast<double>(std::filesystem::file_size(io::increment_path(folder_, row.index)));
 }
 
 std::string RunRecorder::disk_use() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 namespace voussoir::host {
 namespace {
@@ -22,6 +23,7 @@ StageTotals sum_of(const std::vector<StageTotals>& totals) {
     sum.evaluations.insert(sum.evaluations.end(), stage.evaluations.begin(), stage.evaluations.end());
     sum.cuts += stage.cuts;
     sum.particle_steps += stage.particle_steps;
+    sum.lane_steps += stage.lane_steps;
     sum.parts += stage.parts;
     sum.output += stage.output;
     sum.wall += stage.wall;
@@ -54,6 +56,7 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
                                       t.output,
                                       t.wall};
     checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
+    checkpoint.put_doubles(fmt::format("totals_lane_steps_{}", k), {&t.lane_steps, 1});
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
     checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.unsettled);
     checkpoint.put_doubles(fmt::format("totals_unsettled_share_{}", k), t.unsettled_share);
@@ -75,6 +78,9 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
     t.unsettled_share = checkpoint.get_doubles(fmt::format("totals_unsettled_share_{}", totals.size()));
     const std::string deferral = fmt::format("totals_deferral_{}", totals.size());
     if (checkpoint.has(deferral)) t.deferral_error = checkpoint.get_doubles(deferral);
+    const std::string lanes = fmt::format("totals_lane_steps_{}", totals.size());
+    t.lane_steps = checkpoint.has(lanes) ? checkpoint.get_doubles(lanes).at(0)
+                                         : std::numeric_limits<double>::quiet_NaN();
     t.cuts = static_cast<int>(numbers.at(0));
     t.particle_steps = numbers.at(1);
     t.parts = {numbers.at(2), numbers.at(3), numbers.at(4)};
@@ -89,8 +95,10 @@ std::string unsettled_line(const StageTotals& stage, std::size_t points) {
   const auto increments = std::count_if(stage.unsettled.begin(), stage.unsettled.end(), [](double n) { return n > 0; });
   if (increments == 0) return {};
   return fmt::format(
-      "{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest. Were "
-      "their stress off by as much as their pressure, the residual would be off by {:.2g} of its tolerance at the most",
+      "{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest. If "
+      "their stresses were off by as much as their pressure, the residual would be off by {:.2g} of its tolerance at "
+      "the "
+      "most",
       stage.stage, increments, stage.unsettled.size(),
       *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points,
       *std::max_element(stage.unsettled_share.begin(), stage.unsettled_share.end()));
@@ -102,18 +110,26 @@ std::string deferral_line(const StageTotals& stage, double bound) {
   const auto beyond = std::count_if(stage.deferral_error.begin(), stage.deferral_error.end(),
                                     [=](double e) { return e > bound; });
   return fmt::format(
-      "{}: RVEs that answered by their tangent were off by up to {:.1e} of their pressure where their grains have run "
-      "since; "
-      "in {} of {} increments one was off by more than engine.defer = {:g}",
+      "{}: RVEs that answered by their tangent were off by up to {:.1e} of their pressure, as far as their grains have "
+      "moved since; in {} of {} increments an RVE was off by more than engine.defer = {:g}",
       stage.stage, largest, beyond, stage.deferral_error.size(), bound);
+}
+
+std::string lanes_line(const StageTotals& stage) {
+  if (!(stage.lane_steps > 0)) return {};
+  return fmt::format(
+      "{}: {:.1f} % of the steps of the lanes moved a grain; in the others a lane had no RVE, or waited for "
+      "the slowest RVE of its group",
+      stage.stage, 100 * stage.particle_steps / stage.lane_steps);
 }
 
 std::vector<std::string> totals_table(const std::vector<StageTotals>& totals) {
   std::vector<std::string> lines;
   if (totals.empty()) return lines;
   lines.emplace_back(
-      "wall time [s] by stage and part; evaluations an increment (median, largest); particle-steps, and 10^6 of them a "
-      "second of grains");
+      "the columns are: wall time [s] by stage and part; evaluations of an increment (median, largest); "
+      "particle-steps, "
+      "and how many 10^6 of them the grains made in a second");
   lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}", "stage",
                               "incr.", "wall", "grains", "assembly", "solve", "output", "other", "eval.", "most",
                               "cuts", "steps", "M/s"));

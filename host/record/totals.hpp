@@ -1,5 +1,5 @@
 #pragma once
-/// What a run has cost, stage by stage: kept in its checkpoints and told at the end of its log.
+/// The costs of a run, stage by stage. Checkpoints keep them, and the end of the log tells them.
 
 #include <string>
 #include <vector>
@@ -11,32 +11,38 @@ namespace voussoir::host {
 
 struct StageTotals {
   std::string stage;
-  std::vector<double> evaluations;      ///< of each increment, cut tries included
-  std::vector<double> unsettled;        ///< of each increment, points that ended at the step limit: not at rest
-  std::vector<double> unsettled_share;  ///< of each increment: were they off by their pressure, the residual by so much
-                                        ///< of the tolerance [-]
-  std::vector<double> deferral_error;   ///< of each increment, over pressure; none unless RVEs may be deferred [-]
+  std::vector<double> evaluations;      ///< evaluations of each increment, those of tries that were cut included
+  std::vector<double> unsettled;        ///< EquilibriumReport::step_limit_points of each increment
+  std::vector<double> unsettled_share;  ///< EquilibriumReport::unsettled of each increment [-]
+  std::vector<double> deferral_error;   ///< EquilibriumReport::deferral_error of each increment; empty without deferral
   int cuts = 0;                         ///< tries that did not converge
-  double particle_steps = 0;
-  fem::PartTimes parts;
-  double output = 0;  ///< result files and checkpoints [s]
-  double wall = 0;    ///< all of it [s]
+  double particle_steps = 0;            ///< steps of grains
+  double lane_steps = 0;  ///< steps of lanes, as fem::BatchReport::lane_steps; not a number where a checkpoint of an
+                          ///< earlier version did not say how many there were
+  fem::PartTimes parts;   ///< wall time of material, assembly and solution
+  double output = 0;      ///< wall time of result files and checkpoints [s]
+  double wall = 0;        ///< wall time of the whole stage [s]
 };
 
 void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint);
-/// Empty where the checkpoint holds none.
+/// The totals that a checkpoint holds; empty where it holds none.
 [[nodiscard]] std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint);
 
-/// Which of the stage's increments ended with points that are not at rest; empty: none.
-/// @param points of the mesh
+/// A sentence that says how many of the stage's increments ended with RVEs that are not at rest; empty where none did.
+/// @param points number of points of the mesh
 [[nodiscard]] std::string unsettled_line(const StageTotals& stage, std::size_t points);
 
-/// By how much the stage's deferred answers were off (host/deferral.hpp); empty: none may be deferred.
+/// A sentence that says by how much the stage's deferred answers were off (host/material/deferral.hpp); empty where
+/// RVEs may not be deferred.
 /// @param bound `engine.defer`
 [[nodiscard]] std::string deferral_line(const StageTotals& stage, double bound);
 
-/// Lines of a table, one row a stage and a sum: increments, wall time by part [s], evaluations an increment (median and
-/// largest), cuts, particle-steps and their rate.
+/// A sentence that says which share of the lanes' steps moved a grain: lanes wait for the slowest RVE of their group.
+/// Empty where no lanes have worked, or where their number is not known.
+[[nodiscard]] std::string lanes_line(const StageTotals& stage);
+
+/// The lines of a table with one row for each stage and one for their sum: increments, wall time by part [s],
+/// evaluations of an increment (median and largest), cuts, particle-steps and their rate.
 [[nodiscard]] std::vector<std::string> totals_table(const std::vector<StageTotals>& totals);
 
 }  // namespace voussoir::host

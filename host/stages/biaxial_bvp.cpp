@@ -8,8 +8,12 @@
 #include <limits>
 
 #include "fem/boundary.hpp"
+#include "fem/mesh_rectangle.hpp"
 #include "host/case/engine.hpp"
-#include "host/stages/make_material.hpp"
+#include "host/record/provenance.hpp"
+#include "host/stages/ground_record.hpp"
+#include "host/stages/ground_run.hpp"
+#include "host/stages/stage_driver.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -20,21 +24,10 @@ Eigen::VectorXd side_forces(const fem::Mesh& mesh, const fem::Coordinates& coord
          fem::pressure_force(coordinates, mesh.edge_set("axis"), pressure);
 }
 
-/// A mesh's data without the numbers of a tunnel's ground.
-io::MeshData specimen_data(const fem::Mesh& mesh, const Case& input) {
-  io::MeshData data = mesh_data(mesh, input);
-  data.geometry = {{"width", input.biaxial_bvp.width}, {"height", input.biaxial_bvp.height}};
+io::MeshData specimen_data(const fem::Mesh& mesh, const BiaxialBvpCase& test) {
+  io::MeshData data = mesh_data(mesh);
+  data.geometry = {{"width", test.width}, {"height", test.height}};
   return data;
-}
-
-void add_specimen_columns(const SpecimenState& specimen, io::IncrementInfo& info) {
-  info.extra["axial_strain"] = {specimen.axial_strain, "-"};
-  info.extra["volumetric_strain"] = {specimen.volumetric_strain, "-"};
-  info.extra["axial_force"] = {specimen.axial_force, "N/m"};
-  info.extra["axial_stress"] = {specimen.axial_stress, "Pa"};
-  info.extra["p"] = {specimen.p, "Pa"};
-  info.extra["q"] = {specimen.q, "Pa"};
-  info.extra["q_over_p"] = {specimen.p != 0 ? specimen.q / specimen.p : 0.0, "-"};
 }
 
 /// Table `gauss_histories` of io/FORMAT.md, gathered from the increments' own files: a resumed run has them all. A run
@@ -89,12 +82,13 @@ std::string cost_line(const std::filesystem::path& folder) {
     wall += info.wall_s;
   }
   const auto n = static_cast<double>(all.size());
-  return fmt::format("{} increments: {:.1f} evaluations, {:.3g} particle-steps and {:.3g} s each", all.size(),
-                     evaluations / n, work / n, wall / n);
+  return fmt::format(
+      "an increment took {1:.1f} evaluations, {2:.3g} particle-steps and {3:.3g} s in the mean of {0} increments",
+      all.size(), evaluations / n, work / n, wall / n);
 }
 
-Stage specimen_stage(const Ground& ground, SpecimenState& specimen) {
-  const BiaxialBvpCase& test = ground.input.biaxial_bvp;
+/// `ground`, `test` and `specimen` must outlive the stage.
+Stage specimen_stage(const Ground& ground, const BiaxialBvpCase& test, SpecimenState& specimen) {
   const fem::Mesh& mesh = ground.mesh;
   Stage stage;
   stage.name = "biaxial_bvp";
@@ -111,7 +105,9 @@ Stage specimen_stage(const Ground& ground, SpecimenState& specimen) {
   stage.on_step = [&mesh, &specimen](const fem::ConvergedStep& step) {
     specimen = specimen_state(mesh, step.increment, step.state);
   };
-  stage.on_record = [&specimen](io::IncrementInfo& info) { add_specimen_columns(specimen, info); };
+  stage.on_record = [&specimen](IncrementReport& increment) {
+    add_columns(specimen, specimen_columns, increment.info.extra);
+  };
   return stage;
 }
 
@@ -137,7 +133,7 @@ SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increm
   const std::vector<double> now = fem::gauss_points(mesh, state.coordinates).volumes;
   const std::vector<double> first = fem::gauss_points(mesh, mesh.coordinates).volumes;
   double area = 0, first_area = 0;
-  PlaneTensor stress = PlaneTensor::Zero();
+  fem::PlaneTensor stress = fem::PlaneTensor::Zero();
   for (std::size_t p = 0; p < now.size(); ++p) {
     area += now[p];
     first_area += first[p];
@@ -145,37 +141,30 @@ SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increm
   }
   specimen.volumetric_strain = -std::log(area / first_area);
   stress /= area;
-  specimen.p = mean_stress(stress);
-  specimen.q = deviatoric_stress(stress);
+  specimen.p = fem::mean_stress(stress);
+  specimen.q = fem::deviatoric_stress(stress);
+  specimen.q_over_p = specimen.p != 0 ? specimen.q / specimen.p : 0.0;
   return specimen;
 }
 
 RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
   const BiaxialBvpCase& test = input.biaxial_bvp;
   const fem::Mesh mesh = fem::make_rectangle(test.width, test.height, test.columns, test.rows);
-  std::filesystem::create_directories(options.folder);
-  RunLog log(options.folder / "run.log", options.resume);
-  RunRecorder recorder(options, input, "biaxial_bvp", specimen_data(mesh, input), log);
-  if (recorder.finished()) {
-    log.line(fmt::format("{}: finished already, nothing to do", options.folder.string()));
+  RunLog log = open_log(options);
+  GroundRun run(options, provenance_of(options, input, "biaxial_bvp"), mesh, specimen_data(mesh, test),
+                stage_settings(input), log);
+  if (run.finished()) {
+    run.report_finished();
     return RunStatus::finished;
   }
-  if (uses_engine(input)) log.line(engine_note(input.engine));
-  Case at_pressure = input;
-  at_pressure.packing.pressure = test.pressure;
-  const auto material = make_material(at_pressure, static_cast<std::size_t>(mesh.n_points()),
-                                      [&log](const std::string& text) { log.line(text); });
-  Ground ground{input, mesh, *material, {}, {}};
-  if (const io::Checkpoint* checkpoint = recorder.resumed()) {
-    restore(ground, *checkpoint);
-    log.line(fmt::format("resumed behind increment {}", recorder.resumed_stage_index()));
-  } else {
-    begin_stage(ground);
-  }
+  if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
+  MaterialCase material = material_case(input);
+  material.packing.pressure = test.pressure;
+  run.open_ground(material, [&log](const std::string& text) { log.line(text); });
   SpecimenState specimen;
-  const RunStatus status = advance_stage(ground, specimen_stage(ground, specimen), recorder);
-  if (status == RunStatus::interrupted || ground.state.parameter == 0) return status;
-  recorder.set_table("gauss_histories", gauss_histories(options.folder));
+  const RunStatus status = advance_stage(run, specimen_stage(run.ground(), test, specimen));
+  if (status == RunStatus::interrupted || run.ground().state.parameter == 0) return status;
+  run.recorder().set_table("gauss_histories", gauss_histories(options.folder));
   log.line(cost_line(options.folder));
   return status;
 }

@@ -8,9 +8,14 @@
 /// of a relaxed one), the same on which the internal forces are. No imperfection is put in; what breaks the symmetry is
 /// the mirror image at every second point (packing.mirrored) or, without it, rounding.
 
+#include <array>
+
+#include "fem/increment.hpp"
+#include "fem/mesh_state.hpp"
 #include "host/case/case.hpp"
-#include "host/stages/ground.hpp"
-#include "host/stages/stage_driver.hpp"
+#include "host/record/columns.hpp"
+#include "host/record/folder.hpp"
+#include "host/stages/stage.hpp"
 
 namespace voussoir::host {
 
@@ -28,8 +33,19 @@ struct SpecimenState {
   double axial_stress = 0;       ///< axial_force over the top's width on which it was integrated [Pa]
   double p = 0;                  ///< of the stress averaged over the area, eq. (7) [Pa]
   double q = 0;                  ///< of the same, eq. (8) [Pa]
+  double q_over_p = 0;           ///< 0 where p is [-]
 };
 [[nodiscard]] SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increment,
                                            const fem::MeshState& state);
+
+inline constexpr auto specimen_columns = std::to_array<Column<SpecimenState>>({
+    {"axial_strain", "-", &SpecimenState::axial_strain},
+    {"volumetric_strain", "-", &SpecimenState::volumetric_strain},
+    {"axial_force", "N/m", &SpecimenState::axial_force},
+    {"axial_stress", "Pa", &SpecimenState::axial_stress},
+    {"p", "Pa", &SpecimenState::p},
+    {"q", "Pa", &SpecimenState::q},
+    {"q_over_p", "-", &SpecimenState::q_over_p},
+});
 
 }  // namespace voussoir::host

@@ -1,10 +1,12 @@
-// The ground after gravity against the state at rest.
+#include "host/stages/geostatic_check.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <numbers>
 
 #include "fem/gauss_points.hpp"
-#include "host/stages/stages.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -22,8 +24,7 @@ struct Point {
   double deflection;  // [rad], without sign
 };
 
-std::vector<Point> points_at_rest(const Ground& ground) {
-  const GroundCase& soil = ground.input.ground;
+std::vector<Point> points_at_rest(const Ground& ground, const GroundCase& soil) {
   const auto n = static_cast<std::size_t>(ground.mesh.n_points());
   std::vector<fem::Stress> stress(n);
   ground.material.committed(stress, {});
@@ -35,7 +36,7 @@ std::vector<Point> points_at_rest(const Ground& ground) {
     if ((x - axis).norm() <= soil.diameter) continue;  // within D/2 of the opening's edge
     const double depth = soil.height - x.y();
     points.push_back({depth, gauss.volumes[p], -stress[p][1], soil.unit_weight * depth + soil.surcharge,
-                      stress[p][0] / stress[p][1], std::abs(major_axis_from_vertical(stress[p]))});
+                      stress[p][0] / stress[p][1], std::abs(fem::major_axis_from_vertical(stress[p]))});
   }
   return points;
 }
@@ -71,8 +72,8 @@ std::vector<GeostaticRow> rows_of(const std::vector<Point>& points, const Ground
 
 }  // namespace
 
-GeostaticCheck check_geostatic(const Ground& ground) {
-  const std::vector<Point> points = points_at_rest(ground);
+GeostaticCheck check_geostatic(const Ground& ground, const GroundCase& soil) {
+  const std::vector<Point> points = points_at_rest(ground, soil);
   GeostaticCheck check;
   for (const Point& p : points) {
     const double error = std::abs(p.vertical - p.expected);
@@ -84,13 +85,24 @@ GeostaticCheck check_geostatic(const Ground& ground) {
     if (p.vertical >= deep) check.deflection_deep = std::max(check.deflection_deep, p.deflection);
     check.deflection_mean += p.deflection / static_cast<double>(points.size());
   }
-  check.rows = rows_of(points, ground.input.ground);
+  check.rows = rows_of(points, soil);
   for (const GeostaticRow& row : check.rows) {
     const double expected = row.vertical - row.error;
     check.row_ratio = std::max(check.row_ratio, std::abs(row.error) / (0.02 * expected + 0.5e3));
     check.row_scatter = std::max(check.row_scatter, row.scatter / row.vertical);
   }
   return check;
+}
+
+std::string describe(const GeostaticCheck& check) {
+  constexpr double degree = std::numbers::pi / 180.0;
+  return fmt::format(
+      "the vertical stress is within {:.3g} Pa of the stress at rest ({:.2f} of the allowed 5 % + 1 kPa), the means of "
+      "rows within {:.2f} of 2 % + 0.5 kPa, with a scatter of up to {:.2g} %; K0 is {:.3f} to {:.3f}; the principal "
+      "axis "
+      "is off the vertical by {:.2g} deg (mean), {:.2g} deg (largest), {:.2g} deg (largest from 100 kPa on)",
+      check.vertical_error, check.vertical_ratio, check.row_ratio, 100 * check.row_scatter, check.k0_minimum,
+      check.k0_maximum, check.deflection_mean / degree, check.deflection_max / degree, check.deflection_deep / degree);
 }
 
 }  // namespace voussoir::host

@@ -1,43 +1,12 @@
-// Stage "gravity", and the forces that the stages share.
+#include "host/stages/gravity.hpp"
 
-#include "fem/boundary.hpp"
-#include "host/stages/stages.hpp"
+#include "host/stages/ground_loads.hpp"
+#include "host/stages/stage_driver.hpp"
 
 namespace voussoir::host {
 
-Eigen::VectorXd ground_weight(const fem::Mesh& mesh, const GroundCase& ground, double load_factor) {
-  return fem::body_force(mesh, mesh.coordinates, {0.0, -load_factor * ground.unit_weight}) +
-         fem::pressure_force(mesh.coordinates, mesh.edge_set("top"), ground.surcharge);
-}
-
-Eigen::VectorXd opening_tractions(const fem::Mesh& mesh, const GroundCase& ground, const K0Table& k0,
-                                  double load_factor) {
-  const fem::GeostaticStress at_rest{.unit_weight = ground.unit_weight,
-                                     .height = ground.height,
-                                     .surcharge = ground.surcharge,
-                                     .load_factor = load_factor,
-                                     .k0 = [&k0](double s_yy) { return k0.at(-s_yy); }};
-  return fem::traction_force(mesh.coordinates, mesh.edge_set("opening"), at_rest);
-}
-
-fem::Constraints ground_supports(const fem::Mesh& mesh) {
-  fem::Constraints supports;
-  fem::constrain(supports, mesh.node_set("base"), 0, 0.0);
-  fem::constrain(supports, mesh.node_set("base"), 1, 0.0);
-  fem::constrain(supports, mesh.node_set("side"), 0, 0.0);
-  fem::constrain(supports, mesh.node_set("axis"), 0, 0.0);
-  return supports;
-}
-
-std::vector<double> gravity_targets(const Case& input) {
-  const GroundCase& soil = input.ground;
-  return fem::geometric_targets(soil.surcharge / (soil.unit_weight * soil.height), input.gravity.ratio,
-                                input.gravity.uniform_step);
-}
-
-RunStatus settle_under_gravity(Ground& ground, const K0Table& k0, RunRecorder& recorder, bool last) {
-  const GroundCase& soil = ground.input.ground;
-  const fem::Mesh& mesh = ground.mesh;
+RunStatus settle_under_gravity(GroundRun& run, const GroundCase& soil, const GravityCase& gravity, const K0Table& k0) {
+  const fem::Mesh& mesh = run.ground().mesh;
   const fem::Constraints supports = ground_supports(mesh);
   Stage stage;
   stage.name = "gravity";
@@ -47,9 +16,8 @@ RunStatus settle_under_gravity(Ground& ground, const K0Table& k0, RunRecorder& r
   };
   stage.path.prescribed_increment = [&](double, double) { return supports; };
   stage.path.reference_force = stage.path.external_force(1.0).norm();
-  stage.targets = gravity_targets(ground.input);
-  stage.last = last;
-  return advance_stage(ground, stage, recorder);
+  stage.targets = gravity_targets(soil, gravity);
+  return advance_stage(run, stage);
 }
 
 }  // namespace voussoir::host

@@ -1,98 +1,10 @@
 #include "host/stages/ground.hpp"
 
-#include <array>
-#include <utility>
-
-#include "fem/gauss_points.hpp"
-
 namespace voussoir::host {
-namespace {
-
-using io::FieldLocation;
-
-std::vector<double> flat(const Eigen::Ref<const Eigen::VectorXd>& v) { return {v.data(), v.data() + v.size()}; }
-
-/// A Gauss-point field of `components` numbers; `value(point, out)` fills one row.
-template <class Value>
-io::Field gauss_field(const char* name, const char* unit, int components, std::size_t points, const Value& value) {
-  io::Field field{name, unit, FieldLocation::gauss, components, {}};
-  field.values.resize(points * static_cast<std::size_t>(components));
-  for (std::size_t p = 0; p < points; ++p) value(p, field.values.data() + p * static_cast<std::size_t>(components));
-  return field;
-}
-
-void add_stress_fields(std::vector<io::Field>& fields, const std::vector<fem::Stress>& stress) {
-  const std::size_t n = stress.size();
-  fields.push_back(gauss_field("stress", "Pa", 3, n, [&](std::size_t p, double* out) {
-    for (int k = 0; k < 3; ++k) out[k] = stress[p][k];
-  }));
-  fields.push_back(
-      gauss_field("mean_stress", "Pa", 1, n, [&](std::size_t p, double* out) { *out = mean_stress(stress[p]); }));
-  fields.push_back(gauss_field("deviatoric_stress", "Pa", 1, n,
-                               [&](std::size_t p, double* out) { *out = deviatoric_stress(stress[p]); }));
-}
-
-void add_strain_fields(std::vector<io::Field>& fields, const std::vector<PlaneTensor>& strain) {
-  const std::size_t n = strain.size();
-  fields.push_back(gauss_field("strain", "-", 3, n, [&](std::size_t p, double* out) {
-    for (int k = 0; k < 3; ++k) out[k] = strain[p][k];
-  }));
-  fields.push_back(gauss_field("volumetric_strain", "-", 1, n,
-                               [&](std::size_t p, double* out) { *out = volumetric_strain(strain[p]); }));
-  fields.push_back(gauss_field("deviatoric_strain", "-", 1, n,
-                               [&](std::size_t p, double* out) { *out = deviatoric_strain(strain[p]); }));
-}
-
-}  // namespace
 
 void begin_stage(Ground& ground) {
   ground.state = fem::begin_stage(ground.mesh, ground.mesh.coordinates, ground.material);
-  ground.strain.assign(static_cast<std::size_t>(ground.mesh.n_points()), PlaneTensor::Zero());
-}
-
-std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd& reactions) {
-  const auto n = static_cast<std::size_t>(ground.mesh.n_points());
-  std::vector<io::Field> fields;
-  fields.push_back({"displacement", "m", FieldLocation::node, 2, flat(ground.state.displacement)});
-  if (reactions.size() > 0) fields.push_back({"reaction", "N/m", FieldLocation::node, 2, flat(reactions)});
-  const fem::GaussPoints points = fem::gauss_points(ground.mesh, ground.state.coordinates);
-  fields.push_back({"gauss_point_coordinates", "m", FieldLocation::gauss, 2, flat(points.positions.reshaped())});
-  std::vector<fem::Stress> stress(n);
-  ground.material.committed(stress, {});
-  add_stress_fields(fields, stress);
-  add_strain_fields(fields, ground.strain);
-  for (fem::PointField& field : ground.material.fields()) {
-    fields.push_back({std::move(field.name), std::move(field.unit), FieldLocation::gauss, field.components,
-                      std::move(field.values)});
-  }
-  return fields;
-}
-
-io::MeshData mesh_data(const fem::Mesh& mesh, const Case& input) {
-  static constexpr std::array<std::pair<const char*, const char*>, 5> boundary_names{
-      {{"top", "top"}, {"base", "base"}, {"axis", "left"}, {"side", "right"}, {"opening", "tunnel"}}};
-  io::MeshData data;
-  data.coordinates = flat(mesh.coordinates.reshaped());
-  for (const fem::ElementNodes& element : mesh.elements) {
-    data.connectivity.insert(data.connectivity.end(), element.begin(), element.end());
-  }
-  for (const auto& [ours, theirs] : boundary_names) {
-    const auto found = mesh.nodes.find(ours);
-    if (found == mesh.nodes.end()) continue;
-    data.boundaries.emplace_back(theirs, std::vector<std::int64_t>(found->second.begin(), found->second.end()));
-  }
-  const GroundCase& ground = input.ground;
-  data.geometry = {{"surface_y", ground.height}, {"unit_weight", ground.unit_weight}, {"surcharge", ground.surcharge}};
-  if (mesh.nodes.contains("opening")) {
-    data.geometry["diameter"] = ground.diameter;
-    data.geometry["axis_depth"] = ground.height - ground.axis_height();
-  }
-  return data;
-}
-
-std::vector<double> moved_coordinates(const Ground& ground) {
-  if (ground.state.coordinates == ground.mesh.coordinates) return {};
-  return flat(ground.state.coordinates.reshaped());
+  ground.strain.assign(static_cast<std::size_t>(ground.mesh.n_points()), fem::PlaneTensor::Zero());
 }
 
 }  // namespace voussoir::host

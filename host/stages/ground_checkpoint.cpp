@@ -1,11 +1,10 @@
-// Ground to checkpoint and back.
+#include "host/stages/ground_checkpoint.hpp"
+
 #include <array>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <string>
-
-#include "host/stages/ground.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -78,7 +77,7 @@ void restore(Ground& ground, const io::Checkpoint& checkpoint) {
   state.step_limit = scalars[3];
   state.relaxation_factor = scalars[4];
   ground.state = std::move(state);
-  ground.strain = get_list<PlaneTensor>(checkpoint, "strain", points);
+  ground.strain = get_list<fem::PlaneTensor>(checkpoint, "strain", points);
   ground.material.set_state(checkpoint.get("material"));
 }
 

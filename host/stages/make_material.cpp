@@ -3,21 +3,56 @@
 #include <utility>
 
 #include "fem/linear_elastic.hpp"
+#include "host/case/engine.hpp"
 #include "host/material/mirrored_batch.hpp"
 #include "host/material/rve_pool.hpp"
+#include "host/ranks/session.hpp"
 
 namespace voussoir::host {
+namespace {
 
-std::unique_ptr<fem::MaterialBatch> make_material(const Case& input, std::size_t n_points, const PackingNote& note) {
-  if (input.material == MaterialKind::grains) {
-    auto pool = make_rve_pool(input, n_points, note);
-    if (!input.packing.mirrored) return pool;
+/// Of the static tangents that steer the mesh's iterates: some 32 iterations. Run out, they need no fewer evaluations
+/// (fem/README.md).
+constexpr double newton_tangent_tolerance = 0.1;
+
+/// The chosen packing at all points.
+std::unique_ptr<fem::MaterialBatch> make_rve_pool(const MaterialCase& material, std::size_t n_points,
+                                                  const PackingNote& note) {
+  PackedRve rve = choose_packing(material.soil, material.packing, note);
+  PoolOptions options{.engine = material.engine,
+                      .tangent = tangent_kind(material.tangent, material.engine),
+                      .tangent_strain = material.tangent_strain,
+                      .microstructure = material.microstructure};
+  // To a tenth, a loading tangent would be little else than the elastic one that it starts from.
+  if (options.tangent != kernels::TangentKind::loading) options.tangent_tolerance = newton_tangent_tolerance;
+  if (rank_count() > 1) return make_rank_pool(std::move(rve), options, n_points, note);
+  return std::make_unique<RvePool>(rve, options, n_points);
+}
+
+}  // namespace
+
+MaterialCase material_case(const Case& input) {
+  return {.kind = input.material,
+          .soil = input.soil,
+          .packing = input.packing,
+          .engine = input.engine,
+          .elastic = input.elastic,
+          .tangent = input.newton.tangent,
+          .tangent_strain = input.newton.tangent_strain,
+          .microstructure = input.output.microstructure};
+}
+
+std::unique_ptr<fem::MaterialBatch> make_material(const MaterialCase& material, std::size_t n_points,
+                                                  const PackingNote& note) {
+  if (material.kind == MaterialKind::grains) {
+    auto pool = make_rve_pool(material, n_points, note);
+    if (!material.packing.mirrored) return pool;
     return std::make_unique<MirroredBatch>(std::move(pool));
   }
-  const double pressure = input.packing.pressure;
+  const double pressure = material.packing.pressure;
   return std::make_unique<fem::LinearElastic>(
-      n_points, fem::ElasticOptions{.young = input.elastic.modulus,
-                                    .poisson = input.elastic.poisson,
+      n_points, fem::ElasticOptions{.young = material.elastic.modulus,
+                                    .poisson = material.elastic.poisson,
                                     .initial_stress = fem::Stress(-pressure, -pressure, 0.0),
                                     .strain = fem::ElasticStrain::logarithmic});
 }

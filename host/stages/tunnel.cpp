@@ -2,72 +2,69 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "fem/mesh_tunnel.hpp"
 #include "host/case/engine.hpp"
-#include "host/stages/make_material.hpp"
+#include "host/record/provenance.hpp"
+#include "host/stages/column.hpp"
+#include "host/stages/gravity.hpp"
+#include "host/stages/ground_record.hpp"
+#include "host/stages/ground_run.hpp"
+#include "host/stages/volume_loss.hpp"
 
 namespace voussoir::host {
-
-fem::Mesh tunnel_mesh(const GroundCase& ground) {
-  return fem::make_half_tunnel({.width = ground.width,
-                                .height = ground.height,
-                                .diameter = ground.diameter,
-                                .cover = ground.cover(),
-                                .size_near = ground.mesh_size_opening,
-                                .size_far = ground.mesh_size_far});
-}
-
 namespace {
 
-/// Column, gravity and volume loss, as far as they go; `column_totals` is what the column cost.
-RunStatus run_stages(const Case& input, const RunOptions& options, const fem::Mesh& mesh, RunRecorder& recorder,
-                     std::vector<StageTotals>& column_totals) {
-  RunLog& log = recorder.log();
-  RunOptions column_options = options;
-  column_options.folder /= "column";
-  Case column_input = input;
-  column_input.output.rves.clear();  // they are points of the tunnel's mesh
-  const ColumnResult column = run_column(column_input, column_options, log);
-  column_totals = column.totals;
-  if (column.status != RunStatus::finished) return column.status;
+/// The column of a tunnel: a run of its own in the folder `column`.
+ColumnResult run_own_column(const Case& input, const RunOptions& options, RunLog& log) {
+  RunOptions own = options;
+  own.folder /= "column";
+  ColumnSetup setup = column_setup(input);
+  setup.settings.output.rves.clear();  // they are points of the tunnel's mesh
+  return measure_k0(setup, own, provenance_of(own, input, "column"), log);
+}
 
-  recorder.set_table("k0", k0_columns(column.k0));
-
-  const auto material = make_material(input, static_cast<std::size_t>(mesh.n_points()),
-                                      [&log](const std::string& text) { log.detail(text); });
-  Ground ground{input, mesh, *material, {}, {}};
-  if (const io::Checkpoint* checkpoint = recorder.resumed()) {
-    restore(ground, *checkpoint);
-    log.line(
-        fmt::format("resumed behind increment {} of {}", recorder.resumed_stage_index(), recorder.resumed_stage()));
-  } else {
-    begin_stage(ground);
-  }
-  const bool losing = recorder.resumed_stage() == "volume_loss";
+/// Gravity and volume loss, as far as they go.
+RunStatus run_stages(const Case& input, const K0Table& k0, GroundRun& run) {
+  run.recorder().set_table("k0", k0_columns(k0));
+  // The column has told the terminal about the packing already.
+  run.open_ground(material_case(input), [&run](const std::string& text) { run.log().detail(text); });
+  const bool losing = run.recorder().resumed_stage() == "volume_loss";
   if (!losing) {
-    const RunStatus gravity = settle_under_gravity(ground, column.k0, recorder, false);
+    const RunStatus gravity = settle_under_gravity(run, input.ground, input.gravity, k0);
     if (gravity != RunStatus::finished) return gravity;
   }
-  return lose_volume(ground, column.k0, recorder, losing);
+  return lose_volume(run, input.ground, input.volume_loss, k0, losing);
 }
 
 }  // namespace
 
+fem::Mesh tunnel_mesh(const GroundCase& soil) {
+  return fem::make_half_tunnel({.width = soil.width,
+                                .height = soil.height,
+                                .diameter = soil.diameter,
+                                .cover = soil.cover(),
+                                .size_near = soil.mesh_size_opening,
+                                .size_far = soil.mesh_size_far});
+}
+
 RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   const fem::Mesh mesh = tunnel_mesh(input.ground);
-  std::filesystem::create_directories(options.folder);
-  RunLog log(options.folder / "run.log", options.resume);
-  RunRecorder recorder(options, input, "tunnel", mesh_data(mesh, input), log);
-  if (recorder.finished()) {
-    log.line(fmt::format("{}: finished already, nothing to do", options.folder.string()));
+  RunLog log = open_log(options);
+  GroundRun run(options, provenance_of(options, input, "tunnel"), mesh, mesh_data(mesh, input.ground),
+                stage_settings(input), log);
+  if (run.finished()) {
+    run.report_finished();
     return RunStatus::finished;
   }
   log.line(fmt::format("{}: {} elements, {} points of {}", input.name, mesh.n_elements(), mesh.n_points(),
                        to_string(input.material)));
-  if (uses_engine(input)) log.line(engine_note(input.engine));
+  if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
 
-  std::vector<StageTotals> totals;
-  const RunStatus status = run_stages(input, options, mesh, recorder, totals);
-  totals.insert(totals.end(), recorder.totals().begin(), recorder.totals().end());
+  const ColumnResult column = run_own_column(input, options, log);
+  RunStatus status = column.status;
+  if (status == RunStatus::finished) status = run_stages(input, column.k0, run);
+  std::vector<StageTotals> totals = column.totals;
+  totals.insert(totals.end(), run.recorder().totals().begin(), run.recorder().totals().end());
   for (const std::string& line : totals_table(totals)) log.line(line);
   return status;
 }

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "host/case/load_case.hpp"
 #include "host/packing/packings.hpp"
 #include "kernels/contact/lane.hpp"
 
@@ -37,7 +38,7 @@ host::PackedRve packed(host::Case input) {
   input.packing.pressure = pressure;
   input.packing.folder = "out/benchmark";  // where tools/bench_peers looks for it
   const std::int64_t seed[] = {1};
-  return host::obtain_packings(input, seed).front();
+  return host::obtain_packings(input.soil, input.packing, seed).front();
 }
 
 /// CPS_D: 700 grains.

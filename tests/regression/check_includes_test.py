@@ -24,6 +24,17 @@ class CheckIncludes(unittest.TestCase):
                 (root / name).mkdir()
                 (root / name / "README.md").write_text("")
                 (root / name / "a.hpp").write_text("#pragma once\n#include <vector>\n")
+            for room in (
+                "kernels/contact",
+                "kernels/lanes",
+                "kernels/teams",
+                "host/case",
+                "host/stages",
+                "host/program",
+            ):
+                (root / room).mkdir()
+                (root / room / "README.md").write_text("")
+                (root / room / "a.hpp").write_text("#pragma once\n#include <vector>\n")
             (root / "README.md").write_text("")
             self.assertEqual(check(root)[0], 0)
             (root / path).parent.mkdir(parents=True, exist_ok=True)
@@ -37,6 +48,38 @@ class CheckIncludes(unittest.TestCase):
         self.assertIn("fem may not include kernels", self.found("fem/b.cpp", '\n # include "kernels/a.hpp"\n'))
         self.assertIn("io may not include host", self.found("io/b.cpp", "#include <host/a.hpp>\n"))
         self.assertIn("host may not include tests", self.found("host/b.cpp", '#include "tests/a.hpp"\n'))
+
+    def test_rooms_include_downwards_only(self):
+        upwards = {
+            "kernels/contact/b.hpp": "kernels/lanes/a.hpp",
+            "kernels/lanes/b.cpp": "kernels/a.hpp",  # the folder's own top stands above all rooms
+            "host/case/b.cpp": "host/stages/a.hpp",
+            "host/stages/b.hpp": "host/program/a.hpp",
+            "host/program/b.cpp": "host/a.hpp",
+        }
+        for path, header in upwards.items():
+            output = self.found(path, f'\n#include "{header}"\n')
+            self.assertIn(f"{path}:2: ", output)
+            self.assertIn(f"may not include {header}, which stands above it", output)
+
+    def test_rooms_of_one_level_stay_apart(self):
+        output = self.found("kernels/lanes/b.hpp", '#include "kernels/teams/a.hpp"\n')
+        self.assertIn("may not include kernels/teams/a.hpp, which stands beside it", output)
+
+    def test_a_room_without_a_level_is_refused(self):
+        for path in ("host/attic/a.hpp", "kernels/attic/a.hpp"):
+            self.assertIn("is in no room of", self.found(path, "#pragma once\n"))
+
+    def test_rooms_include_downwards_and_themselves(self):
+        downwards = {
+            "kernels/lanes/b.cpp": ("kernels/contact/a.hpp", "kernels/lanes/a.hpp"),
+            "kernels/b.cpp": ("kernels/lanes/a.hpp", "kernels/teams/a.hpp", "kernels/a.hpp"),
+            "host/stages/b.cpp": ("host/case/a.hpp", "kernels/a.hpp", "fem/a.hpp"),
+            "host/main.cpp": ("host/program/a.hpp",),
+        }
+        for path, headers in downwards.items():
+            text = "".join(f'#include "{header}"\n' for header in headers)
+            self.assertIn("nothing found", self.found(path, text))
 
     def test_libraries_stay_home(self):
         self.assertIn("fem may not include Kokkos", self.found("fem/b.cpp", "#include <Kokkos_Core.hpp>\n"))

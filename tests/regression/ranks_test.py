@@ -1,6 +1,7 @@
 """RVEs spread over processes: the bits of one process, and one end for all of them, whatever happens to one."""
 
 import os
+import re
 import resource
 import shutil
 import signal
@@ -70,7 +71,10 @@ for n in (2, 3):
     spread = fresh(f"ranks_{n}")
     run(ranks(n, spread))
     check_same(straight, spread)
-check("3 ranks: " in (spread / "run.log").read_text(), "the log does not say that there were ranks")
+log = (spread / "run.log").read_text()
+check("3 ranks: " in log, "the log does not say that there were ranks")
+shares = [float(share) for share in re.findall(r"gravity: ([\d.]+) % of the steps of the lanes moved a grain", log)]
+check(len(shares) == 1 and 5 < shares[0] < 100, f"the log says that these shares of the lanes worked: {shares}")
 
 stopped = fresh("stopped")
 process = start(ranks(2, stopped), stopped / "increments/0004.h5")

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "fem/load_stepper.hpp"
+#include "fem/mesh_rectangle.hpp"
+#include "fem/mesh_tunnel.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

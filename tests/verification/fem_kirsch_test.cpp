@@ -2,6 +2,7 @@
 /// points.
 #include <gtest/gtest.h>
 
+#include "fem/mesh_rectangle.hpp"
 #include "fem/newton.hpp"
 #include "tests/fem_support.hpp"
 

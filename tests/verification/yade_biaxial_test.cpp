@@ -10,7 +10,8 @@
 #include <numbers>
 #include <sstream>
 
-#include "host/element_tests/biaxial.hpp"
+#include "host/element_tests/strength.hpp"
+#include "host/packing/recipe.hpp"
 
 namespace voussoir::host {
 namespace {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "fem/newton.hpp"
+#include "fem/noise.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

@@ -2,6 +2,8 @@
 
 #include "fem/assembly.hpp"
 #include "fem/boundary.hpp"
+#include "fem/mesh_rectangle.hpp"
+#include "fem/mesh_tunnel.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

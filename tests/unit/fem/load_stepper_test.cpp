@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/load_stepper.hpp"
+#include "fem/mesh_rectangle.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

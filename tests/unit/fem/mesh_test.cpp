@@ -6,6 +6,8 @@
 
 #include "fem/gauss_points.hpp"
 #include "fem/mesh.hpp"
+#include "fem/mesh_rectangle.hpp"
+#include "fem/mesh_tunnel.hpp"
 
 namespace voussoir::fem {
 namespace {

@@ -53,6 +53,8 @@ TEST(Newton, AndersonConvergesOnATangentThatIsTooStiff) {
     EXPECT_NEAR(independent_residual(block, load, increment), report.residual, 1e-9 * report.reaction_norm);
     EXPECT_LE(report.residual, 1e-6 * report.reaction_norm);
     EXPECT_EQ(report.evaluations, block.material.evaluations);
+    EXPECT_EQ(report.work, block.material.size() * static_cast<std::size_t>(report.evaluations));
+    EXPECT_EQ(report.lane_steps, 3 * report.work);
     EXPECT_EQ(block.material.increments_begun, 1);
     for (const auto& [dof, value] : load.prescribed) EXPECT_EQ(increment.displacement[dof], value);
   }
@@ -232,6 +234,8 @@ TEST(Newton, OfHalvedStepsThatAllGrowTheBestIsKept) {
     Increment increment;
     const NewtonReport report = solver.solve_increment(block.state, block.load(0.003, 0.004), increment);
     EXPECT_EQ(report.evaluations, halvings + 2);
+    EXPECT_EQ(report.work, material.size() * static_cast<std::size_t>(halvings + 2));
+    EXPECT_EQ(report.lane_steps, 3 * report.work);
     EXPECT_EQ(report.residual, report.residual_history.back());
     return std::pair(increment.displacement, report.residual);
   };

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/gauss_points.hpp"
+#include "fem/mesh_rectangle.hpp"
 #include "fem/q8.hpp"
 #include "tests/fem_support.hpp"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fem/mesh_rectangle.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {
@@ -40,6 +41,7 @@ class CollapsingMaterial final : public MaterialBatch {
     answer(trial_, stress, tangent);
     BatchReport report;
     report.work = size();
+    report.lane_steps = 3 * size();
     report.deferral_error = 1.0 / evaluations_;
     report.usable = evaluations_ < fails_from;
     if (evaluations_ < settled_from) report.unsettled_stress = 1e6;
@@ -142,6 +144,8 @@ TEST(Relaxation, CollapseEndsInTheEquilibriumBehindIt) {
   EXPECT_GT(pillar.last.relaxations, 0);
   EXPECT_GT(pillar.last.viscous_work, 0);
   EXPECT_LE(pillar.last.residual, 1e-6 * pillar.reaction);
+  EXPECT_EQ(pillar.last.work, pillar.material.size() * static_cast<std::size_t>(pillar.last.evaluations));
+  EXPECT_EQ(pillar.last.lane_steps, 3 * pillar.last.work);
   EXPECT_EQ(pillar.material.tangents_asked, pillar.last.evaluations - pillar.last.relaxations);  // substeps keep the
                                                                                                  // matrix
   // Springs in series: the element that has lost half its stiffness strains twice as much as the other

@@ -5,7 +5,9 @@
 #include <filesystem>
 
 #include "fem/linear_elastic.hpp"
+#include "fem/mesh_rectangle.hpp"
 #include "host/stages/biaxial_bvp.hpp"
+#include "io/result_file.hpp"
 
 namespace voussoir::host {
 namespace {

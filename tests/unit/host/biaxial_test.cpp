@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/element_tests/biaxial.hpp"
+#include "host/element_tests/strength.hpp"
 
 namespace voussoir::host {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/case/case.hpp"
+#include "host/case/load_case.hpp"
 #include "io/case_file.hpp"
 
 namespace voussoir::host {
@@ -51,8 +51,8 @@ TEST(Case, DefaultsAreThoseOfTheDeclarations) {
 
 TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
   const std::string teams = "kind = 'tunnel'\n[engine]\nbackend = 'teams'\n";
-  EXPECT_EQ(load_case(write(teams)).engine.backend, EngineBackend::teams);
-  EXPECT_EQ(load_case(write(teams)).newton.tangent, TangentChoice::automatic);  // eq. (4) there
+  EXPECT_EQ(load_case(write(teams)).engine.backend, kernels::Backend::teams);
+  EXPECT_FALSE(load_case(write(teams)).newton.tangent.has_value());  // eq. (4) there
   EXPECT_EQ(complaint(teams, {"newton.tangent=contact"}), "");
   EXPECT_NE(complaint(teams, {"newton.tangent=elastic"}).find("newton.tangent"), std::string::npos);
   EXPECT_NE(complaint(teams, {"newton.tangent=static"}).find("newton.tangent"), std::string::npos);
@@ -60,7 +60,7 @@ TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
             std::string::npos);
   const std::string biaxial = "kind = 'biaxial'\n[engine]\nbackend = 'teams'\n[output]\nmicrostructure = ['fabric']\n";
   EXPECT_NE(complaint(biaxial, {}).find("output.microstructure"), std::string::npos);
-  EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, EngineBackend::teams);
+  EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, kernels::Backend::teams);
 }
 
 TEST(Case, RvesAreDeferredOnAMeshOnly) {
@@ -81,7 +81,7 @@ TEST(Case, UnitsBecomeSi) {
   EXPECT_DOUBLE_EQ(input.ground.unit_weight, 18e3);
   EXPECT_DOUBLE_EQ(input.volume_loss.total, 0.1);
   EXPECT_NEAR(input.soil.friction, std::numbers::pi / 6, 1e-15);
-  EXPECT_EQ(input.engine.precision, Precision::double_precision);
+  EXPECT_EQ(input.engine.precision, kernels::Precision::float64);
 }
 
 TEST(Case, HeightsFollowFromCoverAndDiameter) {

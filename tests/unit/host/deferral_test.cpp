@@ -189,7 +189,13 @@ TEST_F(DeferringPool, GivesTheGrainsAllThatWasDeferred) {
   EXPECT_LT(last.deferral_error, 1e-2);
   const auto answer = stress_;
   std::size_t work = 0;
-  for (const auto& h : {large, large, large}) work = step(plain, {h, h}).work;
+  std::size_t lane_steps = 0;
+  for (const auto& h : {large, large, large}) {
+    const fem::BatchReport report = step(plain, {h, h});
+    work = report.work;
+    lane_steps = report.lane_steps;
+  }
+  EXPECT_GT(lane_steps, work) << "two RVEs do not fill a group of lanes";
   EXPECT_EQ(answer[1], stress_[1]) << "an RVE beside a deferred one";
   RvePool at_once(rve_, {engine(0)}, 2);
   step(at_once, Gradients(2, compose(large, compose(tiny, tiny))));
@@ -221,7 +227,7 @@ TEST_F(DeferringPool, KeepsToItsBound) {
 /// Teams run some of the RVEs as lanes do.
 TEST_F(DeferringPool, HasTheSameBitsInTeams) {
   EngineCase with_teams = engine(1e-2);
-  with_teams.backend = EngineBackend::teams;
+  with_teams.backend = kernels::Backend::teams;
   RvePool lanes(rve_, {engine(1e-2)}, 2), teams(rve_, {with_teams}, 2);
   for (const auto& second : {tiny, large, large}) {
     const fem::BatchReport by_lanes = step(lanes, {large, second});

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <numeric>
 
+#include "host/case/load_case.hpp"
+#include "host/packing/grading.hpp"
 #include "host/packing/recipe.hpp"
 #include "io/case_file.hpp"
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "host/material/rve_pool.hpp"
+#include "host/packing/recipe.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -73,8 +74,8 @@ TEST_F(HostPacking, IsMadeOnceAndReadBackBitForBit) {
   std::vector<std::string> notes;
   const PackingNote note = [&](const std::string& line) { notes.push_back(line); };
   const std::int64_t seed[] = {3};
-  const PackedRve made = obtain_packings(input_, seed, note).front();
-  const PackedRve found = obtain_packings(input_, seed, note).front();
+  const PackedRve made = obtain_packings(input_.soil, input_.packing, seed, note).front();
+  const PackedRve found = obtain_packings(input_.soil, input_.packing, seed, note).front();
   ASSERT_EQ(notes.size(), 2U);
   EXPECT_EQ(notes[0].rfind("packing made", 0), 0U);
   EXPECT_EQ(notes[1].rfind("packing found", 0), 0U);
@@ -85,17 +86,17 @@ TEST_F(HostPacking, IsMadeOnceAndReadBackBitForBit) {
 
 TEST_F(HostPacking, ADamagedFileIsMadeAnew) {
   const std::int64_t seed[] = {3};
-  const PackedRve made = obtain_packings(input_, seed).front();
+  const PackedRve made = obtain_packings(input_.soil, input_.packing, seed).front();
   for (const auto& file : std::filesystem::directory_iterator(folder_)) {
     std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) / 2);
   }
-  EXPECT_EQ(obtain_packings(input_, seed).front().position, made.position);
+  EXPECT_EQ(obtain_packings(input_.soil, input_.packing, seed).front().position, made.position);
 }
 
 TEST_F(HostPacking, OfSeveralSeedsTheLeastBiasedIsChosen) {
   input_.packing.candidates = 3;
-  const PackedRve chosen = choose_packing(input_);
-  const std::vector<PackedRve> all = obtain_packings(input_, seeds_of(input_.packing));
+  const PackedRve chosen = choose_packing(input_.soil, input_.packing);
+  const std::vector<PackedRve> all = obtain_packings(input_.soil, input_.packing, seeds_of(input_.packing));
   ASSERT_EQ(all.size(), 3U);
   for (const PackedRve& rve : all) EXPECT_LE(chosen.bias, rve.bias);
 }
@@ -103,7 +104,7 @@ TEST_F(HostPacking, OfSeveralSeedsTheLeastBiasedIsChosen) {
 TEST_F(HostPacking, SoftGrainsCanStillBePacked) {
   input_.soil.modulus = 1.0e8;  // their oedometric test ends on its overlaps, which is no reason not to pack them
   input_.packing.candidates = 2;
-  EXPECT_EQ(choose_packing(input_).status, kernels::RveStatus::converged);
+  EXPECT_EQ(choose_packing(input_.soil, input_.packing).status, kernels::RveStatus::converged);
 }
 
 TEST_F(HostPacking, APoolsStateGoesThroughBytesBitForBit) {

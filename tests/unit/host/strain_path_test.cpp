@@ -37,14 +37,13 @@ TEST_F(StrainPath, AGivenPathIsThatOfSingleEvaluations) {
   h << 1e-3, 2e-3, 0, -1e-3;
   std::vector<fem::Stress> stress(1);
   std::vector<fem::Tangent> tangent(1);
-  double work = 0;
   for (int k = 0; k < 3; ++k) {
     by_hand.begin_increment();
-    work += static_cast<double>(by_hand.evaluate(std::span(&h, 1), stress, tangent).work);
+    ASSERT_TRUE(by_hand.evaluate(std::span(&h, 1), stress, tangent).usable);
     by_hand.commit();
   }
   EXPECT_EQ(points.back().stress, stress[0]);
-  EXPECT_EQ(end_.particle_steps, work);
+  EXPECT_EQ(pool.state(), by_hand.state()) << "grains, contacts and reports, steps among them";
   EXPECT_NEAR(points.back().strain.xx + points.back().strain.yy, 3 * std::log(1 - 1e-6), 1e-12) << "log det F";
   EXPECT_EQ(points.back().evaluations, 1);
 }

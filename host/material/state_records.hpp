@@ -11,7 +11,9 @@ namespace voussoir::host {
 
 using StateRecord = std::span<const std::byte>;
 
-/// @param identity of what the RVEs are made of; their state is nothing without it
+inline constexpr const char* not_of_this_case = "the checkpoint's RVEs are not those of this case";
+
+/// @param identity of the packings that the RVEs are made of: their states mean nothing without these
 [[nodiscard]] std::vector<std::byte> join_state(std::uint64_t identity, std::span<const StateRecord> records);
 
 /// The records where they lie in `bytes`. Throws std::runtime_error unless there are `n` of this identity.

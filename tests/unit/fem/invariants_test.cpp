@@ -6,7 +6,7 @@
 
 #include "fem/invariants.hpp"
 
-namespace voussoir::host {
+namespace voussoir::fem {
 namespace {
 
 TEST(Invariants, StressByHand) {
@@ -43,4 +43,4 @@ TEST(Invariants, MajorAxisFollowsARotation) {
 }
 
 }  // namespace
-}  // namespace voussoir::host
+}  // namespace voussoir::fem

@@ -15,6 +15,7 @@ std::vector<StageTotals> two_stages() {
   gravity.stage = "gravity";
   gravity.evaluations = {2, 3};
   gravity.particle_steps = 4e8;
+  gravity.lane_steps = 5e8;
   gravity.parts = {.material = 2.0, .assembly = 0.25, .solve = 0.5};
   gravity.output = 0.125;
   gravity.wall = 3.0;
@@ -43,12 +44,35 @@ TEST(RunTotals, ComeBackFromACheckpoint) {
     EXPECT_EQ(read[k].unsettled_share, written[k].unsettled_share);
     EXPECT_EQ(read[k].cuts, written[k].cuts);
     EXPECT_EQ(read[k].particle_steps, written[k].particle_steps);
+    EXPECT_EQ(read[k].lane_steps, written[k].lane_steps);
     EXPECT_EQ(read[k].parts.material, written[k].parts.material);
     EXPECT_EQ(read[k].parts.assembly, written[k].parts.assembly);
     EXPECT_EQ(read[k].parts.solve, written[k].parts.solve);
     EXPECT_EQ(read[k].output, written[k].output);
     EXPECT_EQ(read[k].wall, written[k].wall);
   }
+}
+
+/// A checkpoint of a version that counted no steps of lanes: a share of what came since would be no share of the stage.
+TEST(RunTotals, OfAnEarlierVersionSayNothingOfLanes) {
+  io::Checkpoint now;
+  save(two_stages(), now);
+  io::Checkpoint then;
+  for (const auto& [name, bytes] : now.blobs()) {
+    if (!name.starts_with("totals_lane_steps")) then.put(name, bytes);
+  }
+  std::vector<StageTotals> read = totals_from(then);
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[1].cuts, 2);
+  read[1].lane_steps += 1e6;
+  EXPECT_EQ(lanes_line(read[1]), "");
+}
+
+TEST(RunTotals, SayWhichShareOfTheLanesWorked) {
+  StageTotals stage = two_stages()[0];
+  EXPECT_NE(lanes_line(stage).find("gravity: 80.0 % of the steps"), std::string::npos) << lanes_line(stage);
+  stage.lane_steps = 0;  // a continuum has no lanes
+  EXPECT_EQ(lanes_line(stage), "");
 }
 
 TEST(RunTotals, SayWhatDeferralWasOffBy) {

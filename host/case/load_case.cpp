@@ -1,0 +1,136 @@
+#include "host/case/load_case.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include "host/case/element_tests.hpp"
+#include "host/case/engine.hpp"
+#include "host/case/grains.hpp"
+#include "host/case/mesh.hpp"
+#include "io/case_file.hpp"
+#include "io/hash.hpp"
+
+namespace voussoir::host {
+namespace {
+
+CaseKind read_kind(const io::Table& root) {
+  std::vector<std::string> names;
+  for (const auto& [kind, name] : case_kind_names) names.emplace_back(name);
+  const std::string wanted = root.choice("kind", names);
+  for (const auto& [kind, name] : case_kind_names) {
+    if (wanted == name) return kind;
+  }
+  throw std::logic_error("a choice that was not offered");
+}
+
+/// Tables of the grains. A case of another material may keep them, so that one `--set` changes the material.
+void read_grain_tables(const io::Table& root, Case& input) {
+  input.soil = read_soil(root.table("soil"));
+  input.packing = read_packing(root.table("packing"));
+  input.engine = read_engine(root.table("engine"), runs_on_a_mesh(input.kind));
+  if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
+  if (input.kind != CaseKind::probe && input.packing.file.extension() == ".h5") {
+    throw root.table("packing").error(
+        "file", "is a stored state, which only kind = \"probe\" starts from: all others need isotropic pressure");
+  }
+  if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) {
+    input.biaxial = read_biaxial(root.table("biaxial"));
+  }
+  if (input.kind == CaseKind::biaxial) input.output.microstructure = read_microstructure(root.table("output"));
+  if (input.kind == CaseKind::calibrate) input.calibrate = read_calibrate(root.table("calibrate"), input.soil);
+}
+
+/// Tables of every kind with a mesh.
+void read_mesh_tables(const io::Table& root, Case& input) {
+  const std::string material = root.choice("material", {"grains", "linear_elastic"}, "grains");
+  input.material = material == "grains" ? MaterialKind::grains : MaterialKind::linear_elastic;
+  input.elastic = read_elastic(root.table("elastic"));
+  input.newton = read_newton(root.table("newton"));
+  input.output = read_output(root.table("output"));
+  if (input.kind == CaseKind::biaxial_bvp) input.biaxial_bvp = read_biaxial_bvp(root.table("biaxial_bvp"));
+}
+
+void read_ground_tables(const io::Table& root, Case& input) {
+  const bool with_tunnel = input.kind == CaseKind::tunnel;
+  input.ground = read_ground(root.table("ground"), with_tunnel);
+  input.column = read_column(root.table("column"));
+  input.gravity = read_gravity(root.table("gravity"));
+  if (with_tunnel) input.volume_loss = read_volume_loss(root.table("volume_loss"));
+  if (std::abs(input.ground.surcharge - input.packing.pressure) > 1e-9 * input.packing.pressure) {
+    throw root.table("ground").error("surcharge", "must equal packing.pressure: the ground starts at rest under it");
+  }
+  if (input.ground.surcharge > 0.5 * input.ground.unit_weight * input.ground.height) {
+    throw root.table("ground").error("surcharge", "is more than half the weight of the ground");
+  }
+}
+
+/// Refuses what teams of threads do not compute.
+void check_teams(const io::Table& root, const Case& input) {
+  const auto of_lanes = [](TangentChoice tangent) { return tangent && *tangent != kernels::TangentKind::contact; };
+  if (of_lanes(input.newton.tangent)) {
+    throw root.table("newton").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
+  }
+  if (input.kind == CaseKind::probe && of_lanes(input.probe.tangent)) {
+    throw root.table("probe").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
+  }
+  if (input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
+    throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");
+  }
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The bytes of a packing from outside: its files may change under their names.
+std::string packing_content(const std::filesystem::path& file) {
+  if (file.extension() == ".h5") return bytes_of(file);
+  std::string name = file.filename().string();
+  const std::size_t at = std::min(name.rfind("_particles.csv"), name.rfind("_meta.json"));
+  name = at == std::string::npos ? name : name.substr(0, at);
+  std::string content;
+  for (const char* end : {"_particles.csv", "_meta.json"}) {
+    content += bytes_of(file.parent_path() / (name + end));
+  }
+  return content;
+}
+
+/// The key `title`, else the folder of a case.toml, else the file's stem.
+std::string default_title(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  const std::string folder = std::filesystem::absolute(file).parent_path().filename().string();
+  return stem == "case" && !folder.empty() ? folder : stem;
+}
+
+}  // namespace
+
+Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const io::CaseFile text = io::CaseFile::load(file, overrides);
+  const io::Table root = text.root();
+  Case input;
+  input.kind = read_kind(root);
+  input.name = root.text("title", default_title(file));
+  if (input.name.empty() || input.name.front() == '.' || input.name.find('/') != std::string::npos) {
+    throw root.error("title", "names the folder of the results: no / in it and no dot before it");
+  }
+  read_grain_tables(root, input);
+  if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
+  if (input.engine.backend == kernels::Backend::teams) check_teams(root, input);
+  if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
+  text.finish();
+  input.resolved = text.resolved();
+  // None of them changes a number; a preset does so through the values it gives.
+  const std::array<std::string, 4> without{"title", "output", "packing.folder", "engine.preset"};
+  input.fingerprint = text.fingerprint(without);
+  if (!input.packing.file.empty())
+    input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
+  return input;
+}
+
+}  // namespace voussoir::host

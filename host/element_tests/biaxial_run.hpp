@@ -1,0 +1,12 @@
+#pragma once
+/// `kind = "biaxial"`: drained biaxial tests of the packings of a case.
+
+#include "host/case/case.hpp"
+#include "host/record/folder.hpp"
+
+namespace voussoir::host {
+
+/// Curves and strength to run.h5:/tables, a summary to standard output. Returns an exit code.
+[[nodiscard]] int run_biaxial(const Case& input, const RunOptions& options);
+
+}  // namespace voussoir::host

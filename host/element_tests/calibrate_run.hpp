@@ -1,0 +1,13 @@
+#pragma once
+/// `kind = "calibrate"`: the search of the grains' open parameters for a given strength.
+
+#include "host/case/case.hpp"
+#include "host/record/folder.hpp"
+
+namespace voussoir::host {
+
+/// Grid, refinements, confirmation; tables `search`, `fit`, `tests` and `sensitivity` of run.h5, a summary to standard
+/// output. Returns an exit code.
+[[nodiscard]] int run_calibrate(const Case& input, const RunOptions& options);
+
+}  // namespace voussoir::host

@@ -1,0 +1,35 @@
+#pragma once
+/// What soil mechanics reads from the curves of drained biaxial tests (method.md §3).
+
+#include <span>
+
+#include "host/element_tests/biaxial.hpp"
+
+namespace voussoir::host {
+
+/// Strength and dilatancy of one curve.
+struct Strength {
+  double peak_angle = 0;       ///< phi_p, sin phi = q/p at its largest [rad]
+  double peak_strain = 0;      ///< axial strain there [-]
+  double critical_angle = 0;   ///< phi_cs, mean of q/p over the last quarter of the axial strain [rad]
+  double dilatancy = 0;        ///< psi_max, sin psi = max(-d eps_v / d eps_q) [rad]
+  double contraction = 0;      ///< largest eps_v [-]
+  double lateral_error = 0;    ///< |mean of sigma_xx / pressure - 1| [-]
+  double lateral_scatter = 0;  ///< root mean square of sigma_xx / pressure - 1 [-]
+};
+
+/// q/p and the slope of eps_v against eps_q are taken over a moving window of axial strain (mean and least-squares
+/// line).
+[[nodiscard]] Strength strength_of(const BiaxialCurve& curve, double window);
+
+/// p [Pa] where a test under `pressure` [Pa] on x mobilises `angle` [rad].
+[[nodiscard]] double mean_stress_at(double pressure, double angle);
+
+/// The test ended as it should and sigma_xx was held, its scatter below a tenth.
+[[nodiscard]] bool held(const BiaxialCurve& curve, const Strength& strength);
+
+/// Friction angle of several tests: sin phi is the slope of q against p through the origin, from the angle of each test
+/// and its p there.
+[[nodiscard]] double common_angle(std::span<const double> angles, std::span<const double> p);
+
+}  // namespace voussoir::host

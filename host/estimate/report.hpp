@@ -1,0 +1,19 @@
+#pragma once
+/// What a user is told of a case's size before it is run.
+
+#include <string>
+#include <vector>
+
+#include "host/case/case.hpp"
+#include "host/estimate/case_size.hpp"
+
+namespace voussoir::host {
+
+/// Throws io::InputError where output.rves names a point that the mesh has not.
+void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& case_name);
+
+/// Lines for `check`: points, increments, work, memory and disk.
+[[nodiscard]] std::vector<std::string> describe(const CaseSize& size, MaterialKind material, const PackingCase& packing,
+                                                const OutputCase& output);
+
+}  // namespace voussoir::host

@@ -1,0 +1,49 @@
+#pragma once
+/// A packing with the state of its one RVE, and its way into a batch and out.
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "host/case/case.hpp"
+#include "kernels/state/rve_batch.hpp"
+
+namespace voussoir::host {
+
+/// A packing with the state of its one RVE and what was measured on it.
+struct PackedRve {
+  kernels::Packing packing;
+  std::vector<double> position;  ///< (grain, 2) [m]
+  std::vector<double> rotation;  ///< (grain) [rad]
+  kernels::Mat2 cell;            ///< columns are the periodic vectors [m]
+  std::vector<std::uint32_t> contact_key;
+  std::vector<double> contact_history;  ///< (contact, 2): tangential force [N], rolling moment [N m]
+  std::int64_t seed = 0;
+  double consolidation_friction = 0;                          ///< temporary friction coefficient that made it [-]
+  double void_ratio = 0;                                      ///< area of voids / area of grains [-]
+  double pressure = 0;                                        ///< [Pa]
+  double coordination = 0;                                    ///< 2 contacts / grains [-]
+  double unbalanced = 0;                                      ///< [-]
+  double bias = std::numeric_limits<double>::quiet_NaN();     ///< see bias.hpp [-]; NaN: not measured
+  kernels::RveStatus status = kernels::RveStatus::converged;  ///< of the consolidation
+};
+
+/// The materials of a soil's classes, and the class of each grain (empty for a soil of one class).
+[[nodiscard]] std::vector<kernels::GrainMaterial> grain_materials(const SoilCase& soil);
+[[nodiscard]] std::vector<std::uint8_t> classes_of(const SoilCase& soil, std::span<const double> radii);
+
+/// What a packing of these radii [m] is made of.
+[[nodiscard]] kernels::Packing packing_of(const SoilCase& soil, std::vector<double> radii, double thickness);
+
+/// A batch of one RVE per packing, each in its packing's state.
+[[nodiscard]] kernels::RveBatch batch_of(std::span<const PackedRve> rves);
+
+/// The RVE's state into a batch's committed states (throws std::invalid_argument if it has too many contacts), and out.
+void store_rve(const PackedRve& from, kernels::RveBatch& batch, std::size_t rve);
+void load_rve(const kernels::RveStates& from, std::size_t rve, PackedRve& to);
+
+/// Area of the cell over the area of its grains, less one.
+[[nodiscard]] double void_ratio(double cell_area, double solid_area);
+
+}  // namespace voussoir::host

@@ -1,0 +1,31 @@
+#pragma once
+/// Loads and supports that the stages of the ground share: weight, surcharge, the tractions that hold the opening,
+/// supports (method.md, section 4).
+
+#include <vector>
+
+#include "fem/boundary.hpp"
+#include "fem/mesh.hpp"
+#include "host/case/case.hpp"
+#include "host/stages/k0_table.hpp"
+
+namespace voussoir::host {
+
+/// Load factors of the increments of column and gravity.
+[[nodiscard]] std::vector<double> gravity_targets(const GroundCase& soil, const GravityCase& gravity);
+
+/// Nodal forces of weight and surcharge at load factor lambda [N/m].
+[[nodiscard]] Eigen::VectorXd ground_weight(const fem::Mesh& mesh, const GroundCase& soil, double load_factor);
+
+/// Tractions that hold the opening at load factor lambda, eqs. (15), (16) [N/m].
+[[nodiscard]] Eigen::VectorXd opening_tractions(const fem::Mesh& mesh, const GroundCase& soil, const K0Table& k0,
+                                                double load_factor);
+
+/// Base fixed, sides and symmetry axis on rollers.
+[[nodiscard]] fem::Constraints ground_supports(const fem::Mesh& mesh);
+
+/// Base, sides and axis as above. The opening follows the loss of volume between two values of V_l; its crown and
+/// invert stay on the axis of symmetry.
+[[nodiscard]] fem::Constraints volume_loss_constraints(const fem::Mesh& mesh, double from, double to);
+
+}  // namespace voussoir::host

@@ -1,0 +1,44 @@
+#include "host/stages/ground_run.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "host/stages/ground_checkpoint.hpp"
+#include "host/stages/profiling.hpp"
+
+namespace voussoir::host {
+
+StageSettings stage_settings(const Case& input) {
+  return {.newton = input.newton, .output = input.output, .defer = input.engine.defer};
+}
+
+RunLog open_log(const RunOptions& options) {
+  std::filesystem::create_directories(options.folder);
+  return {options.folder / "run.log", options.resume};
+}
+
+GroundRun::GroundRun(const RunOptions& options, const io::Provenance& provenance, const fem::Mesh& mesh,
+                     io::MeshData mesh_data, StageSettings settings, RunLog& log)
+    : mesh_(mesh), settings_(std::move(settings)), recorder_(options, provenance, std::move(mesh_data), log) {
+  show_parts_to_profilers();
+}
+
+void GroundRun::open_ground(const MaterialCase& material, const PackingNote& note) {
+  material_ = make_material(material, static_cast<std::size_t>(mesh_.n_points()), note);
+  ground_.emplace(Ground{mesh_, *material_, {}, {}});
+  if (const io::Checkpoint* checkpoint = recorder_.resumed()) {
+    restore(*ground_, *checkpoint);
+    log().line(fmt::format("the run goes on behind increment {} of {}", recorder_.resumed_stage_index(),
+                           recorder_.resumed_stage()));
+  } else {
+    begin_stage(*ground_);
+  }
+}
+
+void GroundRun::report_finished() {
+  log().line(fmt::format("the run in {} is finished already, there is nothing to do", recorder_.folder().string()));
+}
+
+}  // namespace voussoir::host

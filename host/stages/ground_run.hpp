@@ -1,0 +1,55 @@
+#pragma once
+/// A run of the ground in one folder. Tunnel, column and biaxial specimen open their log, record, material and ground
+/// here, all in the same way; the stages then move the ground and keep the record.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "host/case/case.hpp"
+#include "host/record/log.hpp"
+#include "host/record/recorder.hpp"
+#include "host/stages/ground.hpp"
+#include "host/stages/make_material.hpp"
+
+namespace voussoir::host {
+
+/// What every stage is told besides its loads: when an increment is in equilibrium, and what is recorded.
+struct StageSettings {
+  NewtonCase newton;
+  OutputCase output;
+  double defer = 0;  ///< EngineCase::defer: change of stress over pressure up to which RVEs may answer by their tangent
+};
+[[nodiscard]] StageSettings stage_settings(const Case& input);
+
+/// Makes the folder of a run and opens its log there.
+[[nodiscard]] RunLog open_log(const RunOptions& options);
+
+class GroundRun {
+ public:
+  /// Starts the record in options.folder, or goes on with it. `mesh` and `log` must outlive the run.
+  GroundRun(const RunOptions& options, const io::Provenance& provenance, const fem::Mesh& mesh, io::MeshData mesh_data,
+            StageSettings settings, RunLog& log);
+
+  /// Makes the material, and the ground of it: restored from the checkpoint that the record goes on from, else at the
+  /// beginning of its first stage. `note` is told what is done where that takes time.
+  void open_ground(const MaterialCase& material, const PackingNote& note);
+
+  [[nodiscard]] bool finished() const { return recorder_.finished(); }  ///< an earlier process has finished this run
+  /// Tells the log that a finished run has nothing left to do.
+  void report_finished();
+
+  [[nodiscard]] Ground& ground() { return ground_.value(); }  ///< after open_ground
+  [[nodiscard]] RunRecorder& recorder() { return recorder_; }
+  [[nodiscard]] RunLog& log() { return recorder_.log(); }
+  [[nodiscard]] const StageSettings& settings() const { return settings_; }
+
+ private:
+  const fem::Mesh& mesh_;
+  StageSettings settings_;
+  RunRecorder recorder_;
+  std::unique_ptr<fem::MaterialBatch> material_;
+  std::optional<Ground> ground_;
+};
+
+}  // namespace voussoir::host

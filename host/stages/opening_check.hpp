@@ -1,0 +1,26 @@
+#pragma once
+/// The opening at V_l = 0: reactions of the opening that is now fixed, against the tractions that held it.
+
+#include <array>
+
+#include "host/case/case.hpp"
+#include "host/record/columns.hpp"
+#include "host/stages/ground.hpp"
+#include "host/stages/k0_table.hpp"
+
+namespace voussoir::host {
+
+struct OpeningCheck {
+  double difference = 0;      ///< |reactions - tractions| over the opening's free directions [N/m]
+  double relative = 0;        ///< the same, over |tractions| [-]
+  Eigen::VectorXd reactions;  ///< of all supports on the ground, n_dofs [N/m]
+};
+[[nodiscard]] OpeningCheck check_opening(const Ground& ground, const GroundCase& soil, const K0Table& k0);
+
+/// Table `opening_check` of io/FORMAT.md.
+inline constexpr auto opening_columns = std::to_array<Column<OpeningCheck>>({
+    {"difference", "N/m", &OpeningCheck::difference},
+    {"relative", "-", &OpeningCheck::relative},
+});
+
+}  // namespace voussoir::host

@@ -1,0 +1,60 @@
+#pragma once
+/// One stage as it runs: what the load stepper tells about its steps becomes reports of increments, which are recorded,
+/// and totals of the stage.
+
+#include <chrono>
+
+#include "fem/load_stepper.hpp"
+#include "host/stages/ground_run.hpp"
+#include "host/stages/stage.hpp"
+
+namespace voussoir::host {
+
+class StageRun {
+ public:
+  /// Keeps references to both.
+  StageRun(GroundRun& run, const Stage& stage);
+
+  /// Targets of the stage that the ground has reached.
+  [[nodiscard]] int done() const { return done_; }
+
+  /// Takes a converged step over. At a target the increment is recorded; false where the run shall stop there.
+  [[nodiscard]] bool converged(const fem::ConvergedStep& step);
+
+  /// Counts and logs a step that did not converge.
+  void failed(const fem::FailedStep& step);
+
+  /// Counts the wall time since the last increment, which went into steps that led to none.
+  void end();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// What has been done since the last target: steps that were cut, and several steps to one target, are summed.
+  struct Effort {
+    int iterations = 0;
+    int evaluations = 0;
+    int cuts = 0;
+    double particle_steps = 0;
+    int relaxations = 0;
+    double viscous_work = 0;    ///< [J/m]
+    double deferral_error = 0;  ///< the largest [-]
+    fem::PartTimes times;
+    Clock::time_point since = Clock::now();
+  };
+
+  void tally(const fem::NewtonReport& report);
+  void finish_increment(const fem::ConvergedStep& step, bool stop);
+  [[nodiscard]] IncrementReport report_of(const fem::ConvergedStep& step) const;
+  [[nodiscard]] EquilibriumReport equilibrium_of(const fem::NewtonReport& report) const;
+  void add_to_totals(const IncrementReport& increment);
+  void save_checkpoint(bool finished);
+
+  GroundRun& run_;
+  const Stage& stage_;
+  int done_ = 0;
+  Effort effort_;
+  double output_ = 0;  ///< wall time of the output of the last increment [s]
+};
+
+}  // namespace voussoir::host

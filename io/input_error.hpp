@@ -1,0 +1,16 @@
+#pragma once
+/// The exception for everything that a user wrote wrong.
+
+#include <stdexcept>
+#include <string>
+
+namespace voussoir::io {
+
+/// A mistake of the user, as one line: "case.toml:12: ground.depth: must be positive, is -3 m". The place is
+/// "file:line", or "--set" for a value given on the command line.
+class InputError : public std::runtime_error {
+ public:
+  InputError(const std::string& place, const std::string& key, const std::string& sentence);
+};
+
+}  // namespace voussoir::io

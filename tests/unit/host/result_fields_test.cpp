@@ -1,0 +1,94 @@
+// The table of fields against the fields that a run writes, of grains and without any.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "host/case/result_fields.hpp"
+#include "host/stages/biaxial_bvp.hpp"
+
+namespace voussoir::host {
+namespace {
+
+constexpr kernels::MicrostructureRequest everything{.fabric = true, .coordination = true, .strong_networks = true};
+
+Case one_element(MaterialKind material, const std::string& name) {
+  Case input;
+  input.kind = CaseKind::biaxial_bvp;
+  input.material = material;
+  input.packing.grains = 60;
+  input.packing.folder = "packings";
+  input.biaxial_bvp = {.width = 0.05, .height = 0.05, .columns = 1, .rows = 1, .strain = 1e-4, .strain_step = 1e-4};
+  input.name = name;
+  input.fingerprint = "result_fields_test";
+  return input;
+}
+
+/// The fields of the run's last file by their names.
+std::map<std::string, io::Field> written_by(const Case& input) {
+  RunOptions options;
+  options.folder = input.name;
+  std::filesystem::remove_all(options.folder);
+  EXPECT_EQ(run_biaxial_bvp(input, options), RunStatus::finished);
+  std::map<std::string, io::Field> fields;
+  for (io::Field& field : io::read_fields(io::increment_path(options.folder, 1))) fields[field.name] = field;
+  return fields;
+}
+
+/// Exactly the fields of the table that `belongs` names are there, each as its row says.
+template <class Belongs>
+void expect_rows(const std::map<std::string, io::Field>& written, const Belongs& belongs) {
+  std::size_t rows = 0;
+  for (const ResultField& row : result_field_table) {
+    EXPECT_EQ(written.contains(row.name), belongs(row)) << row.name;
+    if (!written.contains(row.name)) continue;
+    ++rows;
+    const io::Field& field = written.at(row.name);
+    EXPECT_EQ(field.unit, row.unit) << row.name;
+    EXPECT_EQ(field.components, row.components) << row.name;
+    EXPECT_EQ(field.location, row.location) << row.name;
+  }
+  EXPECT_EQ(rows, written.size()) << "a run writes a field that the table lacks";
+}
+
+TEST(ResultFields, ARunOfGrainsWritesTheWholeTable) {
+  Case input = one_element(MaterialKind::grains, "grains_with_networks");
+  input.output.microstructure = everything;
+  expect_rows(written_by(input), [](const ResultField&) { return true; });
+}
+
+TEST(ResultFields, ARunOfGrainsWritesNoNetworkUnlessAskedFor) {
+  const Case input = one_element(MaterialKind::grains, "grains");
+  expect_rows(written_by(input), [](const ResultField& row) { return row.request == nullptr; });
+}
+
+TEST(ResultFields, ARunWithoutGrainsWritesTheMeshesFieldsAlone) {
+  const Case input = one_element(MaterialKind::linear_elastic, "elastic");
+  expect_rows(written_by(input), [](const ResultField& row) { return !row.of_grains; });
+}
+
+TEST(ResultFields, NamesAreUniqueAndFound) {
+  for (const ResultField& row : result_field_table) EXPECT_EQ(find_result_field(row.name), &row) << row.name;
+  EXPECT_EQ(find_result_field("stresses"), nullptr);
+}
+
+TEST(ResultFields, EveryRequestAddsFieldsAndOtherNamesNone) {
+  for (const char* name : {"fabric", "coordination", "strong_networks"}) {
+    kernels::MicrostructureRequest request;
+    EXPECT_TRUE(ask_for(name, request)) << name;
+    std::size_t fields = 0;
+    for (const ResultField& row : result_field_table) {
+      if (row.request == nullptr || !is_asked_for(row, request)) continue;
+      ++fields;
+      EXPECT_NE(row.of_network, nullptr) << row.name;
+    }
+    EXPECT_GT(fields, 0U) << name;
+  }
+  kernels::MicrostructureRequest none;
+  EXPECT_FALSE(ask_for("stress", none));
+  EXPECT_FALSE(none.any());
+}
+
+}  // namespace
+}  // namespace voussoir::host
