@@ -11,12 +11,6 @@
 
 namespace voussoir::kernels {
 
-/// What one call cost.
-struct Work {
-  std::size_t particle_steps = 0;  ///< executed steps x grains of live lanes
-  std::size_t lane_steps = 0;      ///< the same with frozen and empty lanes counted: what the hardware did
-};
-
 /// Whether teams of threads run what any of them can; a static tangent or a recorded microstructure needs lanes
 /// (`automatic`).
 [[nodiscard]] bool takes_teams(Backend backend);

@@ -10,6 +10,7 @@
 #include "host/material/answers.hpp"
 #include "host/ranks/session.hpp"
 #include "kernels/state/committed_contacts.hpp"
+#include "kernels/state/describe_committed.hpp"
 
 namespace voussoir::host {
 

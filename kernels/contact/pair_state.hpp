@@ -32,26 +32,27 @@ struct GrainShape {
 };
 
 /// A candidate contact, lane by lane.
-template <class V>
+template <class Law>
 struct PairLanes {
+  using V = typename Law::Value;
   V branch_x, branch_y;  ///< b0 at the lane's last rebase [m]; 0 where the lane does not list the pair
   V gap;                 ///< g0 = |b0|^2 - R^2 [m^2]; R^2 where the lane does not list the pair: never in contact
-  V tangential, moment;  ///< law history [N], [N m]
+  typename Law::History history;
 };
 
 /// A candidate contact, the same in all lanes. Rows are grains i, `other` is j > i.
-template <class real>
+template <class Law>
 struct PairShape {
+  using real = real_of<typename Law::Value>;
   std::int32_t other;
-  std::int32_t other_bytes;  ///< where `other` stands among a group's grains
-  std::int32_t active;  ///< 1 while any lane may hold history; a pair is skipped only when no lane touches and this is
-                        ///< 0
-  real inverse_sum;     ///< 1/R [1/m]
-  real minus_inverse_sum_squared;                                  ///< -1/R^2 [1/m^2]
-  real minus_half_sum;                                             ///< -R/2 [m]
-  real radius_other;                                               ///< [m]
-  real normal_stiffness, tangential_stiffness, rolling_stiffness;  ///< as in PairConstants
-  real tangential_cap, moment_cap;                                 ///< as in PairCaps
+  std::int32_t other_bytes;        ///< where `other` stands among a group's grains
+  std::int32_t active;             ///< 1 while any lane may hold history; a pair is skipped only when no lane touches
+                                   ///< and this is 0
+  real inverse_sum;                ///< 1/R [1/m]
+  real minus_inverse_sum_squared;  ///< -1/R^2 [1/m^2]
+  real minus_half_sum;             ///< -R/2 [m]
+  real radius_other;               ///< [m]
+  typename Law::Pair law;          ///< the law's own constants
 };
 
 /// Rigid and affine motion of the cells, rounded from double once a step.
@@ -62,6 +63,12 @@ struct CellMotion {
   V e_xx, e_xy, e_yx, e_yy;  ///< E of the coming motion
   V rotation;                ///< W of the coming motion
   V alive;                   ///< 1, or 0 for a lane that is finished, empty or lost
+};
+
+/// What a sweep over all pairs does besides advancing the grains.
+enum class Sweep {
+  advance,  ///< nothing else
+  measure,  ///< it also sums stress and unbalanced force
 };
 
 /// Sums over one sweep, lane by lane.
@@ -75,15 +82,16 @@ struct SweepSums {
 inline constexpr int pairs_ahead = 2;  ///< how far a sweep looks ahead in the list
 
 /// Plain vectors, not views: a group grows its arrays inside the parallel region, where a view may not be made.
-template <class V>
+template <class Law>
 struct GroupState {
+  using V = typename Law::Value;
   int n_grains = 0;
   double local_damping = 0.3;
   std::vector<GrainLanes<V>> grains;
   std::vector<GrainShape<real_of<V>>> shapes;
   std::vector<int> row;                            ///< pairs of grain i: row[i] .. row[i + 1]
-  std::vector<PairLanes<V>> pairs;                 ///< the first row.back() are in use
-  std::vector<PairShape<real_of<V>>> pair_shapes;  ///< `pairs_ahead` more follow those in use, of grain 0
+  std::vector<PairLanes<Law>> pairs;         ///< the first row.back() are in use
+  std::vector<PairShape<Law>> pair_shapes;  ///< `pairs_ahead` more follow those in use, of grain 0
   CellMotion<V> motion;
 };
 

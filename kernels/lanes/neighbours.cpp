@@ -9,7 +9,7 @@
 #include "kernels/contact/lane.hpp"
 #include "kernels/state/rve_batch.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
 namespace {
 
@@ -220,4 +220,4 @@ void find_candidates(std::span<const double> positions, std::span<const double> 
   sort_keys(keys, radii.size());
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

@@ -8,8 +8,6 @@
 
 namespace voussoir::kernels {
 
-struct RveBatch;
-
 /// A contact as far as the network is concerned.
 struct NetworkContact {
   int i, j;                   ///< grains
@@ -42,9 +40,5 @@ struct Microstructure {
 /// `out`.
 void describe_network(std::span<const NetworkContact> contacts, int grains, const MicrostructureRequest& wanted,
                       Microstructure& out);
-
-/// Committed states of a batch, RVEs side by side; normal forces are the contact law's. `out` has batch.size() entries.
-/// Cost: README.md, "Microstructure".
-void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<Microstructure> out);
 
 }  // namespace voussoir::kernels

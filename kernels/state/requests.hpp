@@ -1,6 +1,7 @@
 #pragma once
-/// What a caller asks of the engine.
+/// What a caller asks of the engine, and what the answer costs.
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -72,6 +73,16 @@ struct ServoRequest {
   std::vector<ServoSample>* trace = nullptr;                      ///< the caller's, one per RVE; samples are appended
   int trace_interval = 100;                                       ///< steps between samples
   MicrostructureRequest microstructure = {};  ///< of the samples; nothing is computed unless asked for
+};
+
+/// Steps that a request is expected to take: RVEs of similar work advance together.
+[[nodiscard]] inline int predicted_steps(const StrainRequest& r) { return r.strain_steps + r.hold_cap / 4; }
+[[nodiscard]] inline int predicted_steps(const ServoRequest& r) { return r.max_steps; }
+
+/// What one call of the engine did.
+struct Work {
+  std::size_t particle_steps = 0;  ///< executed steps x grains, of the RVEs that ran
+  std::size_t lane_steps = 0;      ///< the same with lanes counted that were empty or had ended: what the hardware did
 };
 
 }  // namespace voussoir::kernels

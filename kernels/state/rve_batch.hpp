@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "kernels/contact/contact_law.hpp"
+#include "kernels/contact/engine_law.hpp"
 #include "kernels/contact/kinematics.hpp"
 #include "kernels/state/requests.hpp"
 
@@ -33,10 +33,9 @@ struct Packing {
   [[nodiscard]] double mean_diameter() const;
   [[nodiscard]] double largest_radius() const;
   [[nodiscard]] double solid_area() const;      ///< sum of pi r^2 [m^2]
-  [[nodiscard]] double mean_mobility() const;   ///< mean of dt^2/m [m/N], see kernels/README.md "Mobilities"
-  [[nodiscard]] double mean_stiffness() const;  ///< mean of E r [N/m], the normal stiffness of a grain against its like
 
-  [[nodiscard]] double inertial_time(double pressure) const;  ///< as below, of the packing's mean mobility
+  /// As below, of the mean mobility that the engine's law gives the packing under the default overlap limit.
+  [[nodiscard]] double inertial_time(double pressure) const;
 };
 
 /// Inertial number per strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| * inertial_time(p) for
@@ -44,11 +43,6 @@ struct Packing {
 [[nodiscard]] KOKKOS_INLINE_FUNCTION double inertial_time(double mean_mobility, double thickness, double pressure) {
   return 1.0 / std::sqrt(mean_mobility * pressure * thickness);
 }
-
-/// dt^2/m [m/N] and dt^2/J [rad/(N m)] of a grain, see kernels/README.md "Mobilities".
-/// @param largest_radius of the packing: a small grain that rolls on a large one is the stiffest rotation
-[[nodiscard]] double mobility_of(const GrainMaterial& material, double radius);
-[[nodiscard]] double rotational_mobility_of(const GrainMaterial& material, double radius, double largest_radius);
 
 /// States of `n` RVEs of at most `grains` grains.
 struct RveStates {
@@ -60,10 +54,16 @@ struct RveStates {
   Array<double* [4]> cell;       ///< H row-major; columns are the periodic vectors [m]
   Array<int*> contact_count;
   Array<std::uint32_t**> contact_key;   ///< pair_key(i, j), ascending
-  Array<double** [2]> contact_history;  ///< tangential force [N], rolling moment [N m]
+  Array<double***> contact_history;     ///< (RVE, contact, k), k as in the law's history_names [SI]
 
   RveStates() = default;
-  RveStates(std::string_view label, std::size_t n, int grains);
+  /// @param history numbers a contact remembers
+  RveStates(std::string_view label, std::size_t n, int grains, int history);
+  [[nodiscard]] std::size_t history_size() const { return contact_history.extent(2); }
+  /// The numbers of all contacts of an RVE, contact by contact; not to be read where a law remembers nothing.
+  [[nodiscard]] double* histories_of(std::size_t rve) const {
+    return contact_history.data() + rve * contact_history.extent(1) * history_size();
+  }
   [[nodiscard]] int contact_capacity() const { return static_cast<int>(contact_key.extent(1)); }
 };
 
@@ -131,10 +131,15 @@ struct RveBatch {
 void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size_t grains);
 
 /// Room for RVEs of the given packings; states are to be filled by the caller.
-[[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of);
+/// @param history numbers that a contact of the law remembers
+[[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of,
+                                  int history = history_size<PlainEngineLaw>);
 
 /// The trial states become the committed ones; an RVE whose evaluation failed keeps its committed state.
 void commit(RveBatch& batch);
+
+/// Whether any grain resists rolling; where none does, that part of the law is compiled out.
+[[nodiscard]] bool rolls(const RveBatch& batch);
 
 /// To be called after `committed` was written from outside.
 void forget_candidates(RveBatch& batch);

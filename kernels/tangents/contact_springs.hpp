@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "kernels/lanes/sweep.hpp"
+#include "kernels/contact/pair_forces.hpp"
 #include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
@@ -121,7 +121,7 @@ KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull(const SpringLanes<V>& s, const Spr
 
 /// The springs of every pair that touches in some lane.
 template <class Law, class V>
-void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<V>& system) {
+void collect_springs(const GroupState<Law>& group, TangentKind kind, SpringSystem<V>& system) {
   using real = real_of<V>;
   const V zero(0), share(static_cast<real>(elastic_share(kind)));
   const auto n = static_cast<std::size_t>(group.n_grains);
@@ -135,15 +135,14 @@ void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<
   for (std::size_t i = 0; i < n; ++i) {
     system.radii[i] = group.shapes[i].radius;
     for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
-      const PairLanes<V>& pair = group.pairs[p];
-      const PairShape<real>& shape = group.pair_shapes[p];
+      const PairLanes<Law>& pair = group.pairs[p];
+      const PairShape<Law>& shape = group.pair_shapes[p];
       const GrainLanes<V>& gj = group.grains[static_cast<std::size_t>(shape.other)];
       const auto at = geometry_of(pair, group.motion, gj.u_x - group.grains[i].u_x, gj.u_y - group.grains[i].u_y);
       if (!Kokkos::Experimental::any_of(at.gap < zero)) continue;
       const PairDistance<V> distance = distance_of(at.gap, shape);
       const V to_unit = distance.inverse_length;
-      const ContactStiffness<V> k = law_of<Law, V>(shape).stiffness(distance.overlap, {pair.tangential, pair.moment},
-                                                                    share);
+      const ContactStiffness<V> k = Law(shape.law).stiffness(distance.overlap, pair.history, share);
       const V y = V(1) + distance.excess;
       system.springs.push_back(
           {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling});

@@ -206,7 +206,7 @@ template <class V, class Lanes>
 
 /// @param elastic of the same springs, whose motions stand in `system`; @param step with its sizes
 template <class Law, class V>
-LoadingTangent<V> loading_tangent(const GroupState<V>& group, SpringSystem<V>& system, StepSystem<V>& step,
+LoadingTangent<V> loading_tangent(const GroupState<Law>& group, SpringSystem<V>& system, StepSystem<V>& step,
                                   const StaticTangent<V>& elastic, const std::array<bool, V::size()>& live,
                                   const EngineSettings& settings) {
   const int limit = std::min(settings.tangent_iterations, most_step_iterations);
@@ -219,7 +219,7 @@ LoadingTangent<V> loading_tangent(const GroupState<V>& group, SpringSystem<V>& s
   }
   prepare_step(group, system, step);
   for (int round = 0; round <= most_rounds; ++round) {
-    take_step<Law>(group, system, step, out.change);
+    take_step(group, system, step, out.change);
     if (!begin_columns(system, elastic, wanted, settings.tangent_tolerance, limit, solver, out) || round == most_rounds)
       break;
     begin_round(system, step, solver);

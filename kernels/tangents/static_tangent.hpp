@@ -166,7 +166,7 @@ void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent
 /// @param live lanes whose answer is wanted; the others do not prolong the iterations
 /// Call after homogenise(), which brings the contacts' histories to the final positions.
 template <class Law, class V>
-StaticTangent<V> static_tangent(const GroupState<V>& group, SpringSystem<V>& system,
+StaticTangent<V> static_tangent(const GroupState<Law>& group, SpringSystem<V>& system,
                                 const std::array<bool, V::size()>& live, const EngineSettings& settings) {
   StaticTangent<V> out;
   Progress<V> progress;
@@ -174,7 +174,7 @@ StaticTangent<V> static_tangent(const GroupState<V>& group, SpringSystem<V>& sys
     progress.energy[a] = V(0);
     for (std::size_t l = 0; l < V::size(); ++l) progress.running[a][l] = live[l] ? real_of<V>(1) : real_of<V>(0);
   }
-  collect_springs<Law>(group, settings.tangent, system);
+  collect_springs(group, settings.tangent, system);
   load_springs(system, progress.energy);
   out.affine = progress.affine = progress.energy;
   relax_springs(system, progress, out, settings);
