@@ -1,10 +1,10 @@
-# Writes OUTPUT, the definitions behind host/build_info.hpp. Run by the build, before every compilation of host.
+# Writes OUTPUT, the definitions behind host/process/build_info.hpp. Run by the build, before every compilation of host.
 execute_process(COMMAND git -C "${SOURCE}" describe --always --dirty --abbrev=12
   OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 if(failed)
   set(revision "unknown")
 endif()
-set(text "#include \"host/build_info.hpp\"
+set(text "#include \"host/process/build_info.hpp\"
 
 namespace voussoir::host {
 
