@@ -52,12 +52,13 @@ struct FailedStep {
 
 struct StepReport {
   StepStatus status = StepStatus::finished;
-  int increments = 0;    ///< converged
-  int cuts = 0;          ///< attempts that did not converge
-  int relaxed = 0;       ///< increments that came to equilibrium by relaxation
-  std::size_t work = 0;  ///< of all attempts
-  NewtonReport last;     ///< of the last attempt
-  std::string message;   ///< why it gave up: status, parameter and step; empty otherwise
+  int increments = 0;          ///< converged
+  int cuts = 0;                ///< attempts that did not converge
+  int relaxed = 0;             ///< increments that came to equilibrium by relaxation
+  std::size_t work = 0;        ///< of all attempts
+  std::size_t lane_steps = 0;  ///< likewise
+  NewtonReport last;           ///< of the last attempt
+  std::string message;         ///< why it gave up: status, parameter and step; empty otherwise
 };
 
 struct StepCallbacks {

@@ -23,7 +23,8 @@ struct BatchReport {
   double stress_noise = 0;  ///< rms uncertainty of the returned stresses [Pa], from the points' own reports; of points
                             ///< at `step_limit`, which are not at rest, it says nothing
   std::size_t work = 0;     ///< particle-steps spent by this call (0 for a continuum law)
-  std::size_t open = 0;     ///< points without any contact (stress 0)
+  std::size_t lane_steps = 0;   ///< the same with idle SIMD lanes counted: work / lane_steps is the share that worked
+  std::size_t open = 0;         ///< points without any contact (stress 0)
   std::size_t step_limit = 0;   ///< points whose hold ended at its cap
   double unsettled_stress = 0;  ///< rms over all points of what those may be off by, each by its own pressure [Pa]
   std::size_t deferred = 0;     ///< points that answered by their last tangent

@@ -181,6 +181,7 @@ void NewtonSolver::Workspace::restore(Trial&& trial) {
   increment = std::move(trial.increment);
   trial.report.evaluations = report.evaluations;
   trial.report.work = report.work;
+  trial.report.lane_steps = report.lane_steps;
   trial.report.times = report.times;
   report = std::move(trial.report);
 }
@@ -205,6 +206,7 @@ Failure NewtonSolver::Workspace::evaluate() {
   report.material = solver.material_.evaluate(increment.gradients, increment.stress, wanted);
   ++report.evaluations;
   report.work += report.material.work;
+  report.lane_steps += report.material.lane_steps;
   return report.material.usable ? Failure{} : Failure{NewtonStatus::material_failed};
 }
 

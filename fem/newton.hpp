@@ -66,6 +66,7 @@ struct NewtonReport {
   int relaxations = 0;                     ///< substeps of relaxation.hpp; 0: the increment needed none
   double viscous_work = 0;                 ///< dissipated by them [J/m]
   std::size_t work = 0;                    ///< sum of BatchReport::work
+  std::size_t lane_steps = 0;              ///< sum of BatchReport::lane_steps
   PartTimes times;                         ///< where the wall time went
   BatchReport material;                    ///< of the last evaluation; its deferral_error: of all that were committed
 

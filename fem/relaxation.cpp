@@ -29,6 +29,7 @@ void tally(NewtonReport& whole, NewtonReport&& part) {
   part.evaluations += whole.evaluations;
   part.factorisations += whole.factorisations;
   part.work += whole.work;
+  part.lane_steps += whole.lane_steps;
   part.times += whole.times;
   part.relaxations = whole.relaxations + 1;
   part.viscous_work += whole.viscous_work;

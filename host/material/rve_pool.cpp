@@ -153,6 +153,7 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
   copy_answers(trial_reports_, stress, tangent);
   fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor);
   report.work = work.particle_steps;
+  report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_.error();
   return report;
 }

@@ -154,7 +154,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
   for (std::size_t r = 1; r <= others(); ++r) {
     ByteReader read = values_of(replies[r - 1]);
     slowest = std::max(slowest, read.value<double>());
-    work.particle_steps += read.value<kernels::Work>().particle_steps;
+    work += read.value<kernels::Work>();
     deferral_error = std::max(deferral_error, read.value<double>());
     place(read.list<kernels::RveReport>(), points_[r], trial_);
     ledger_.bytes += static_cast<double>(replies[r - 1].size());
@@ -162,6 +162,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
   copy_answers(trial_, stress, tangent);
   fem::BatchReport report = summarise(trial_, own_->pressure_floor());
   report.work = work.particle_steps;
+  report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_error;
   ++ledger_.evaluations;
   ledger_.slowest += slowest;

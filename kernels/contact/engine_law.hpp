@@ -1,6 +1,6 @@
 #pragma once
-/// The law that the engine runs. This is the one line that a new law changes; course/choose_instance.hpp picks precision,
-/// width and rolling at run time.
+/// The law that the engine runs. This is the one line that a new law changes; course/choose_instance.hpp picks
+/// precision, width and rolling at run time.
 
 #include "kernels/contact/linear_law.hpp"
 

@@ -89,8 +89,8 @@ struct GroupState {
   double local_damping = 0.3;
   std::vector<GrainLanes<V>> grains;
   std::vector<GrainShape<real_of<V>>> shapes;
-  std::vector<int> row;                            ///< pairs of grain i: row[i] .. row[i + 1]
-  std::vector<PairLanes<Law>> pairs;         ///< the first row.back() are in use
+  std::vector<int> row;                     ///< pairs of grain i: row[i] .. row[i + 1]
+  std::vector<PairLanes<Law>> pairs;        ///< the first row.back() are in use
   std::vector<PairShape<Law>> pair_shapes;  ///< `pairs_ahead` more follow those in use, of grain 0
   CellMotion<V> motion;
 };

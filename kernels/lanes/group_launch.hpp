@@ -1,6 +1,6 @@
 #pragma once
-/// Groups of RVEs, and the parallel loop over them. Only advance_lanes.cpp and tests with a law of their own include it:
-/// it is long to compile.
+/// Groups of RVEs, and the parallel loop over them. Only advance_lanes.cpp and tests with a law of their own include
+/// it: it is long to compile.
 
 #include <algorithm>
 #include <atomic>
@@ -72,7 +72,7 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
   Kokkos::Experimental::UniqueToken<Space> tokens(space);
   std::vector<std::unique_ptr<Run>> workers(static_cast<std::size_t>(tokens.size()));
   for (auto& worker : workers) worker = std::make_unique<Run>();
-  const Regions regions = Regions::of_tool();
+  RegionTeller teller;
   std::exception_ptr failure;
   std::atomic_flag failed;
   Kokkos::parallel_for(
@@ -83,7 +83,8 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
         const auto token = tokens.acquire();
         try {
           Run& run = *workers[static_cast<std::size_t>(token)];
-          run.regions = regions.of_this_thread();
+          const RegionTeller::Turn turn(teller);
+          run.regions = turn.regions();
           advance_group(run, batch, groups[g], requests, settings, reports);
         } catch (...) {  // no memory, say: nothing may leave the parallel region but through here
           if (!failed.test_and_set()) failure = std::current_exception();

@@ -34,9 +34,9 @@ struct GroupRun {
   std::array<LaneList<Law>, width> lists;
   GroupState<Law> group;
   UnionBuilder<Law> builder;
-  SpringSystem<V> springs;          ///< empty unless the static tangent is asked for
-  StepSystem<V> step;               ///< empty unless the loading one is
-  std::vector<std::uint32_t> keys;  ///< scratch of a rebase
+  SpringSystem<V> springs;             ///< empty unless the static tangent is asked for
+  StepSystem<V> step;                  ///< empty unless the loading one is
+  std::vector<std::uint32_t> keys;     ///< scratch of a rebase
   std::vector<KeptContact<Law>> kept;  ///< scratch of a restore or rebase
   Regions regions;
 };

@@ -70,7 +70,7 @@ template <class Law>
 PairShape<Law> shape_of(const Packing& packing, int i, int j) {
   const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
   auto shape = pair_shape<Law>(j, packing.material_of(si), packing.radii[si], packing.material_of(sj),
-                                      packing.radii[sj]);
+                               packing.radii[sj]);
   shape.other_bytes = static_cast<std::int32_t>(sj * sizeof(GrainLanes<typename Law::Value>));
   return shape;
 }

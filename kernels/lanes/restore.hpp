@@ -56,13 +56,14 @@ void restore_grains(Run& run) {
   run.group.shapes.resize(n);
   run.group.row.resize(n + 1);
   for (std::size_t i = 0; i < n; ++i) {
-    run.group.shapes[i] = grain_shape<typename Run::Law>(packing, i, run.scales.largest_radius, run.settings.overlap_limit);
+    run.group.shapes[i] = grain_shape<typename Run::Law>(packing, i, run.scales.largest_radius,
+                                                         run.settings.overlap_limit);
   }
 }
 
 template <class Run>
 VOUSSOIR_OWN_SYMBOL void restore(Run& run, const GroupMembers<static_cast<int>(Run::width)>& members,
-             std::span<const typename Run::Drive::Request> requests) {
+                                 std::span<const typename Run::Drive::Request> requests) {
   const Region region(run.regions, "restore");
   run.scales = scales_of<typename Run::Law>(*run.packing, run.settings);
   restore_grains(run);
@@ -71,8 +72,7 @@ VOUSSOIR_OWN_SYMBOL void restore(Run& run, const GroupMembers<static_cast<int>(R
     run.lists[l].pairs.clear();
     if (members[l] < 0) continue;
     run.lanes[l].rve = members[l];
-    run.lanes[l].drive = typename Run::Drive(requests[static_cast<std::size_t>(members[l])], run.scales,
-                                             run.settings);
+    run.lanes[l].drive = typename Run::Drive(requests[static_cast<std::size_t>(members[l])], run.scales, run.settings);
     run.lanes[l].running = restore_lane(run, l);
   }
   run.builder.build(run.group, run.lists, *run.packing);

@@ -7,9 +7,9 @@
 
 namespace voussoir::kernels::lanes {
 
-/// Whether a static tangent `d` [Pa] is at most as stiff as the contact tangent. In exact arithmetic every static tangent
-/// is; one that is stiffer shows that rounding has spoilt the iterations. False for NaN. The slack covers the factor y
-/// (kernels/README.md, "Static tangent").
+/// Whether a static tangent `d` [Pa] is at most as stiff as the contact tangent. In exact arithmetic every static
+/// tangent is; one that is stiffer shows that rounding has spoilt the iterations. False for NaN. The slack covers the
+/// factor y (kernels/README.md, "Static tangent").
 [[nodiscard]] inline bool is_softer(const double* d, const double* contact) {
   constexpr double slack = 1.05;
   return d[0] <= slack * contact[0] && d[3] <= slack * contact[3] && d[5] <= slack * contact[5];

@@ -6,7 +6,7 @@
 
 namespace voussoir::kernels {
 
-inline constexpr double step_safety = 0.9;        ///< c of kernels/README.md "Mobilities"
+inline constexpr double step_safety = 0.9;         ///< c of kernels/README.md "Mobilities"
 inline constexpr double assumed_neighbours = 6.0;  ///< contacts of one grain, for the bound on its stiffness
 
 /// Inverse mass or moment of inertia for which a step of 1 is stable under a row sum of stiffnesses; 0 without any, so

@@ -83,6 +83,12 @@ struct ServoRequest {
 struct Work {
   std::size_t particle_steps = 0;  ///< executed steps x grains, of the RVEs that ran
   std::size_t lane_steps = 0;      ///< the same with lanes counted that were empty or had ended: what the hardware did
+
+  Work& operator+=(const Work& other) {
+    particle_steps += other.particle_steps;
+    lane_steps += other.lane_steps;
+    return *this;
+  }
 };
 
 }  // namespace voussoir::kernels

@@ -30,7 +30,8 @@ double Packing::solid_area() const {
 }
 
 double Packing::inertial_time(double pressure) const {
-  return kernels::inertial_time(mean_mobility<PlainEngineLaw>(*this, EngineSettings{}.overlap_limit), thickness, pressure);
+  return kernels::inertial_time(mean_mobility<PlainEngineLaw>(*this, EngineSettings{}.overlap_limit), thickness,
+                                pressure);
 }
 
 RveStates::RveStates(std::string_view label, std::size_t n, int grains, int history) {
@@ -41,7 +42,8 @@ RveStates::RveStates(std::string_view label, std::size_t n, int grains, int hist
   cell = Array<double* [4]>(name("cell"), n);
   contact_count = Array<int*>(name("contact_count"), n);
   contact_key = Array<std::uint32_t**>(name("contact_key"), n, g * contacts_per_grain);
-  contact_history = Array<double***>(name("contact_history"), n, g * contacts_per_grain, static_cast<std::size_t>(history));
+  contact_history = Array<double***>(name("contact_history"), n, g * contacts_per_grain,
+                                     static_cast<std::size_t>(history));
 }
 
 void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size_t grains) {

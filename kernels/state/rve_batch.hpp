@@ -32,7 +32,7 @@ struct Packing {
   }
   [[nodiscard]] double mean_diameter() const;
   [[nodiscard]] double largest_radius() const;
-  [[nodiscard]] double solid_area() const;      ///< sum of pi r^2 [m^2]
+  [[nodiscard]] double solid_area() const;  ///< sum of pi r^2 [m^2]
 
   /// As below, of the mean mobility that the engine's law gives the packing under the default overlap limit.
   [[nodiscard]] double inertial_time(double pressure) const;
@@ -53,8 +53,8 @@ struct RveStates {
   Array<double**> rotation;      ///< absolute [rad]
   Array<double* [4]> cell;       ///< H row-major; columns are the periodic vectors [m]
   Array<int*> contact_count;
-  Array<std::uint32_t**> contact_key;   ///< pair_key(i, j), ascending
-  Array<double***> contact_history;     ///< (RVE, contact, k), k as in the law's history_names [SI]
+  Array<std::uint32_t**> contact_key;  ///< pair_key(i, j), ascending
+  Array<double***> contact_history;    ///< (RVE, contact, k), k as in the law's history_names [SI]
 
   RveStates() = default;
   /// @param history numbers a contact remembers

@@ -20,12 +20,12 @@ Work advance_with(RveBatch& batch, std::span<const typename Drive::Request> requ
 }  // namespace
 
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports, std::span<const int> rves) {
+             std::span<RveReport> reports, std::span<const int> rves) {
   return advance_with<StrainDrive>(batch, requests, settings, reports, rves);
 }
 
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports, std::span<const int> rves) {
+             std::span<RveReport> reports, std::span<const int> rves) {
   return advance_with<ServoControl>(batch, requests, settings, reports, rves);
 }
 

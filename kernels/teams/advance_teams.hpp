@@ -16,11 +16,11 @@ namespace voussoir::kernels::teams {
 /// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team the space cannot form,
 /// or packings whose list does not fit the scratch
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports, std::span<const int> rves);
+             std::span<RveReport> reports, std::span<const int> rves);
 
 /// Stress-controlled cells.
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports, std::span<const int> rves);
+             std::span<RveReport> reports, std::span<const int> rves);
 
 /// Bytes of scratch one running team takes, in fast memory and besides it.
 struct TeamScratchBytes {

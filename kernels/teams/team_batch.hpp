@@ -35,7 +35,8 @@ struct TeamStates {
 };
 
 template <class Law, class Space>
-[[nodiscard]] TeamPackings<real_of<typename Law::Value>, Space> team_packings(const RveBatch& batch, const EngineSettings& settings) {
+[[nodiscard]] TeamPackings<real_of<typename Law::Value>, Space> team_packings(const RveBatch& batch,
+                                                                              const EngineSettings& settings) {
   const std::size_t n = batch.packings.size();
   std::size_t grains = 0;
   for (const Packing& p : batch.packings) grains = std::max(grains, p.radii.size());

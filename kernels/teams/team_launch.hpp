@@ -125,9 +125,9 @@ template <class Batch>
 void append_samples(const Batch&, std::span<const StrainRequest>) {}
 
 template <class Space, class Law, class Drive>
-[[nodiscard]] TeamBatch<real_of<typename Law::Value>, Drive, Space> team_batch(const RveBatch& batch,
-                                                       std::span<const typename Drive::Request> requests,
-                                                       const EngineSettings& settings, std::span<const int> rves) {
+[[nodiscard]] TeamBatch<real_of<typename Law::Value>, Drive, Space> team_batch(
+    const RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
+    std::span<const int> rves) {
   std::vector<int> order(rves.begin(), rves.end());
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return predicted_steps(requests[static_cast<std::size_t>(a)]) >
@@ -164,8 +164,7 @@ Work launch_teams(RveBatch& batch, std::span<const typename Drive::Request> requ
   }
   if (rves.empty()) return {};
   const Kokkos::Profiling::ScopedRegion region("voussoir::teams");
-  Kernel kernel{.batch = team_batch<Space, Law, Drive>(batch, requests, settings, rves),
-                .settings = settings};
+  Kernel kernel{.batch = team_batch<Space, Law, Drive>(batch, requests, settings, rves), .settings = settings};
   auto policy = team_policy(static_cast<int>(rves.size()), settings.team_size, kernel);
   policy.set_chunk_size(1);
   ask_for_scratch(policy, kernel);

@@ -26,7 +26,7 @@ KOKKOS_FUNCTION void press_pairs(const Run& run) {
     if (!touches && shape.active == 0) return;  // what the pair did last, nothing, still stands
     shape.active = touches ? 1 : 0;
     at.actions(p) = act(pair, shape, now, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
-                                           rim_of(V(run.shape(i).radius), gi.spin), gj.spin);
+                        rim_of(V(run.shape(i).radius), gi.spin), gj.spin);
     if constexpr (mode == Sweep::measure) at.branches(p) = {now.branch_x, now.branch_y, overlap_measure(now, shape)};
   });
 }

@@ -92,7 +92,7 @@ struct ShearRow {
       PairLanes<Law>& pair = state.pairs(i, j);
       const PairGeometry<V> at = geometry_of(pair, cell, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
       const PairAction<V> action = act(pair, pair_shape, at, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
-                                            rim_of(V(grain_shape.radius), gi.spin), gj.spin);
+                                       rim_of(V(grain_shape.radius), gi.spin), gj.spin);
       gi.force_x = gi.force_x + action.force_x;
       gi.force_y = gi.force_y + action.force_y;
       gi.torque = gi.torque + action.torque_i;
