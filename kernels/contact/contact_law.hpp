@@ -1,24 +1,25 @@
 #pragma once
-/// What every contact law answers to and with. A law itself is a value: the constants of one contact and pure functions
-/// of its motion (method.md §3), without views and without indices, so that it is tested alone along a path before any
-/// packing exists. `linear_law.hpp` is the one that the engine runs; `engine_law.hpp` names it.
+/// The questions that the engine asks a contact law, and the form of the answers. A law itself is a value: the
+/// constants of one contact and pure functions of its motion (method.md §3), without views and without indices, so that
+/// it can be tested alone along a path. The engine runs the law of `linear_law.hpp`; `engine_law.hpp` makes that
+/// choice.
 ///
 /// A law is a struct `Law` over a value type V (lane.hpp) with
 ///
-///   Value, has_rolling      V, and whether moments are transmitted: without them their part of the sweep is left out
-///   Pair                    what two given grains make of the law: numbers of V's real type, the same in all lanes
+///   Value, has_rolling      V, and whether contacts transmit moments: the sweep leaves their part out if not
+///   Pair                    the law's constants for two given grains, in V's real type and the same in all lanes
 ///   combine(m1, r1, m2, r2) the Pair of two grains (materials, radii [m]), computed in double and rounded once
-///   History                 what a contact remembers: at most four numbers of type V, 0 where nothing has touched
+///   History                 the memory of a contact: at most four numbers of type V, 0 before the first touch
 ///   history_names           their names in the order in which packings and checkpoints store them
 ///   for_each_number(h, f)   calls f(k, number k) of a History, in that order
-///   stable_rows(...)        how stiff a grain can be at the largest overlap allowed: what its scaled mass is made for
+///   stable_rows(...)        the stiffness of a grain at the largest overlap allowed, which its scaled mass must stand
 ///   normal_stiffness_of(...) d f_n/d delta of a grain against its like, for the control of stresses
-///   Law(pair)               the law of that pair, and on it
-///     operator()(motion, history)    forces; a contact that does not touch forgets
+///   Law(pair)               the law of that pair, with the member functions
+///     operator()(motion, history)    forces; the history becomes 0 where the grains do not touch
 ///     secant(overlap)                f_n/delta
-///     springs(overlap)               derivatives of its forces, whatever the caps
+///     springs(overlap)               derivatives of the forces as if there were no caps
 ///     stiffness(overlap, history, elastic_share)   the same without the springs that have yielded
-///     step(overlap, history, closing, sliding, rolling)   what a small motion changes
+///     step(overlap, history, closing, sliding, rolling)   the changes of the forces by a small motion
 ///
 /// Overlaps are given over R = r_i + r_j, because the sweep has that number at no cost: a law that is not linear in
 /// delta takes its powers from overlap and keeps the power of R in its Pair.
@@ -30,7 +31,7 @@
 
 namespace voussoir::kernels {
 
-/// What a grain is made of. One class of Table 1; a law reads the numbers that it knows.
+/// The material of a grain, one class of Table 1. A law reads the numbers that it needs.
 struct GrainMaterial {
   double modulus = 3.0e9;          ///< contact modulus E [Pa]
   double stiffness_ratio = 0.5;    ///< k_t/k_n [-]
@@ -40,8 +41,8 @@ struct GrainMaterial {
 };
 
 /// Relative motion at a contact during one step. The overlap comes over two lengths, R = r_i + r_j and the distance |b|
-/// of the centres: f_n/|b| is the secant stiffness times the second, caps follow the first. That spares the sweep two
-/// products, and every contact a wait.
+/// of the centres: f_n/|b| is the secant stiffness times the second, caps follow the first. The sweep has both
+/// at hand; with one of them only it would need two products more, and every contact would wait for them.
 template <class V>
 struct ContactMotion {
   V overlap;            ///< delta/R >= 0 [-]; 0 means no contact
@@ -63,7 +64,7 @@ struct ContactStiffness {
   V normal, tangential, rolling;  ///< [N/m], [N/m], [N m/rad]
 };
 
-/// A spring force that may not pass a share of f_n, over a small motion.
+/// The change of a spring force by a small motion, where the force is limited to a share of f_n.
 template <class V>
 struct LimitedForce {
   V change;      ///< of the force
@@ -71,7 +72,7 @@ struct LimitedForce {
   V by_closing;  ///< derivative of `change` by the contact's closing: 0 except at the cap
 };
 
-/// What a small motion changes in a contact's forces, and the slopes of these changes. Closing is the increase of the
+/// The changes of a contact's forces by a small motion, and the slopes of these changes. Closing is the increase of the
 /// overlap over R. A contact that opens loses its forces and is followed no further.
 template <class V>
 struct ContactStep {
@@ -103,7 +104,7 @@ KOKKOS_FORCEINLINE_FUNCTION LimitedForce<V> limited_force(const V& stiffness, co
 
 inline constexpr std::size_t most_history_numbers = 4;
 
-/// How many numbers a law's History holds.
+/// The number of numbers in a law's History.
 template <class Law>
 inline constexpr int history_size = [] {
   static_assert(Law::history_names.size() <= most_history_numbers);
@@ -122,7 +123,7 @@ template <class Law>
   return history;
 }
 
-/// Lane `l` of a history from numbers(k), rounded, and into them.
+/// Writes numbers(k), rounded, into lane `l` of a history; below, calls write(k, number) with the numbers of that lane.
 template <class Law, class Numbers>
 KOKKOS_FORCEINLINE_FUNCTION void read_history(typename Law::History& history, std::size_t l, const Numbers& numbers) {
   Law::for_each_number(history, [&](int k, typename Law::Value& number) {

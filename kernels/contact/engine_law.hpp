@@ -1,6 +1,6 @@
 #pragma once
-/// The law that the engine runs. This is the one line that a new law changes; course/choose_instance.hpp picks
-/// precision, width and rolling at run time.
+/// The law that the engine runs. A new law changes one line of this file; course/choose_instance.hpp chooses precision,
+/// width and rolling at run time.
 
 #include "kernels/contact/linear_law.hpp"
 
@@ -9,7 +9,7 @@ namespace voussoir::kernels {
 template <class V, bool Rolling>
 using EngineLaw = LinearContactLaw<V, Rolling>;
 
-/// The same in double and for one RVE, with all that it knows: for what is computed about single contacts.
+/// The same law in double for one RVE, with rolling: for computations about single contacts.
 using PlainEngineLaw = EngineLaw<SingleLane<double>, true>;
 
 }  // namespace voussoir::kernels

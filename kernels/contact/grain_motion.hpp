@@ -14,7 +14,8 @@ KOKKOS_FORCEINLINE_FUNCTION V kicked(const V& velocity, const V& force, const V&
   return fused(mobility, force - Kokkos::copysign(damping * force, mid), velocity);
 }
 
-/// Kick and drift of one grain under the summed force; clears the sums. A lane that is not alive stays where it is.
+/// Changes one grain's velocities by the summed force and its positions by the velocities, and clears the sums. A lane
+/// that is not alive stays where it is.
 template <class V, class real>
 KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShape<real>& shape,
                                            const CellMotion<V>& cell, const V& damping, const V& fx, const V& fy,
@@ -23,7 +24,8 @@ KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShap
   const V a(shape.mobility), half_a(shape.half_mobility);
   const V wx = grain.w_x;
   const V wy = grain.w_y;
-  const V kept = choose_if_zero(fx, fy, torque, V(real(0.9)) * cell.alive, cell.alive);  // less of a rattler's velocity
+  const V kept = choose_if_zero(fx, fy, torque, V(real(0.9)) * cell.alive, cell.alive);  // a rattler loses a tenth of
+                                                                                         // its velocity
   const V new_x = kept * fused(-cell.rotation, wy, kicked(wx, fx, a, half_a, damping));
   const V new_y = kept * fused(cell.rotation, wx, kicked(wy, fy, a, half_a, damping));
   const V spin = kept *

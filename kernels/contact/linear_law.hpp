@@ -15,7 +15,7 @@ struct PairConstants {
   double rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
 };
 
-/// Caps of the springs by overlap over R, as the law wants them.
+/// Caps of the springs per overlap over R.
 struct PairCaps {
   double tangential;  ///< mu k_n R [N]
   double moment;      ///< [N m]
@@ -56,7 +56,7 @@ struct LinearContactLaw {
   /// Spring forces carried from step to step.
   struct History {
     V tangential;  ///< [N]
-    V moment;      ///< [N m], untouched without rolling
+    V moment;      ///< [N m], neither read nor written without rolling
   };
   static constexpr std::array<std::string_view, 2> history_names{"tangential_force", "rolling_moment"};
 
@@ -84,13 +84,15 @@ struct LinearContactLaw {
     return m.modulus * radius;
   }
 
-  /// Of a grain with `contacts` contacts: with its like for displacements, and rolling on the packing's largest grain,
-  /// which is the stiffest rotation of a small one. @param radii [m]; @param overlap largest, over R
+  /// Rows of a grain with `contacts` contacts. For displacements the contacts are those with its like, for rotations it
+  /// rolls on the packing's largest grain, which is the stiffest rotation of a small grain.
+  /// @param radius, largest_radius [m]; @param overlap largest, over R
   [[nodiscard]] static StableRows stable_rows(const GrainMaterial& m, double radius, double largest_radius,
                                               double contacts, double overlap) {
     const double kn = normal_stiffness_of(m, radius, overlap);
     const double kt = m.stiffness_ratio * kn;
-    const double kt_of_spin = m.stiffness_ratio * m.modulus * radius;  // the same but for rounding, which results show
+    const double kt_of_spin = m.stiffness_ratio * m.modulus * radius;  // equals kt up to rounding; both forms stay, so
+                                                                       // that results keep their bits
     const double ratio = largest_radius / radius;
     const double rolling = m.rolling_stiffness * 2.0 * ratio * ratio / (1.0 + ratio);  // k_r/(k_t r^2)
     return {.translation = contacts * (kn + 2.0 * kt),
@@ -119,7 +121,7 @@ struct LinearContactLaw {
     }
   }
 
-  /// f_n/delta [N/m]: f_n over any length is this times the overlap over that length.
+  /// f_n/delta [N/m]: f_n over any length is this number times the overlap over that length.
   KOKKOS_FORCEINLINE_FUNCTION const V& secant([[maybe_unused]] const V& overlap) const { return normal_stiffness; }
 
   /// Derivatives of the forces by the motion at an overlap, whatever the caps.
@@ -129,7 +131,7 @@ struct LinearContactLaw {
 
   /// Derivatives with the springs left out that have yielded (their force follows f_n only, which has no potential and
   /// is neglected). @param overlap over R [-]; @param history within the caps, as operator() leaves it
-  /// @param elastic_share share of its cap below which a spring holds; above 1, all do that have a cap
+  /// @param elastic_share share of its cap below which a spring holds; above 1, every spring with a cap holds
   KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> stiffness(const V& overlap, const History& history,
                                                             const V& elastic_share) const {
     const V zero(0);
@@ -145,8 +147,8 @@ struct LinearContactLaw {
     return k;
   }
 
-  /// What operator() changes in the forces of a contact that touches, without its cancellation; a contact that does not
-  /// touch stays apart.
+  /// The change of the forces that operator() would give, computed without the cancellation of a difference. A contact
+  /// that does not touch stays apart.
   /// @param overlap over R, and history, at rest, within the caps; @param closing increase of the overlap over R
   /// @param sliding, rolling as in ContactMotion
   KOKKOS_FORCEINLINE_FUNCTION ContactStep<V> step(const V& overlap, const History& history, const V& closing,

@@ -1,5 +1,5 @@
 #pragma once
-/// One pair: its distances, the law's answer, and what that does to both grains; kernels/README.md, "One step", 2 to 4.
+/// One pair: its distances, the law's forces, and the action on both grains; kernels/README.md, "One step", 2 to 4.
 
 #include "kernels/contact/contact_law.hpp"
 #include "kernels/contact/pair_state.hpp"
@@ -75,12 +75,12 @@ KOKKOS_FORCEINLINE_FUNCTION V overlap_measure(const PairGeometry<V>& at, const P
   return Kokkos::Experimental::condition(at.gap < V(0), at.gap * V(shape.minus_inverse_sum_squared), V(0));
 }
 
-/// What a grain brings to its pairs that turns on its radius.
+/// The numbers of a grain that its pairs need for rotations.
 template <class V>
 struct GrainRim {
   V radius;  ///< [m]
   V spin;    ///< [rad/step]
-  V rolled;  ///< radius * spin, the way of its rim [m/step]
+  V rolled;  ///< radius * spin, the velocity of its rim [m/step]
 };
 
 template <class V>
@@ -88,8 +88,9 @@ KOKKOS_FORCEINLINE_FUNCTION GrainRim<V> rim_of(const V& radius, const V& spin) {
   return {radius, spin, radius * spin};
 }
 
-/// The law's answer. With rolling the history is copied, which is two operations shorter in the sweep (g++ 12);
-/// without, the law leaves a part of it alone, which then is neither read nor written.
+/// The law's answer. With rolling the history is copied first, which makes the sweep two operations shorter
+/// (g++ 12). Without rolling the law leaves a part of the history alone, and that part is then neither read nor
+/// written.
 template <class Law, class V>
 KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> answer_of(const Law& law, const ContactMotion<V>& motion,
                                                       typename Law::History& history) {
@@ -104,8 +105,8 @@ KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> answer_of(const Law& law, const Cont
 }
 
 /// Law and forces of a pair that touches in at least one lane. (dw_x, dw_y) is w_j - w_i. The branch is not made a unit
-/// vector: what is needed of n and t is a product with it over |b|. D b is taken less D_xx b, which has no part along
-/// t.
+/// vector, because n and t are needed only in products that can be divided by |b| afterwards. D_xx b is subtracted from
+/// D b, since it has no part along t.
 template <class Law, class V>
 KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<Law>& pair, const PairShape<Law>& shape,
                                               const PairGeometry<V>& at, const CellMotion<V>& cell, const V& dw_x,

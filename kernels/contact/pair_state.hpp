@@ -12,7 +12,7 @@
 
 namespace voussoir::kernels {
 
-/// What moves of a grain, relative to the affine field and since the lane's last rebase; velocities are per step.
+/// The motion of a grain, relative to the affine field and since the lane's last rebase; velocities are per step.
 template <class V>
 struct GrainLanes {
   V u_x, u_y;                  ///< displacement [m]
@@ -22,7 +22,7 @@ struct GrainLanes {
   V rotation;                  ///< since the last commit [rad]
 };
 
-/// What a grain is, the same in all lanes.
+/// Constants of a grain, the same in all lanes.
 template <class real>
 struct GrainShape {
   real radius;                                   ///< [m]
@@ -65,9 +65,9 @@ struct CellMotion {
   V alive;                   ///< 1, or 0 for a lane that is finished, empty or lost
 };
 
-/// What a sweep over all pairs does besides advancing the grains.
+/// The purpose of a sweep over all pairs.
 enum class Sweep {
-  advance,  ///< nothing else
+  advance,  ///< it advances the grains
   measure,  ///< it also sums stress and unbalanced force
 };
 
@@ -79,7 +79,7 @@ struct SweepSums {
   V largest_overlap = V(0);                                                  ///< largest e = -g/R^2 over contacts [-]
 };
 
-inline constexpr int pairs_ahead = 2;  ///< how far a sweep looks ahead in the list
+inline constexpr int pairs_ahead = 2;  ///< a sweep fetches the grains of the pair that stands so far ahead in the list
 
 /// Plain vectors, not views: a group grows its arrays inside the parallel region, where a view may not be made.
 template <class Law>

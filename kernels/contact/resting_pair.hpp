@@ -1,5 +1,5 @@
 #pragma once
-/// One pair at rest, and what it adds to stress and tangent: one law call per contact with zero motion.
+/// One pair at rest and its parts of stress and tangent, by one law call with zero motion.
 ///
 /// Love-Weber stress, eq. (3): sigma = (1/V) sum P (x) b. Contact tangent, eq. (4): D = (1/V) sum k_n n b n b + k_t t b
 /// t b, symmetrised for the FEM; it is affine (too stiff by 1.2 to 3) and neglects spins.
@@ -48,7 +48,7 @@ struct RestingPair {
   V overlap;                          ///< e = -g/R^2
 };
 
-/// The pair's history is limited by the caps of the final positions, as the next step would.
+/// The pair at its present position. Its history is limited by the caps there, as the next step would do.
 template <class Law, class V>
 KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<Law>& pair, const PairShape<Law>& shape,
                                                 const PairGeometry<V>& at, const CellMotion<V>& cell,

@@ -1,6 +1,7 @@
 #pragma once
-/// The choice at run time of what the loops are compiled for: precision, lanes side by side, and whether grains resist
-/// rolling. The law itself is chosen in contact/engine_law.hpp. Lanes and teams both come through here.
+/// The choice at run time between the compiled instances of the engine: precision, number of lanes side by side, and
+/// whether grains resist rolling. The law itself is chosen in contact/engine_law.hpp. Lanes and teams both use this
+/// choice.
 
 #include "kernels/contact/engine_law.hpp"
 #include "kernels/state/rve_batch.hpp"
@@ -18,7 +19,7 @@ enum class Width {
   widest  ///< one RVE a SIMD lane, as many as the processor has
 };
 
-/// One RVE per packing leaves wide lanes empty: those run one to a group in the same code.
+/// Whether most RVEs have a packing of their own: they would leave wide lanes empty and run one to a group instead.
 [[nodiscard]] inline bool mostly_alone(const RveBatch& batch) { return batch.size() < 2 * batch.packings.size(); }
 
 /// Calls body(Instance<float or double>).

@@ -2,25 +2,26 @@
 /// The parts of an evaluation under the method's own names, for profilers.
 ///
 /// Kokkos' own `pushRegion` may fence, which waits for ever inside a parallel loop, and most tools keep one stack of
-/// regions for the whole program. So a worker speaks to the tool directly, and one worker at a time does: who begins a
-/// group while no other is told tells it from its beginning to its end. A tool sees a sample of the groups, inside the
-/// loop's own kernel. Without a tool a region costs one comparison. Sampling profilers see all threads:
-/// VOUSSOIR_OWN_SYMBOL keeps the functions apart that they should name.
+/// regions for the whole program. So workers call the tool directly, and only one worker at a time does: a worker
+/// that begins a group while no other is reporting reports this group from its beginning to its end. A tool sees a
+/// sample of the groups, inside the loop's own kernel. Without a tool a region costs one comparison. Sampling profilers
+/// see all threads; for them VOUSSOIR_OWN_SYMBOL keeps the parts as functions of their own.
 
 #include <Kokkos_Core.hpp>
 #include <atomic>
 
-/// Of a function that a profiler shall find by its name: never inlined. For functions that run microseconds or longer.
+/// Marks a function that a sampling profiler shall find by its name: it is never inlined. A call costs nothing in
+/// functions that run for microseconds.
 #define VOUSSOIR_OWN_SYMBOL __attribute__((noinline))
 
 namespace voussoir::kernels {
 
-/// Where regions are told; nowhere by default.
+/// The receiver of regions; by default there is none.
 class Regions {
  public:
   Regions() = default;
 
-  /// The loaded tool, or nowhere.
+  /// The loaded tool, or no receiver.
   [[nodiscard]] static Regions of_tool() {
     const auto callbacks = Kokkos::Tools::Experimental::get_callbacks();
     Regions regions;
@@ -38,10 +39,10 @@ class Regions {
   void (*pop_)() = nullptr;
 };
 
-/// Lets one worker of a parallel loop at a time tell its regions.
+/// Lets one worker of a parallel loop at a time report its regions.
 class RegionTeller {
  public:
-  /// A worker's turn, as long as it lives; `regions` are told where no other worker has one.
+  /// A worker's turn, as long as the object lives. Its regions are reported unless another worker has its turn.
   class Turn {
    public:
     explicit Turn(RegionTeller& teller) : teller_(teller) {
@@ -64,7 +65,7 @@ class RegionTeller {
   std::atomic_flag taken_;
 };
 
-/// One region, as long as it lives.
+/// One region, as long as the object lives.
 class Region {
  public:
   Region(const Regions& regions, const char* name) : pop_(regions.pop_) {

@@ -6,7 +6,7 @@
 
 namespace voussoir::kernels {
 
-/// What every look at an RVE needs.
+/// The constants that every look at an RVE needs.
 struct RunScales {
   int grains = 0;
   double mean_diameter = 0;   ///< [m]

@@ -1,6 +1,6 @@
 #pragma once
-/// The course of one RVE from its committed to its trial state, in double, whatever runs it (a lane of a group, a
-/// team): how its cell moves, when its lists are renewed, when it is looked at, and how it ends.
+/// The course of one RVE from its committed to its trial state, in double, the same for a lane of a group and for a
+/// team: the motion of its cell, the steps at which its list is renewed and its state is judged, and its end.
 
 #include <cmath>
 
@@ -124,7 +124,7 @@ template <class V>
   return m;
 }
 
-/// What a measuring step decides: `ended` keeps the state, `lost` gives it up.
+/// The decision of a measuring step: `ended` keeps the state, `lost` gives it up.
 enum class Outcome { running, ended, lost };
 
 /// Sets the status of a course that ends. @param reference cell at the last rebase; @param seen what the drive saw,

@@ -1,5 +1,5 @@
 #pragma once
-/// The answer of one RVE from its course and the sums over its contacts at rest.
+/// The report of one RVE, made from its course and the sums over its contacts at rest.
 
 #include <cmath>
 

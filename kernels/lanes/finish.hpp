@@ -83,7 +83,7 @@ template <class Run>
   return true;
 }
 
-/// The group's answers. An RVE that failed keeps its committed state as trial state.
+/// Writes the group's reports and trial states. An RVE that failed keeps its committed state as trial state.
 template <class Run>
 VOUSSOIR_OWN_SYMBOL void finish(Run& run, std::span<RveReport> reports) {
   const Region region(run.regions, "finish");

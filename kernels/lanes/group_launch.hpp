@@ -56,7 +56,7 @@ Work count_work(const RveBatch& batch, const std::vector<GroupMembers<width>>& g
   return work;
 }
 
-/// The RVEs `rves` by groups, on all cores of the host.
+/// Advances the RVEs `rves` in groups on all cores of the host.
 /// @throws std::invalid_argument where the batch's histories are not the law's
 template <class Law, class Drive>
 Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
@@ -86,7 +86,7 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
           const RegionTeller::Turn turn(teller);
           run.regions = turn.regions();
           advance_group(run, batch, groups[g], requests, settings, reports);
-        } catch (...) {  // no memory, say: nothing may leave the parallel region but through here
+        } catch (...) {  // for example no memory: an exception may leave the parallel region only by this way
           if (!failed.test_and_set()) failure = std::current_exception();
         }
         tokens.release(token);

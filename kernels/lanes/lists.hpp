@@ -1,6 +1,7 @@
 #pragma once
-/// Neighbour lists of a group: each lane lists its own candidates (by its own displacement trigger), the group walks
-/// the union. A pair that only other lanes list is inert in a lane, so a lane's numbers never depend on its neighbours.
+/// Neighbour lists of a group. Each lane lists its own candidates when its own displacements ask for it; the group
+/// walks the union of the lists. A pair that only other lanes list is inert in a lane, so a lane's numbers never depend
+/// on its neighbours.
 
 #include <algorithm>
 #include <array>

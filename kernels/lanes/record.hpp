@@ -8,8 +8,8 @@
 
 namespace voussoir::kernels::lanes {
 
-/// Contacts of lane `l`; its cell and its grains must be at the same step. Only what depends on the positions:
-/// tangential forces follow with the sweep.
+/// Contacts of lane `l`; its cell and its grains must be at the same step. Normal forces
+/// only, since tangential forces are not known before the sweep.
 template <class Run>
 [[nodiscard]] std::vector<NetworkContact> network_of(const Run& run, std::size_t l) {
   using Law = typename Run::Law;

@@ -1,5 +1,6 @@
 #pragma once
-/// The static tangents of a group's lanes in place of eq. (4) in their reports, where they were found and can be used.
+/// Puts the static tangents of a group's lanes in place of eq. (4) in their reports, where they were found and are
+/// usable.
 
 #include <algorithm>
 
@@ -15,7 +16,7 @@ namespace voussoir::kernels::lanes {
   return d[0] <= slack * contact[0] && d[3] <= slack * contact[3] && d[5] <= slack * contact[5];
 }
 
-/// A tangent that may take eq. (4)'s place in a report.
+/// A tangent that may take the place of eq. (4) in a report.
 struct FoundTangent {
   TangentKind kind;
   double tangent[6];  ///< [Pa]
@@ -49,7 +50,7 @@ template <class V>
           result.converged[l]};
 }
 
-/// `found` into the report, unless it cannot be used. @param contact eq. (4)
+/// Writes `found` into the report if it is usable. @param contact tangent of eq. (4) [Pa]
 inline void replace_tangent(RveReport& report, const FoundTangent& found, const double* contact) {
   if (!is_softer(found.tangent, contact)) return;
   std::copy_n(found.tangent, 6, report.tangent);
@@ -57,8 +58,8 @@ inline void replace_tangent(RveReport& report, const FoundTangent& found, const 
   report.tangent_kind = found.kind;
 }
 
-/// The static tangents into the reports of the lanes that have an answer; eq. (4) stays where they cannot be used, and
-/// the elastic one where a loading one is not found.
+/// Writes the static tangents into the reports of the lanes that have an answer. Eq. (4) stays where a static tangent
+/// is not usable, and the elastic tangent where no loading tangent is found.
 template <class Run>
 VOUSSOIR_OWN_SYMBOL void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
   const Region region(run.regions, "tangents");

@@ -1,6 +1,6 @@
 #pragma once
-/// Scaled masses: what a grain's inertia must be for one stable step of all sizes; kernels/README.md, "Mobilities". How
-/// stiff a grain can be is the law's own knowledge.
+/// Scaled masses: the inertia that a grain needs so that one step is stable for all sizes; kernels/README.md,
+/// "Mobilities". The law says how stiff a grain can be.
 
 #include "kernels/state/rve_batch.hpp"
 
@@ -9,8 +9,8 @@ namespace voussoir::kernels {
 inline constexpr double step_safety = 0.9;         ///< c of kernels/README.md "Mobilities"
 inline constexpr double assumed_neighbours = 6.0;  ///< contacts of one grain, for the bound on its stiffness
 
-/// Inverse mass or moment of inertia for which a step of 1 is stable under a row sum of stiffnesses; 0 without any, so
-/// that what nothing holds does not move.
+/// Inverse mass or moment of inertia for which a step of 1 is stable under a row sum of stiffnesses. It
+/// is 0 for a row sum of 0, so that a motion which nothing resists does not take place.
 [[nodiscard]] inline double mobility_under(double row_sum) {
   return row_sum > 0 ? step_safety * step_safety * 4.0 / row_sum : 0.0;
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// All RVEs of a run: what they are (packings), where they stand (committed state), and where the last evaluation left
-/// them (trial state). Data only; verbs are in advance_rves.hpp.
+/// All RVEs of a run: their packings, their committed states, and the trial states that the last evaluation left. This
+/// file holds data; the engine's verbs are in advance_rves.hpp.
 ///
 /// Layout (RVE, grain, component), LayoutRight: one thread walks one group, one RVE is contiguous. State is double,
 /// whatever the lanes compute in, and complete: neighbour lists derive from it.
@@ -18,7 +18,7 @@
 
 namespace voussoir::kernels {
 
-/// What all RVEs cloned from one packing share.
+/// The data that all RVEs cloned from one packing share.
 struct Packing {
   std::vector<double> radii;                                             ///< [m]
   std::vector<GrainMaterial> materials = std::vector<GrainMaterial>(1);  ///< the classes of grains (Table 1)
@@ -78,7 +78,7 @@ struct RveStates {
 
 inline constexpr int max_grains = 65535;  ///< indices of a pair fit one word
 
-/// How an evaluation of one RVE ended. The last three make the increment unusable; `open` and `step_limit` are
+/// The end of an evaluation of one RVE. The last three make the increment unusable; `open` and `step_limit` are
 /// reported. `neighbour_overflow` also stands for a cell too narrow for its largest grains.
 enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, overlap_limit, not_finite };
 
@@ -98,11 +98,11 @@ struct RveReport {
   double tangent_skew[3] = {};  ///< of a loading tangent, (D_ab - D_ba)/2 of xxyy xxxy yyxy [Pa]
   TangentKind tangent_kind = TangentKind::contact;
   int tangent_iterations = 0;   ///< of a static tangent
-  bool tangent_capped = false;  ///< they reached their limit: too stiff, by less than eq. (4); of `loading`: `elastic`
-                                ///< instead
-  double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
-  double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
-  double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]
+  bool tangent_capped = false;  ///< the iterations reached their limit: the tangent is too stiff, less so than eq. (4);
+                                ///< of `loading`: `elastic` instead
+  double unbalanced = 0;       ///< rms|f| / (max(p, floor) t d) at the last look [-]
+  double inertial_number = 0;  ///< of the strain phase, at the final pressure [-]
+  double largest_overlap = 0;  ///< overlap / (r_i + r_j) [-]
 
   /// Compression positive [Pa].
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double pressure() const { return -0.5 * (stress[0] + stress[3]); }

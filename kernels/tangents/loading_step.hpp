@@ -1,6 +1,6 @@
 #pragma once
-/// A small step of strain on the contacts at rest, with the law's caps: what it does to the forces, and the slopes of
-/// that.
+/// A small step of strain on the contacts at rest, with the law's caps: the changes of the forces and the slopes of
+/// these changes.
 ///
 /// The geometry is linear, the law is not: a contact whose spring would pass its cap follows mu f_n (or arm f_n)
 /// instead, an opening one loses its forces (the law's `step`). Forces that are carried already turn with their
@@ -10,7 +10,8 @@
 
 namespace voussoir::kernels {
 
-/// What a contact pulls with for its changes of length, at its state in the step. By closing: of forces at their caps.
+/// Slopes of a contact's forces by its changes of length, at its state in the step. Forces at their caps follow the
+/// closing of the contact.
 template <class V>
 struct StepSlope {
   V normal, shear, moment, shear_by_closing, moment_by_closing;  ///< k_n, k_t / y [N/m], k_r [N m/rad], [N/m], [N]
@@ -28,7 +29,8 @@ struct StepGrain {
   StrainDofs<V> shadow, half, half_image;
 };
 
-/// What the step adds to a SpringSystem. Reused from group to group; empty unless a loading tangent is asked for.
+/// The arrays that a step needs besides a SpringSystem. Reused from group to group; empty unless a loading tangent is
+/// asked for.
 template <class V>
 struct StepSystem {
   PerStrain<V> size;  ///< signed strain of each column's step [-]
@@ -102,7 +104,7 @@ VOUSSOIR_LANES_INLINE SpringForce<V> answer(const GroupState<Law>& group, const 
   return {-(fn * over_size), now.tangential.change * over_ratio * over_size, now.moment.change * over_size};
 }
 
-/// Adds what a contact contributes to the change of the stress. @param force change of that on i; @param dx, dy of the
+/// Adds a contact's part of the change of the stress. @param force change of that on i; @param dx, dy of the
 /// far end
 template <class V>
 VOUSSOIR_LANES_INLINE void add_change(const SpringLanes<V>& s, const StepSpring<V>& carried, const GrainDofs<V>& force,

@@ -20,7 +20,7 @@
 namespace voussoir::kernels {
 
 inline constexpr int tangent_look_interval = 16;  ///< iterations between looks at the energies
-inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine one: mechanisms
+inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine energy: mechanisms
                                          ///< have none
 
 /// Answer of a group: sums over contacts, to be divided by the volume.
@@ -72,7 +72,7 @@ void turn_directions(SpringSystem<V>& system, const PerStrain<V>& beta) {
   }
 }
 
-/// Which solutions of which lanes go on, and what their energies are.
+/// The solutions that go on, lane by lane, and their energies.
 template <class V>
 struct Progress {
   PerStrain<V> running;
@@ -109,9 +109,9 @@ void advance_motions(SpringSystem<V>& system, const PerStrain<V>& alpha) {
   }
 }
 
-/// Freezes what changed its diagonal entry by less than the tolerance since the last look (the decrease of the energy
-/// over the last iterations estimates the error: Hestenes and Stiefel; Strakos and Tichy 2002); false when nothing is
-/// left.
+/// Freezes the solutions whose diagonal entry changed by less than the tolerance since the last look (the decrease of
+/// the energy over the last iterations estimates the error: Hestenes and Stiefel; Strakos and Tichy 2002); false when
+/// no solution is left.
 template <class V>
 [[nodiscard]] bool look_at(Progress<V>& progress, StaticTangent<V>& out, int iteration, double tolerance) {
   bool any = false;

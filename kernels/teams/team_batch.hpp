@@ -1,6 +1,6 @@
 #pragma once
-/// What teams read and write: packings, states and requests in the memory of the space that runs them. Where that is
-/// the host's, states are the batch's own.
+/// The data that teams read and write: packings, states and requests in the memory of the space that runs them. Where
+/// that is the host's memory, the states are the batch's own.
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>

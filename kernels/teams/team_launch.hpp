@@ -1,5 +1,5 @@
 #pragma once
-/// The team kernel and its launch. Only advance_teams.cpp and the programs of tests/cuda include it: it is long to
+/// The team kernel and its launch. Only advance_teams.cpp and tests include it: it is long to
 /// compile.
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
@@ -12,7 +12,7 @@
 
 namespace voussoir::kernels::teams {
 
-/// What a measuring step decides, by one thread.
+/// Judges a measuring step, by one thread.
 template <class Run>
 KOKKOS_FUNCTION void judge_team(const Run& run, int step) {
   auto& course = run.course();

@@ -14,7 +14,7 @@ namespace voussoir::kernels::teams {
 /// ends as `neighbour_overflow`.
 inline constexpr int listed_per_grain = 8;
 
-/// What all threads of a team share.
+/// The data that all threads of a team share.
 template <class V, class Drive>
 struct TeamShared {
   RveCourse<Drive> course;
@@ -22,7 +22,7 @@ struct TeamShared {
   SweepSums<V> sums;
   Homogenised<V> rest;  ///< at the end
   Mat2 cell;            ///< at the last rebase
-  ListState list;       ///< what the last look said
+  ListState list;       ///< result of the last look
 };
 
 /// A pair's current branch, kept by measuring steps.

@@ -23,7 +23,7 @@ KOKKOS_FUNCTION void press_pairs(const Run& run) {
     const GrainLanes<V>&gi = at.grains(i), &gj = at.grains(shape.other);
     const PairGeometry<V> now = geometry_of(pair, cell, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
     const bool touches = Kokkos::Experimental::any_of(now.gap < V(0));
-    if (!touches && shape.active == 0) return;  // what the pair did last, nothing, still stands
+    if (!touches && shape.active == 0) return;  // the pair's last action was none, and that still holds
     shape.active = touches ? 1 : 0;
     at.actions(p) = act(pair, shape, now, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
                         rim_of(V(run.shape(i).radius), gi.spin), gj.spin);
