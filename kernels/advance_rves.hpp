@@ -11,27 +11,20 @@
 
 namespace voussoir::kernels {
 
-/// What one call cost.
-struct Work {
-  std::size_t particle_steps = 0;  ///< executed steps x grains of live lanes
-  std::size_t lane_steps = 0;      ///< the same with frozen and empty lanes counted: what the hardware did
-};
-
-/// Whether teams of threads run what any of them can; a static tangent or a recorded microstructure needs lanes
-/// (`automatic`).
+/// Whether a backend runs requests by teams of threads. With `automatic`, requests for a static tangent or for recorded
+/// microstructures go to lanes nevertheless, since teams cannot answer them.
 [[nodiscard]] bool takes_teams(Backend backend);
 
-/// Given motions. `requests` and `reports` have batch.size() entries.
+/// Advances every RVE by a given motion. `requests` and `reports` have batch.size() entries.
 /// Writes batch.trial; never throws for a numerical reason: each RVE's status says how it ended.
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports);
 
-/// The same of some RVEs: `rves` are their numbers, each at most once. The states and reports of the others are left as
-/// they are.
+/// Advances some RVEs: `rves` are their numbers, each at most once. The states and reports of the others do not change.
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports, std::span<const int> rves);
 
-/// Stress-controlled cells (consolidation, element tests).
+/// Advances every RVE under controlled stresses (consolidation, element tests).
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports);
 

@@ -11,6 +11,7 @@
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
 #include "kernels/state/committed_contacts.hpp"
+#include "kernels/state/describe_committed.hpp"
 
 namespace voussoir::host {
 

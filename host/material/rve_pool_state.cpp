@@ -47,7 +47,7 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
   if (count < 0 || count > s.contact_capacity())
     throw std::runtime_error("the checkpoint's contact count is impossible");
   transfer(&s.contact_key(rve, 0), static_cast<std::size_t>(count));
-  transfer(&s.contact_history(rve, 0, 0), 2 * static_cast<std::size_t>(count));
+  transfer(s.histories_of(rve), s.history_size() * static_cast<std::size_t>(count));
   for (int c = 0; c < count; ++c) {
     const std::uint32_t key = s.contact_key(rve, c);
     if (kernels::first_of(key) >= kernels::second_of(key) || kernels::second_of(key) >= static_cast<int>(grains)) {

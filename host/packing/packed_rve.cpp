@@ -65,7 +65,7 @@ void store_rve(const PackedRve& from, kernels::RveBatch& batch, std::size_t rve)
   for (std::size_t k = 0; k < 4; ++k) to.cell(rve, k) = h[k];
   to.contact_count(rve) = static_cast<int>(from.contact_key.size());
   std::copy(from.contact_key.begin(), from.contact_key.end(), &to.contact_key(rve, 0));
-  std::copy(from.contact_history.begin(), from.contact_history.end(), &to.contact_history(rve, 0, 0));
+  std::copy(from.contact_history.begin(), from.contact_history.end(), to.histories_of(rve));
 }
 
 void load_rve(const kernels::RveStates& from, std::size_t rve, PackedRve& to) {
@@ -75,7 +75,7 @@ void load_rve(const kernels::RveStates& from, std::size_t rve, PackedRve& to) {
   to.rotation.assign(&from.rotation(rve, 0), &from.rotation(rve, 0) + n);
   to.cell = {from.cell(rve, 0), from.cell(rve, 1), from.cell(rve, 2), from.cell(rve, 3)};
   to.contact_key.assign(&from.contact_key(rve, 0), &from.contact_key(rve, 0) + contacts);
-  to.contact_history.assign(&from.contact_history(rve, 0, 0), &from.contact_history(rve, 0, 0) + 2 * contacts);
+  to.contact_history.assign(from.histories_of(rve), from.histories_of(rve) + from.history_size() * contacts);
 }
 
 }  // namespace voussoir::host

@@ -7,6 +7,14 @@
 
 namespace voussoir::host {
 
+namespace {
+/// Of the law that the engine runs: packings of another law are not read.
+std::vector<std::string> history_names() {
+  constexpr auto& names = kernels::PlainEngineLaw::history_names;
+  return {names.begin(), names.end()};
+}
+}  // namespace
+
 io::Packing stored_packing(const PackedRve& rve, const std::string& recipe, const std::string& fingerprint) {
   io::Packing file;
   file.radius = rve.packing.radii;
@@ -21,7 +29,7 @@ io::Packing stored_packing(const PackedRve& rve, const std::string& recipe, cons
     file.contact_i.push_back(kernels::first_of(key));
     file.contact_j.push_back(kernels::second_of(key));
   }
-  file.history_names = {"tangential_force", "rolling_moment"};
+  file.history_names = history_names();
   file.history = rve.contact_history;
   file.numbers = {{"void_ratio", rve.void_ratio},
                   {"pressure", rve.pressure},
@@ -47,7 +55,6 @@ PackedRve grains_from(const io::Packing& file, const SoilCase& soil) {
 }
 
 std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCase& soil) {
-  const std::vector<std::string> histories{"tangential_force", "rolling_moment"};
   const auto number = [&](const char* name) {
     const auto found = file.numbers.find(name);
     return found == file.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
@@ -69,7 +76,7 @@ std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCas
   rve.bias = number("bias");
   rve.consolidation_friction = number("consolidation_friction");
   const double seed = number("seed");
-  if (!ascending || !finite || file.history_names != histories || !(rve.cell.det() > 0) ||
+  if (!ascending || !finite || file.history_names != history_names() || !(rve.cell.det() > 0) ||
       !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {
     return {};
   }

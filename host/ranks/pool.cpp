@@ -154,9 +154,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
   for (std::size_t r = 1; r <= others(); ++r) {
     ByteReader read = values_of(replies[r - 1]);
     slowest = std::max(slowest, read.value<double>());
-    const auto theirs = read.value<kernels::Work>();
-    work.particle_steps += theirs.particle_steps;
-    work.lane_steps += theirs.lane_steps;
+    work += read.value<kernels::Work>();
     deferral_error = std::max(deferral_error, read.value<double>());
     place(read.list<kernels::RveReport>(), points_[r], trial_);
     ledger_.bytes += static_cast<double>(replies[r - 1].size());

@@ -1,5 +1,5 @@
 #pragma once
-/// The periodic cell of an RVE as a lattice: images, its shortest vectors, how wide it is.
+/// The periodic cell of an RVE as a lattice: its images, its shortest vectors, and its width.
 
 #include <cmath>
 
@@ -47,7 +47,7 @@ struct Cell {
 /// The same lattice with its shortest vectors (Gauss' reduction): a cell never gets thin by shear alone, so shear is
 /// unlimited.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 reduced_lattice(Mat2 cell) {
-  constexpr int most_swaps = 1000;  // each but the last shortens a vector; a bound for cells that are no numbers
+  constexpr int most_swaps = 1000;  // every swap but the last shortens a vector; the bound is for cells with a NaN
   for (int k = 0; k < most_swaps; ++k) {
     const double aa = cell.xx * cell.xx + cell.yx * cell.yx;
     const double bb = cell.xy * cell.xy + cell.yy * cell.yy;
@@ -67,7 +67,8 @@ struct Cell {
   return cell;
 }
 
-/// Nearest images are unique for contacts: both heights exceed two contact distances of the largest grains.
+/// Whether nearest images are unique for contacts: both heights must exceed two contact distances of the largest
+/// grains.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION bool wide_enough(const Cell& cell, double largest_radius, double skin) {
   const double least = 2.0 * (2.0 * largest_radius + skin);
   return least < cell.height(0) && least < cell.height(1);

@@ -1,15 +1,37 @@
 #pragma once
-/// The contact law as a value: named constants and one pure call (method.md §3; the rules are Yade's, so that the two
-/// codes can be compared grain by grain). No views, no indices: it is tested alone along a path before any packing
-/// exists.
+/// The questions that the engine asks a contact law, and the form of the answers. A law itself is a value: the
+/// constants of one contact and pure functions of its motion (method.md §3), without views and without indices, so that
+/// it can be tested alone along a path. The engine runs the law of `linear_law.hpp`; `engine_law.hpp` makes that
+/// choice.
 ///
-/// A new law is a struct with this shape: `History` (what it remembers), `has_rolling`, constants, and `operator()`.
+/// A law is a struct `Law` over a value type V (lane.hpp) with
+///
+///   Value, has_rolling      V, and whether contacts transmit moments: the sweep leaves their part out if not
+///   Pair                    the law's constants for two given grains, in V's real type and the same in all lanes
+///   combine(m1, r1, m2, r2) the Pair of two grains (materials, radii [m]), computed in double and rounded once
+///   History                 the memory of a contact: at most four numbers of type V, 0 before the first touch
+///   history_names           their names in the order in which packings and checkpoints store them
+///   for_each_number(h, f)   calls f(k, number k) of a History, in that order
+///   stable_rows(...)        the stiffness of a grain at the largest overlap allowed, which its scaled mass must stand
+///   normal_stiffness_of(...) d f_n/d delta of a grain against its like, for the control of stresses
+///   Law(pair)               the law of that pair, with the member functions
+///     operator()(motion, history)    forces; the history becomes 0 where the grains do not touch
+///     secant(overlap)                f_n/delta
+///     springs(overlap)               derivatives of the forces as if there were no caps
+///     stiffness(overlap, history, elastic_share)   the same without the springs that have yielded
+///     step(overlap, history, closing, sliding, rolling)   the changes of the forces by a small motion
+///
+/// Overlaps are given over R = r_i + r_j, because the sweep has that number at no cost: a law that is not linear in
+/// delta takes its powers from overlap and keeps the power of R in its Pair.
+
+#include <array>
+#include <string_view>
 
 #include "kernels/contact/lane.hpp"
 
 namespace voussoir::kernels {
 
-/// What a grain is made of. One class of Table 1.
+/// The material of a grain, one class of Table 1. A law reads the numbers that it needs.
 struct GrainMaterial {
   double modulus = 3.0e9;          ///< contact modulus E [Pa]
   double stiffness_ratio = 0.5;    ///< k_t/k_n [-]
@@ -18,44 +40,9 @@ struct GrainMaterial {
   double rolling_limit = 0.6;      ///< eta in |m| <= eta r f_n [-]
 };
 
-/// Constants of one pair in contact.
-struct PairConstants {
-  double normal_stiffness;      ///< k_n [N/m]
-  double tangential_stiffness;  ///< k_t [N/m]
-  double rolling_stiffness;     ///< k_r [N m/rad]
-  double friction;              ///< mu [-]
-  double rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
-};
-
-/// Caps of the springs by overlap over R, as the law wants them.
-struct PairCaps {
-  double tangential;  ///< mu k_n R [N]
-  double moment;      ///< [N m]
-};
-
-[[nodiscard]] KOKKOS_INLINE_FUNCTION PairCaps caps_of(const PairConstants& k, double sum_radii) {
-  const double fn = k.normal_stiffness * sum_radii;
-  return {k.friction * fn, k.rolling_arm * fn};
-}
-
-/// Harmonic mean 2 a b / (a + b), of two springs in series; 0 if either is 0.
-KOKKOS_INLINE_FUNCTION double harmonic_mean(double a, double b) { return a + b > 0 ? 2.0 * a * b / (a + b) : 0.0; }
-
-/// Combination rules of method.md §3 for grains of radii r1, r2 [m].
-KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2, double r2) {
-  const double kt = harmonic_mean(m1.modulus * m1.stiffness_ratio * r1, m2.modulus * m2.stiffness_ratio * r2);
-  const double beta = harmonic_mean(m1.rolling_stiffness, m2.rolling_stiffness);
-  const double arm1 = m1.rolling_limit * r1;
-  const double arm2 = m2.rolling_limit * r2;
-  return {.normal_stiffness = harmonic_mean(m1.modulus * r1, m2.modulus * r2),
-          .tangential_stiffness = kt,
-          .rolling_stiffness = beta * kt * r1 * r2,
-          .friction = m1.friction < m2.friction ? m1.friction : m2.friction,
-          .rolling_arm = arm1 < arm2 ? arm1 : arm2};
-}
-
-/// Relative motion at a contact during one step. A law that is linear in the overlap answers to it in two units, which
-/// spares the sweep two products and every contact a wait: R = r_i + r_j, |b| the distance of the centres.
+/// Relative motion at a contact during one step. The overlap comes over two lengths, R = r_i + r_j and the distance |b|
+/// of the centres: f_n/|b| is the secant stiffness times the second, caps follow the first. The sweep has both
+/// at hand; with one of them only it would need two products more, and every contact would wait for them.
 template <class V>
 struct ContactMotion {
   V overlap;            ///< delta/R >= 0 [-]; 0 means no contact
@@ -77,26 +64,33 @@ struct ContactStiffness {
   V normal, tangential, rolling;  ///< [N/m], [N/m], [N m/rad]
 };
 
-/// A spring force that may not pass a share of f_n, over a small motion.
+/// The change of a spring force by a small motion, where the force is limited to a share of f_n.
 template <class V>
 struct LimitedForce {
   V change;      ///< of the force
-  V slope;       ///< of `change` by the spring's own motion: 0 at the cap
-  V by_closing;  ///< and by the contact's closing: 0 but at the cap
+  V slope;       ///< derivative of `change` by the spring's own motion: 0 at the cap
+  V by_closing;  ///< derivative of `change` by the contact's closing: 0 except at the cap
 };
 
-/// What a small motion changes in a contact's forces, and the slopes of that. Closing is the increase of the overlap
-/// over R.
+/// The changes of a contact's forces by a small motion, and the slopes of these changes. Closing is the increase of the
+/// overlap over R. A contact that opens loses its forces and is followed no further.
 template <class V>
 struct ContactStep {
-  V closing;                           ///< as far as the contact follows it: an opening one does to its last touch [-]
-  V normal_stiffness;                  ///< k_n; 0 where it opens [N/m]
+  V normal_change;                     ///< of f_n, over R [N/m]
+  V normal_stiffness;                  ///< derivative of f_n by delta after the motion; 0 where the contact opens [N/m]
   LimitedForce<V> tangential, moment;  ///< f_t [N], m [N m]
+};
+
+/// Sums over the rows of a grain's stiffness matrix, which bound its eigenvalues (Gershgorin): an explicit step is
+/// stable for them.
+struct StableRows {
+  double translation;  ///< [N/m]
+  double rotation;     ///< [N m/rad]
 };
 
 /// @param stiffness 0 where the contact opens; @param motion of the spring; @param held its force before, within its
 /// cap
-/// @param cap after the motion; @param cap_slope of it by closing
+/// @param cap after the motion; @param cap_slope derivative of the cap by closing
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION LimitedForce<V> limited_force(const V& stiffness, const V& motion, const V& held,
                                                           const V& cap, const V& cap_slope) {
@@ -108,75 +102,46 @@ KOKKOS_FORCEINLINE_FUNCTION LimitedForce<V> limited_force(const V& stiffness, co
           condition(below, -cap_slope, condition(above, cap_slope, zero))};
 }
 
-/// Linear normal spring, tangential spring with Coulomb cap, rolling spring with plastic cap (Iwashita and Oda 1998).
-template <class V, bool Rolling>
-struct LinearContactLaw {
-  static constexpr bool has_rolling = Rolling;
+inline constexpr std::size_t most_history_numbers = 4;
 
-  /// Spring forces carried from step to step.
-  struct History {
-    V tangential;  ///< [N]
-    V moment;      ///< [N m], untouched without rolling
-  };
+/// The number of numbers in a law's History.
+template <class Law>
+inline constexpr int history_size = [] {
+  static_assert(Law::history_names.size() <= most_history_numbers);
+  return static_cast<int>(Law::history_names.size());
+}();
 
-  V normal_stiffness, tangential_stiffness, rolling_stiffness;  ///< as in PairConstants
-  V tangential_cap;                                             ///< mu k_n R, by overlap/R [N]
-  V moment_cap;                                                 ///< min(eta_1 r_1, eta_2 r_2) k_n R, by overlap/R [N m]
+/// Numbers of a history as one lane has them, in the order in which states store them.
+template <class Law, class Number>
+using HistoryNumbers = std::array<Number, static_cast<std::size_t>(history_size<Law>)>;
 
-  /// Without contact every force and the history become zero: both caps are multiples of f_n.
-  KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> operator()(const ContactMotion<V>& motion, History& history) const {
-    const V fn = normal_stiffness * motion.overlap_to_branch;
-    history.tangential = clamp_to(fused(tangential_stiffness, motion.sliding, history.tangential),
-                                  tangential_cap * motion.overlap);
-    if constexpr (Rolling) {
-      history.moment = clamp_to(fused(rolling_stiffness, motion.rolling, history.moment), moment_cap * motion.overlap);
-      return {fn, history.tangential, history.moment};
-    } else {
-      return {fn, history.tangential, V(0)};
-    }
-  }
+/// The history of a contact that has never touched.
+template <class Law>
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION typename Law::History no_history() {
+  typename Law::History history;
+  Law::for_each_number(history, [](int, typename Law::Value& number) { number = typename Law::Value(0); });
+  return history;
+}
 
-  /// Its derivative by the motion, with the springs that have yielded left out (their force follows f_n only, which has
-  /// no potential and is neglected). @param overlap over R [-]; @param history within the caps, as the call above
-  /// leaves it
-  /// @param elastic_share share of its cap below which a spring holds; above 1, all do that have a cap
-  KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> stiffness(const V& overlap, const History& history,
-                                                            const V& elastic_share) const {
-    const V zero(0);
-    const auto touches = zero < overlap;
-    const V pressed = larger(overlap, zero);
-    const auto sticks = Kokkos::abs(history.tangential) < elastic_share * (tangential_cap * pressed);
-    ContactStiffness<V> k{Kokkos::Experimental::condition(touches, normal_stiffness, zero),
-                          Kokkos::Experimental::condition(sticks, tangential_stiffness, zero), zero};
-    if constexpr (Rolling) {
-      const auto holds = Kokkos::abs(history.moment) < elastic_share * (moment_cap * pressed);
-      k.rolling = Kokkos::Experimental::condition(holds, rolling_stiffness, zero);
-    }
-    return k;
-  }
+/// Writes numbers(k), rounded, into lane `l` of a history; below, calls write(k, number) with the numbers of that lane.
+template <class Law, class Numbers>
+KOKKOS_FORCEINLINE_FUNCTION void read_history(typename Law::History& history, std::size_t l, const Numbers& numbers) {
+  Law::for_each_number(history, [&](int k, typename Law::Value& number) {
+    number[l] = static_cast<real_of<typename Law::Value>>(numbers(k));
+  });
+}
+template <class Law, class Write>
+KOKKOS_FORCEINLINE_FUNCTION void write_history(const typename Law::History& history, std::size_t l,
+                                               const Write& write) {
+  Law::for_each_number(history, [&](int k, const typename Law::Value& number) { write(k, number[l]); });
+}
 
-  /// What operator() changes in the forces of a contact that touches, without its cancellation; a contact that does not
-  /// stays away.
-  /// @param overlap over R, and history, at rest, within the caps; @param closing increase of the overlap over R
-  /// @param sliding, rolling as in ContactMotion
-  KOKKOS_FORCEINLINE_FUNCTION ContactStep<V> step(const V& overlap, const History& history, const V& closing,
-                                                  const V& sliding, const V& rolling) const {
-    using Kokkos::Experimental::condition;
-    const V zero(0);
-    const auto stays = (zero < overlap) && (zero < overlap + closing);
-    const V followed = condition(stays, closing, -overlap), pressed = overlap + followed;
-    const auto where_it_stays = [&](const V& x) { return condition(stays, x, zero); };
-    ContactStep<V> out{followed,
-                       where_it_stays(normal_stiffness),
-                       limited_force(where_it_stays(tangential_stiffness), sliding, history.tangential,
-                                     tangential_cap * pressed, where_it_stays(tangential_cap)),
-                       {zero, zero, zero}};
-    if constexpr (Rolling) {
-      out.moment = limited_force(where_it_stays(rolling_stiffness), rolling, history.moment, moment_cap * pressed,
-                                 where_it_stays(moment_cap));
-    }
-    return out;
-  }
-};
+/// Whether lane `l` of a history holds anything that a new list must take over.
+template <class Law>
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION bool remembers(const typename Law::History& history, std::size_t l) {
+  bool any = false;
+  Law::for_each_number(history, [&](int, const typename Law::Value& number) { any = any || number[l] != 0; });
+  return any;
+}
 
 }  // namespace voussoir::kernels

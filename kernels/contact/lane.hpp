@@ -1,9 +1,9 @@
 #pragma once
-/// The value type of the engine: one number per RVE of a group, one RVE per SIMD lane.
+/// The value type of the engine. A value holds one number for each RVE of a group, one RVE per SIMD lane.
 ///
 /// `WideLane<real>` is as wide as the build's instruction set allows, `SingleLane<real>` holds one RVE (unlike
-/// packings, and the GPU's threads). Every kernel is a template over this type and uses only what stands here. Lanes
-/// are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
+/// packings, and the GPU's threads). Every kernel is a template over this type and uses the operations of this file
+/// only. Lanes are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
 
 #include <Kokkos_Core.hpp>
 #include <Kokkos_SIMD.hpp>
@@ -14,7 +14,8 @@
 #include <immintrin.h>
 #endif
 
-/// Of loops that only lanes run: inlined whatever the compiler makes of their length, and not compiled for a device.
+/// Marks functions in the loops of lanes: the compiler must inline them even where it finds them too long. They are
+/// never compiled for a device.
 #define VOUSSOIR_LANES_INLINE inline __attribute__((always_inline))
 
 namespace voussoir::kernels {
@@ -24,7 +25,7 @@ namespace abi = Kokkos::Experimental::simd_abi;
 template <class real>
 using SingleLane = Kokkos::Experimental::simd<real, abi::scalar>;
 
-/// The one place that picks an ABI. Kokkos' own `native` is only 8 wide for float.
+/// The choice of a SIMD width for the build's instruction set. Kokkos' own `native` has only 8 floats.
 template <class real>
 struct WideAbi {
   using type = abi::scalar;
@@ -58,7 +59,8 @@ inline constexpr int lane_count = static_cast<int>(V::size());
 template <class V>
 using real_of = typename V::value_type;
 
-/// a*b + c in one rounding. Contraction is off in this project, so a fused operation is one that is written.
+/// a*b + c in one rounding. Since contraction is off in this project, the compiler fuses no other operations than
+/// these.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V fused(const V& a, const V& b, const V& c) {
   if constexpr (V::size() == 1) {  // Kokkos 4.5's scalar fma rounds twice
@@ -90,7 +92,7 @@ KOKKOS_FORCEINLINE_FUNCTION V larger(const V& a, const V& b) {
 /// x limited to [-bound, bound]; bound >= 0. Applying it twice changes nothing, which frozen lanes rely on.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V clamp_to(const V& x, const V& bound) {
-#if defined(VOUSSOIR_AVX512)  // one operation for three, and so much shorter a chain
+#if defined(VOUSSOIR_AVX512)  // one operation instead of three shortens the chain of every contact
   constexpr int smaller_magnitude_sign_of_first = 0b0010;
   if constexpr (std::is_same_v<V, WideLane<float>>) {
     return V(_mm512_range_ps(static_cast<__m512>(x), static_cast<__m512>(bound), smaller_magnitude_sign_of_first));
@@ -104,7 +106,7 @@ KOKKOS_FORCEINLINE_FUNCTION V clamp_to(const V& x, const V& bound) {
 /// `a` where x, y and z are all zero, `b` elsewhere.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V choose_if_zero(const V& x, const V& y, const V& z, const V& a, const V& b) {
-#if defined(VOUSSOIR_AVX512)  // two operations for five
+#if defined(VOUSSOIR_AVX512)  // two operations instead of five
   constexpr int any_of_three = 0b11111110;
   if constexpr (std::is_same_v<V, WideLane<float>>) {
     const auto bits = [](const V& v) { return _mm512_castps_si512(static_cast<__m512>(v)); };

@@ -20,12 +20,10 @@ struct PairReference {
 }
 
 /// Constants of a pair i < j, combined in double and rounded once. @param ri, rj radii [m]
-template <class real>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION PairShape<real> pair_shape(int j, const GrainMaterial& of_i, double ri,
-                                                                const GrainMaterial& of_j, double rj) {
-  const PairConstants c = combine(of_i, ri, of_j, rj);
-  const PairCaps caps = caps_of(c, ri + rj);
-  const auto r = [](double x) { return static_cast<real>(x); };
+template <class Law>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION PairShape<Law> pair_shape(int j, const GrainMaterial& of_i, double ri,
+                                                               const GrainMaterial& of_j, double rj) {
+  const auto r = [](double x) { return static_cast<real_of<typename Law::Value>>(x); };
   return {.other = j,
           .other_bytes = 0,
           .active = 1,
@@ -33,11 +31,7 @@ template <class real>
           .minus_inverse_sum_squared = r(-1.0 / ((ri + rj) * (ri + rj))),
           .minus_half_sum = r(-0.5 * (ri + rj)),
           .radius_other = r(rj),
-          .normal_stiffness = r(c.normal_stiffness),
-          .tangential_stiffness = r(c.tangential_stiffness),
-          .rolling_stiffness = r(c.rolling_stiffness),
-          .tangential_cap = r(caps.tangential),
-          .moment_cap = r(caps.moment)};
+          .law = Law::combine(of_i, ri, of_j, rj)};
 }
 
 }  // namespace voussoir::kernels

@@ -12,7 +12,7 @@
 
 namespace voussoir::kernels {
 
-/// What moves of a grain, relative to the affine field and since the lane's last rebase; velocities are per step.
+/// The motion of a grain, relative to the affine field and since the lane's last rebase; velocities are per step.
 template <class V>
 struct GrainLanes {
   V u_x, u_y;                  ///< displacement [m]
@@ -22,7 +22,7 @@ struct GrainLanes {
   V rotation;                  ///< since the last commit [rad]
 };
 
-/// What a grain is, the same in all lanes.
+/// Constants of a grain, the same in all lanes.
 template <class real>
 struct GrainShape {
   real radius;                                   ///< [m]
@@ -32,26 +32,27 @@ struct GrainShape {
 };
 
 /// A candidate contact, lane by lane.
-template <class V>
+template <class Law>
 struct PairLanes {
+  using V = typename Law::Value;
   V branch_x, branch_y;  ///< b0 at the lane's last rebase [m]; 0 where the lane does not list the pair
   V gap;                 ///< g0 = |b0|^2 - R^2 [m^2]; R^2 where the lane does not list the pair: never in contact
-  V tangential, moment;  ///< law history [N], [N m]
+  typename Law::History history;
 };
 
 /// A candidate contact, the same in all lanes. Rows are grains i, `other` is j > i.
-template <class real>
+template <class Law>
 struct PairShape {
+  using real = real_of<typename Law::Value>;
   std::int32_t other;
-  std::int32_t other_bytes;  ///< where `other` stands among a group's grains
-  std::int32_t active;  ///< 1 while any lane may hold history; a pair is skipped only when no lane touches and this is
-                        ///< 0
-  real inverse_sum;     ///< 1/R [1/m]
-  real minus_inverse_sum_squared;                                  ///< -1/R^2 [1/m^2]
-  real minus_half_sum;                                             ///< -R/2 [m]
-  real radius_other;                                               ///< [m]
-  real normal_stiffness, tangential_stiffness, rolling_stiffness;  ///< as in PairConstants
-  real tangential_cap, moment_cap;                                 ///< as in PairCaps
+  std::int32_t other_bytes;        ///< where `other` stands among a group's grains
+  std::int32_t active;             ///< 1 while any lane may hold history; a pair is skipped only when no lane touches
+                                   ///< and this is 0
+  real inverse_sum;                ///< 1/R [1/m]
+  real minus_inverse_sum_squared;  ///< -1/R^2 [1/m^2]
+  real minus_half_sum;             ///< -R/2 [m]
+  real radius_other;               ///< [m]
+  typename Law::Pair law;          ///< the law's own constants
 };
 
 /// Rigid and affine motion of the cells, rounded from double once a step.
@@ -64,6 +65,12 @@ struct CellMotion {
   V alive;                   ///< 1, or 0 for a lane that is finished, empty or lost
 };
 
+/// The purpose of a sweep over all pairs.
+enum class Sweep {
+  advance,  ///< it advances the grains
+  measure,  ///< it also sums stress and unbalanced force
+};
+
 /// Sums over one sweep, lane by lane.
 template <class V>
 struct SweepSums {
@@ -72,18 +79,19 @@ struct SweepSums {
   V largest_overlap = V(0);                                                  ///< largest e = -g/R^2 over contacts [-]
 };
 
-inline constexpr int pairs_ahead = 2;  ///< how far a sweep looks ahead in the list
+inline constexpr int pairs_ahead = 2;  ///< a sweep fetches the grains of the pair that stands so far ahead in the list
 
 /// Plain vectors, not views: a group grows its arrays inside the parallel region, where a view may not be made.
-template <class V>
+template <class Law>
 struct GroupState {
+  using V = typename Law::Value;
   int n_grains = 0;
   double local_damping = 0.3;
   std::vector<GrainLanes<V>> grains;
   std::vector<GrainShape<real_of<V>>> shapes;
-  std::vector<int> row;                            ///< pairs of grain i: row[i] .. row[i + 1]
-  std::vector<PairLanes<V>> pairs;                 ///< the first row.back() are in use
-  std::vector<PairShape<real_of<V>>> pair_shapes;  ///< `pairs_ahead` more follow those in use, of grain 0
+  std::vector<int> row;                     ///< pairs of grain i: row[i] .. row[i + 1]
+  std::vector<PairLanes<Law>> pairs;        ///< the first row.back() are in use
+  std::vector<PairShape<Law>> pair_shapes;  ///< `pairs_ahead` more follow those in use, of grain 0
   CellMotion<V> motion;
 };
 

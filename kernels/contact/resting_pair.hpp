@@ -1,10 +1,10 @@
 #pragma once
-/// Stress and tangent of all lanes at rest: one law call per contact with zero motion.
+/// One pair at rest and its parts of stress and tangent, by one law call with zero motion.
 ///
 /// Love-Weber stress, eq. (3): sigma = (1/V) sum P (x) b. Contact tangent, eq. (4): D = (1/V) sum k_n n b n b + k_t t b
 /// t b, symmetrised for the FEM; it is affine (too stiff by 1.2 to 3) and neglects spins.
 
-#include "kernels/lanes/sweep.hpp"
+#include "kernels/contact/pair_forces.hpp"
 
 namespace voussoir::kernels {
 
@@ -48,22 +48,23 @@ struct RestingPair {
   V overlap;                          ///< e = -g/R^2
 };
 
-/// The pair's history is limited by the caps of the final positions, as the next step would.
-template <class Law, class V, class real>
-KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<V>& pair, const PairShape<real>& shape,
+/// The pair at its present position. Its history is limited by the caps there, as the next step would do.
+template <class Law, class V>
+KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<Law>& pair, const PairShape<Law>& shape,
                                                 const PairGeometry<V>& at, const CellMotion<V>& cell,
                                                 const V& radius_i) {
   const V zero(0), one(1);
   CellMotion<V> still = cell;
   still.d_xy = still.d_difference = zero;
   RestingPair<V> out;
-  out.action = act<Law>(pair, shape, at, still, zero, zero, rim_of(radius_i, zero), zero);
+  out.action = act(pair, shape, at, still, zero, zero, rim_of(radius_i, zero), zero);
   out.weight = Kokkos::Experimental::condition(at.gap < zero, one, zero);
   out.overlap = overlap_measure(at, shape);
-  const V to_unit = distance_of(at.gap, shape).inverse_length;
-  const V nx = at.branch_x * to_unit, ny = at.branch_y * to_unit;
-  out.normal = spring_terms(out.weight * V(shape.normal_stiffness), nx, ny, at);
-  out.tangential = spring_terms(out.weight * V(shape.tangential_stiffness), -ny, nx, at);
+  const PairDistance<V> distance = distance_of(at.gap, shape);
+  const V nx = at.branch_x * distance.inverse_length, ny = at.branch_y * distance.inverse_length;
+  const ContactStiffness<V> k = Law(shape.law).springs(distance.overlap);
+  out.normal = spring_terms(out.weight * k.normal, nx, ny, at);
+  out.tangential = spring_terms(out.weight * k.tangential, -ny, nx, at);
   return out;
 }
 
@@ -76,23 +77,6 @@ KOKKOS_FORCEINLINE_FUNCTION void add_pair(Homogenised<V>& out, const RestingPair
   }
   out.contacts = out.contacts + pair.weight;
   out.sums.largest_overlap = larger(out.sums.largest_overlap, pair.overlap);
-}
-
-template <class Law, class V>
-Homogenised<V> homogenise(GroupState<V>& group) {
-  Homogenised<V> out;
-  const GrainLanes<V>* const grains = group.grains.data();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(group.n_grains); ++i) {
-    const V radius(group.shapes[i].radius);
-    for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
-      PairShape<real_of<V>>& shape = group.pair_shapes[p];
-      const GrainLanes<V>& gj = grains[shape.other];
-      const PairGeometry<V> at = geometry_of(group.pairs[p], group.motion, gj.u_x - grains[i].u_x,
-                                             gj.u_y - grains[i].u_y);
-      add_pair(out, rest<Law>(group.pairs[p], shape, at, group.motion, radius), at);
-    }
-  }
-  return out;
 }
 
 }  // namespace voussoir::kernels

@@ -2,17 +2,17 @@
 /// How a lane's cell is driven: a given motion (the ground) or stresses (consolidation, element tests).
 ///
 /// A drive is a template argument of the time loop. `rate(step)` is the velocity gradient per step, `looks(step)` asks
-/// for a measuring step, `judge(step, ...)` sees what it measured and says whether the lane is done.
+/// for a measuring step, `judge(step, ...)` is given that step's measurement and says whether the lane is done.
 
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/course/run_scales.hpp"
 #include "kernels/state/requests.hpp"
-#include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 
-/// What a measuring step saw of one lane.
+/// Result of a measuring step for one lane.
 struct Measurement {
   double stress_xx = 0, stress_yy = 0, stress_xy = 0;  ///< tension positive [Pa]
   double unbalanced = 0;                               ///< rms|f| / (max(p, floor) t d) [-]
@@ -23,9 +23,11 @@ enum class Verdict { running, converged, step_limit };
 
 /// Largest |L| per step at which lists keep up: within one list interval the cell then moves a pair by a tenth of the
 /// slack.
+[[nodiscard]] inline double largest_rate(const RunScales& scales, const EngineSettings& settings) {
+  return 0.05 * scales.skin / (settings.list_interval * scales.reach);
+}
 [[nodiscard]] inline double largest_rate(const Packing& packing, const EngineSettings& settings) {
-  const double skin = settings.skin * packing.mean_diameter();
-  return 0.05 * skin / (settings.list_interval * (2.0 * packing.largest_radius() + skin));
+  return largest_rate(scales_of<PlainEngineLaw>(packing, settings), settings);
 }
 
 /// F(t) = exp(t log F_rel / n) for n steps, then rest until the forces balance.
@@ -35,10 +37,10 @@ class StrainDrive {
   static constexpr bool can_record = false;
 
   StrainDrive() = default;
-  StrainDrive(const StrainRequest& request, const Packing& packing, const EngineSettings& settings)
+  StrainDrive(const StrainRequest& request, const RunScales& scales, const EngineSettings& settings)
       : interval_(settings.look_interval), tolerance_(settings.hold_tolerance), total_(log_of(request.f_rel)) {
     if (!possible()) return;
-    const double fewest = std::ceil(total_.norm() / largest_rate(packing, settings));
+    const double fewest = std::ceil(total_.norm() / largest_rate(scales, settings));
     strain_steps_ = static_cast<int>(std::clamp(fewest, static_cast<double>(std::max(request.strain_steps, 0)), 1e9));
     last_ = strain_steps_ + std::max(request.hold_cap, 1) - 1;
     if (strain_steps_ > 0) rate_ = (1.0 / strain_steps_) * total_;
@@ -68,20 +70,20 @@ class StrainDrive {
   Mat2 rate_;
 };
 
-/// PI control of each stress-controlled axis against a reference modulus (E r / t of the packing): the
-/// proportional part alone leaves an offset with stiff grains (method.md §6).
+/// PI control of each stress-controlled axis against a reference modulus (mean stiffness of the packing's contacts over
+/// its thickness): the proportional part alone leaves an offset with stiff grains (method.md §6).
 class ServoControl {
  public:
   using Request = ServoRequest;
   static constexpr bool can_record = false;
 
   ServoControl() = default;
-  ServoControl(const ServoRequest& request, const Packing& packing, const EngineSettings& settings)
+  ServoControl(const ServoRequest& request, const RunScales& scales, const EngineSettings& settings)
       : request_(request),
         tolerance_(settings.hold_tolerance),
         floor_(settings.pressure_floor),
-        modulus_(packing.mean_stiffness() / packing.thickness) {
-    request_.max_rate = std::min(request_.max_rate, largest_rate(packing, settings));
+        modulus_(scales.mean_stiffness / scales.thickness) {
+    request_.max_rate = std::min(request_.max_rate, largest_rate(scales, settings));
     rate_x_.value = request.x.stress_controlled ? 0.0 : request.x.target;
     rate_y_.value = request.y.stress_controlled ? 0.0 : request.y.target;
   }
@@ -105,7 +107,7 @@ class ServoControl {
     return step + 1 >= request_.max_steps ? Verdict::step_limit : Verdict::running;
   }
 
-  /// Whether the caller wants a sample of this step, and what it is; after `judge`.
+  /// Whether the caller wants a sample of this step, and the sample; to be called after `judge`.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool samples(int step) const {
     return request_.trace != nullptr && step % request_.trace_interval == 0;
   }
@@ -154,8 +156,8 @@ class ServoDrive : public ServoControl {
   static constexpr bool can_record = true;
   using ServoControl::ServoControl;
 
-  /// Whether `record` is wanted before the step's sweep; the sample that `judge` takes after it will hold what it was
-  /// given.
+  /// Whether `record` is wanted before the step's sweep; the sample that `judge` takes after the sweep holds the
+  /// recorded microstructure.
   [[nodiscard]] bool records(int step) const { return request_.microstructure.any() && samples(step); }
   [[nodiscard]] const MicrostructureRequest& recorded_quantities() const { return request_.microstructure; }
   void record(const Microstructure& m) { recorded_ = m; }

@@ -1,47 +1,14 @@
 #pragma once
-/// The course of one RVE from its committed to its trial state, in double, whatever runs it (a lane of a group, a
-/// team): how its cell moves, when its lists are renewed, when it is looked at, and how it ends.
+/// The course of one RVE from its committed to its trial state, in double, the same for a lane of a group and for a
+/// team: the motion of its cell, the steps at which its list is renewed and its state is judged, and its end.
 
 #include <cmath>
 
 #include "kernels/contact/pair_state.hpp"
 #include "kernels/course/drives.hpp"
+#include "kernels/course/run_scales.hpp"
 
 namespace voussoir::kernels {
-
-/// Constants of a packing under given settings that every look needs.
-struct RunScales {
-  int grains = 0;
-  double mean_diameter = 0;   ///< [m]
-  double largest_radius = 0;  ///< [m]
-  double mean_mobility = 0;   ///< [m/N]
-  double thickness = 0;       ///< [m]
-  double local_damping = 0;   ///< [-]
-  double skin = 0;            ///< of the lists [m]
-  double reach = 0;           ///< of the longest listed branch, 2 r_max + skin [m]
-};
-
-[[nodiscard]] inline RunScales scales_of(const Packing& packing, const EngineSettings& settings) {
-  const double diameter = packing.mean_diameter(), largest = packing.largest_radius();
-  const double skin = settings.skin * diameter;
-  return {.grains = packing.size(),
-          .mean_diameter = diameter,
-          .largest_radius = largest,
-          .mean_mobility = packing.mean_mobility(),
-          .thickness = packing.thickness,
-          .local_damping = packing.local_damping,
-          .skin = skin,
-          .reach = 2.0 * largest + skin};
-}
-
-/// A grain's constants for the sweep. @param largest_radius of the packing [m]
-template <class real>
-[[nodiscard]] GrainShape<real> grain_shape(const Packing& packing, std::size_t grain, double largest_radius) {
-  const double r = packing.radii[grain];
-  const auto a = static_cast<real>(mobility_of(packing.material_of(grain), r));
-  const auto a_r = static_cast<real>(rotational_mobility_of(packing.material_of(grain), r, largest_radius));
-  return {static_cast<real>(r), a, a_r, real(0.5) * a, real(0.5) * a_r};
-}
 
 template <class DriveType>
 struct RveCourse {
@@ -102,7 +69,7 @@ KOKKOS_INLINE_FUNCTION void move_cell(RveCourse<Drive>& course, int step, CellMo
   round_motion(course, m, l);
 }
 
-/// What a look at displacements says of the list. The last two end the course.
+/// The verdict of a look at displacements on the list. The last two end the course.
 enum class ListState { valid, stale, not_finite, flown };
 
 /// Whether grains may meet someone who is not listed before the next look: with what comes until then, 2 max|u| + |F -
@@ -157,7 +124,7 @@ template <class V>
   return m;
 }
 
-/// What a measuring step decides: `ended` keeps the state, `lost` gives it up.
+/// The decision of a measuring step: `ended` keeps the state, `lost` gives it up.
 enum class Outcome { running, ended, lost };
 
 /// Sets the status of a course that ends. @param reference cell at the last rebase; @param seen what the drive saw,

@@ -1,5 +1,5 @@
 #pragma once
-/// The answer of one RVE from its course and the sums over its contacts at rest.
+/// The report of one RVE, made from its course and the sums over its contacts at rest.
 
 #include <cmath>
 
@@ -8,7 +8,7 @@
 
 namespace voussoir::kernels {
 
-/// What is known of any course, lost or not.
+/// The part of a report that any course has, whether it was lost or not.
 template <class Drive>
 KOKKOS_INLINE_FUNCTION void begin_report(const RveCourse<Drive>& course, RveReport& report) {
   report = RveReport{};

@@ -5,8 +5,9 @@
 #include "kernels/lanes/rebase.hpp"
 #include "kernels/lanes/record.hpp"
 #include "kernels/lanes/restore.hpp"
+#include "kernels/lanes/sweep.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
 template <class Run>
 [[nodiscard]] bool any_running(const Run& run) {
@@ -30,7 +31,7 @@ void move_cells(Run& run, int step) {
   for (std::size_t l = 0; l < Run::width; ++l) move_cell(run.lanes[l], step, run.group.motion, l);
 }
 
-/// What a measuring step decides: lanes that are lost are given up, lanes at their end are frozen.
+/// Acts on a measuring step: lanes that are lost are given up, lanes at their end are frozen.
 template <class Run>
 void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums) {
   for (std::size_t l = 0; l < Run::width; ++l) {
@@ -51,7 +52,7 @@ void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums)
 }
 
 /// @param requests, reports by RVE
-template <class Law, class Run>
+template <class Run>
 void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int>(Run::width)>& members,
                    std::span<const typename Run::Drive::Request> requests, const EngineSettings& settings,
                    std::span<RveReport> reports) {
@@ -62,16 +63,16 @@ void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int
   for (int step = 0; any_running(run); ++step) {
     move_cells(run, step);
     check_lists(run, step);
-    record_microstructures<Law>(run, step);
+    record_microstructures(run, step);
     SweepSums<typename Run::Value> sums;
-    if (measures(run, step)) {
-      sweep_pairs<Sweep::measure, Law>(run.group, sums);
-      judge_lanes(run, step, sums);
-    } else {
-      sweep_pairs<Sweep::advance, Law>(run.group, sums);
+    const bool measure = measures(run, step);
+    {
+      const Region region(run.regions, "sweep");
+      measure ? sweep_pairs<Sweep::measure>(run.group, sums) : sweep_pairs<Sweep::advance>(run.group, sums);
     }
+    if (measure) judge_lanes(run, step, sums);
   }
-  finish<Law>(run, reports);
+  finish(run, reports);
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

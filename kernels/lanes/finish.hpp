@@ -4,10 +4,29 @@
 #include <algorithm>
 #include <span>
 
+#include "kernels/contact/resting_pair.hpp"
 #include "kernels/course/rve_report.hpp"
 #include "kernels/lanes/tangent.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
+
+/// Sums over the contacts of all lanes at rest; histories are limited by the caps of the final positions.
+template <class Law, class V = typename Law::Value>
+Homogenised<V> homogenise(GroupState<Law>& group) {
+  Homogenised<V> out;
+  const GrainLanes<V>* const grains = group.grains.data();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(group.n_grains); ++i) {
+    const V radius(group.shapes[i].radius);
+    for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
+      PairShape<Law>& shape = group.pair_shapes[p];
+      const GrainLanes<V>& gj = grains[shape.other];
+      const PairGeometry<V> at = geometry_of(group.pairs[p], group.motion, gj.u_x - grains[i].u_x,
+                                             gj.u_y - grains[i].u_y);
+      add_pair(out, rest(group.pairs[p], shape, at, group.motion, radius), at);
+    }
+  }
+  return out;
+}
 
 /// Finite if and only if all grains' motions are.
 template <class Run>
@@ -34,8 +53,9 @@ void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) 
         const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
         const int c = count[l]++;
         to.contact_key(rve, c) = pair_key(static_cast<int>(i), j);
-        to.contact_history(rve, c, 0) = static_cast<double>(pair.tangential[l]);
-        to.contact_history(rve, c, 1) = static_cast<double>(pair.moment[l]);
+        write_history<typename Run::Law>(pair.history, l, [&](int k, const auto& number) {
+          to.contact_history(rve, c, k) = static_cast<double>(number);
+        });
       }
     }
   }
@@ -63,11 +83,12 @@ template <class Run>
   return true;
 }
 
-/// The group's answers. An RVE that failed keeps its committed state as trial state.
-template <class Law, class Run>
-void finish(Run& run, std::span<RveReport> reports) {
+/// Writes the group's reports and trial states. An RVE that failed keeps its committed state as trial state.
+template <class Run>
+VOUSSOIR_OWN_SYMBOL void finish(Run& run, std::span<RveReport> reports) {
+  const Region region(run.regions, "finish");
   for (std::size_t l = 0; l < Run::width; ++l) round_motion(run.lanes[l], run.group.motion, l);
-  const auto sums = homogenise<Law>(run.group);
+  const auto sums = homogenise(run.group);
   std::array<RveReport, Run::width> answers;
   for (std::size_t l = 0; l < Run::width; ++l) {
     const auto& lane = run.lanes[l];
@@ -77,7 +98,7 @@ void finish(Run& run, std::span<RveReport> reports) {
       fill_report(lane, sums, l, volume_of(run, l), grains_are_finite(run, l), run.scales, run.settings, report);
     }
   }
-  if (run.settings.tangent != TangentKind::contact) replace_tangents<Law>(run, answers);
+  if (run.settings.tangent != TangentKind::contact) replace_tangents(run, answers);
   std::array<bool, Run::width> stored{};
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0) continue;
@@ -91,4 +112,4 @@ void finish(Run& run, std::span<RveReport> reports) {
   store_contacts(run, stored);
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

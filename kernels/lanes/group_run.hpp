@@ -6,19 +6,22 @@
 #include <vector>
 
 #include "kernels/contact/resting_pair.hpp"
+#include "kernels/course/regions.hpp"
 #include "kernels/course/rve_course.hpp"
 #include "kernels/lanes/lists.hpp"
 #include "kernels/tangents/loading_tangent.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
 /// Members of a group by lane; -1 is an empty lane. All share one packing.
 template <int width>
 using GroupMembers = std::array<int, static_cast<std::size_t>(width)>;
 
-template <class V, class DriveType>
+template <class LawType, class DriveType>
 struct GroupRun {
-  using Value = V;
+  using Law = LawType;
+  using Value = typename Law::Value;
+  using V = Value;
   using Drive = DriveType;
   using real = real_of<V>;
   static constexpr std::size_t width = static_cast<std::size_t>(lane_count<V>);
@@ -28,13 +31,14 @@ struct GroupRun {
   EngineSettings settings;
   RunScales scales;
   std::array<RveCourse<Drive>, width> lanes;
-  std::array<LaneList<real>, width> lists;
-  GroupState<V> group;
-  UnionBuilder<V> builder;
-  SpringSystem<V> springs;          ///< empty unless the static tangent is asked for
-  StepSystem<V> step;               ///< empty unless the loading one is
-  std::vector<std::uint32_t> keys;  ///< scratch of a rebase
-  std::vector<KeptContact> kept;    ///< scratch of a restore or rebase
+  std::array<LaneList<Law>, width> lists;
+  GroupState<Law> group;
+  UnionBuilder<Law> builder;
+  SpringSystem<V> springs;             ///< empty unless the static tangent is asked for
+  StepSystem<V> step;                  ///< empty unless the loading one is
+  std::vector<std::uint32_t> keys;     ///< scratch of a rebase
+  std::vector<KeptContact<Law>> kept;  ///< scratch of a restore or rebase
+  Regions regions;
 };
 
 /// Current volume of a lane's cell [m^3].
@@ -63,7 +67,7 @@ void discard(Run& run, std::size_t l, RveStatus status) {
 /// Keeps the cell as wide as its lattice allows (a sheared cell flips back, with the same images); false when nearest
 /// images are not unique even so.
 template <class Run>
-[[nodiscard]] bool reduce_cell(const Run& run, LaneList<typename Run::real>& list) {
+[[nodiscard]] bool reduce_cell(const Run& run, LaneList<typename Run::Law>& list) {
   list.cell = reduced_lattice(list.cell);
   const Cell cell(list.cell);
   for (std::size_t i = 0; 2 * i < list.position.size(); ++i) cell.wrap(list.position[2 * i], list.position[2 * i + 1]);
@@ -81,4 +85,4 @@ void move_positions(const Run& run, std::size_t l, std::vector<double>& position
   }
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

@@ -1,6 +1,7 @@
 #pragma once
-/// Neighbour lists of a group: each lane lists its own candidates (by its own displacement trigger), the group walks
-/// the union. A pair that only other lanes list is inert in a lane, so a lane's numbers never depend on its neighbours.
+/// Neighbour lists of a group. Each lane lists its own candidates when its own displacements ask for it; the group
+/// walks the union of the lists. A pair that only other lanes list is inert in a lane, so a lane's numbers never depend
+/// on its neighbours.
 
 #include <algorithm>
 #include <array>
@@ -14,35 +15,38 @@
 #include "kernels/lanes/neighbours.hpp"
 #include "kernels/state/rve_batch.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
 /// A contact with the history it carries.
+template <class Law>
 struct KeptContact {
   std::uint32_t key;
-  double tangential;
-  double moment;
+  HistoryNumbers<Law, double> history;
 };
 
 /// A candidate as one lane sees it.
-template <class real>
+template <class Law>
 struct ListedPair {
+  using real = real_of<typename Law::Value>;
   std::uint32_t key;
-  real branch_x, branch_y, gap, tangential, moment;
+  real branch_x, branch_y, gap;
+  HistoryNumbers<Law, real> history;
 };
 
 /// One lane between two rebases.
-template <class real>
+template <class Law>
 struct LaneList {
   std::vector<double> position;  ///< (grain, 2) at the last rebase [m]
   Mat2 cell = identity2;         ///< at the last rebase
-  std::vector<ListedPair<real>> pairs;
+  std::vector<ListedPair<Law>> pairs;
 };
 
 /// Branches and gaps in double, rounded once; histories from `kept` (ascending keys; a kept contact that is no
 /// candidate has opened by more than the skin and is dropped).
-template <class real>
-void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<const std::uint32_t> keys,
-                std::span<const KeptContact> kept) {
+template <class Law>
+void list_pairs(LaneList<Law>& lane, std::span<const double> radii, std::span<const std::uint32_t> keys,
+                const std::vector<KeptContact<Law>>& kept) {
+  using real = real_of<typename Law::Value>;
   const Cell cell(lane.cell);
   lane.pairs.clear();
   lane.pairs.reserve(keys.size());
@@ -52,37 +56,36 @@ void list_pairs(LaneList<real>& lane, std::span<const double> radii, std::span<c
     const PairReference at = pair_reference(lane.position[2 * j] - lane.position[2 * i],
                                             lane.position[2 * j + 1] - lane.position[2 * i + 1], radii[i] + radii[j],
                                             cell);
-    ListedPair<real> pair{
-        key,    static_cast<real>(at.branch_x), static_cast<real>(at.branch_y), static_cast<real>(at.gap), real(0),
-        real(0)};
+    ListedPair<Law> pair{
+        key, static_cast<real>(at.branch_x), static_cast<real>(at.branch_y), static_cast<real>(at.gap), {}};
     while (from != kept.end() && from->key < key) ++from;
     if (from != kept.end() && from->key == key) {
-      pair.tangential = static_cast<real>(from->tangential);
-      pair.moment = static_cast<real>(from->moment);
+      for (std::size_t k = 0; k < pair.history.size(); ++k) pair.history[k] = static_cast<real>(from->history[k]);
     }
     lane.pairs.push_back(pair);
   }
 }
 
 /// The lanes' pair (i, j) of a packing.
-template <class V>
-PairShape<real_of<V>> shape_of(const Packing& packing, int i, int j) {
+template <class Law>
+PairShape<Law> shape_of(const Packing& packing, int i, int j) {
   const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);
-  auto shape = pair_shape<real_of<V>>(j, packing.material_of(si), packing.radii[si], packing.material_of(sj),
-                                      packing.radii[sj]);
-  shape.other_bytes = static_cast<std::int32_t>(sj * sizeof(GrainLanes<V>));
+  auto shape = pair_shape<Law>(j, packing.material_of(si), packing.radii[si], packing.material_of(sj),
+                               packing.radii[sj]);
+  shape.other_bytes = static_cast<std::int32_t>(sj * sizeof(GrainLanes<typename Law::Value>));
   return shape;
 }
 
 /// Writes the union of the lanes' lists into the group.
-template <class V>
+template <class Law>
 class UnionBuilder {
  public:
+  using V = typename Law::Value;
   using real = real_of<V>;
   static constexpr int width = lane_count<V>;
-  using Lanes = std::array<LaneList<real>, static_cast<std::size_t>(width)>;
+  using Lanes = std::array<LaneList<Law>, static_cast<std::size_t>(width)>;
 
-  void build(GroupState<V>& group, const Lanes& lanes, const Packing& packing) {
+  void build(GroupState<Law>& group, const Lanes& lanes, const Packing& packing) {
     const int n = group.n_grains;
     cursor_.fill(0);
     listed_.assign((static_cast<std::size_t>(n) + 63) / 64, 0);
@@ -112,7 +115,7 @@ class UnionBuilder {
     }
   }
 
-  int append_row(GroupState<V>& group, const Lanes& lanes, const Packing& packing, int i, int count) {
+  int append_row(GroupState<Law>& group, const Lanes& lanes, const Packing& packing, int i, int count) {
     for (std::size_t w = static_cast<std::size_t>(i) / 64; w < listed_.size(); ++w) {
       while (listed_[w] != 0) {
         const int j = static_cast<int>(w * 64) + std::countr_zero(listed_[w]);
@@ -122,7 +125,7 @@ class UnionBuilder {
           group.pairs.resize(2 * at + 64);
           group.pair_shapes.resize(2 * at + 64 + pairs_ahead);
         }
-        group.pair_shapes[at] = shape_of<V>(packing, i, j);
+        group.pair_shapes[at] = shape_of<Law>(packing, i, j);
         fill(group.pairs[at], lanes, pair_key(i, j), packing);
         ++count;
       }
@@ -130,36 +133,40 @@ class UnionBuilder {
     return count;
   }
 
-  void fill(PairLanes<V>& to, const Lanes& lanes, std::uint32_t key, const Packing& packing) {
+  void fill(PairLanes<Law>& to, const Lanes& lanes, std::uint32_t key, const Packing& packing) {
     const double sum = packing.radii[static_cast<std::size_t>(first_of(key))] +
                        packing.radii[static_cast<std::size_t>(second_of(key))];
-    const ListedPair<real> inert{key, real(0), real(0), static_cast<real>(sum * sum), real(0), real(0)};
+    const ListedPair<Law> inert{key, real(0), real(0), static_cast<real>(sum * sum), {}};
     for (std::size_t l = 0; l < static_cast<std::size_t>(width); ++l) {
       const auto& pairs = lanes[l].pairs;
       const bool own = cursor_[l] < pairs.size() && pairs[cursor_[l]].key == key;
-      const ListedPair<real>& from = own ? pairs[cursor_[l]++] : inert;
+      const ListedPair<Law>& from = own ? pairs[cursor_[l]++] : inert;
       to.branch_x[l] = from.branch_x;
       to.branch_y[l] = from.branch_y;
       to.gap[l] = from.gap;
-      to.tangential[l] = from.tangential;
-      to.moment[l] = from.moment;
+      read_history<Law>(to.history, l, [&](int k) { return from.history[static_cast<std::size_t>(k)]; });
     }
   }
 };
 
 /// Reads a lane's own pairs (with the histories they have now) back out of the group.
-template <class V>
-void gather_lane(const GroupState<V>& group, std::size_t lane, std::vector<ListedPair<real_of<V>>>& pairs) {
+template <class Law>
+void gather_lane(const GroupState<Law>& group, std::size_t lane, std::vector<ListedPair<Law>>& pairs) {
   pairs.clear();
   for (int i = 0; i < group.n_grains; ++i) {
     const auto si = static_cast<std::size_t>(i);
     for (auto p = static_cast<std::size_t>(group.row[si]); p < static_cast<std::size_t>(group.row[si + 1]); ++p) {
-      const PairLanes<V>& from = group.pairs[p];
+      const PairLanes<Law>& from = group.pairs[p];
       if (from.branch_x[lane] == 0 && from.branch_y[lane] == 0) continue;
-      pairs.push_back({pair_key(i, group.pair_shapes[p].other), from.branch_x[lane], from.branch_y[lane],
-                       from.gap[lane], from.tangential[lane], from.moment[lane]});
+      ListedPair<Law>& pair = pairs.emplace_back();
+      pair.key = pair_key(i, group.pair_shapes[p].other);
+      pair.branch_x = from.branch_x[lane];
+      pair.branch_y = from.branch_y[lane];
+      pair.gap = from.gap[lane];
+      write_history<Law>(from.history, lane,
+                         [&](int k, const auto& number) { pair.history[static_cast<std::size_t>(k)] = number; });
     }
   }
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

@@ -9,7 +9,7 @@
 #include "kernels/contact/lane.hpp"
 #include "kernels/state/rve_batch.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
 namespace {
 
@@ -31,8 +31,8 @@ struct Level {
   Level(std::span<const double> positions, std::span<const double> radii, const std::vector<int>& grains,
         const Cell& cell, double largest, double skin) {
     const double width = 2.0 * largest + skin;
-    const double most = std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 2.0;  // more bins than grains find
-                                                                                         // nothing
+    const double most = std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 2.0;  // more bins than grains would
+                                                                                         // be empty nothing
     nx = static_cast<int>(std::clamp(cell.height(0) / width, 2.0, most));
     ny = static_cast<int>(std::clamp(cell.height(1) / width, 2.0, most));
     sort(images(positions, grains, cell), radii);
@@ -220,4 +220,4 @@ void find_candidates(std::span<const double> positions, std::span<const double> 
   sort_keys(keys, radii.size());
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

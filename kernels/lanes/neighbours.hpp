@@ -7,11 +7,11 @@
 
 #include "kernels/contact/cell.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
-/// Keys (kernels/rve_batch.hpp, pair_key) in ascending order into `keys`.
+/// Keys (state/rve_batch.hpp, pair_key) in ascending order into `keys`.
 /// @param positions (grain, 2) in the cell [m]; @param radii (grain) [m]; @param skin [m]
 void find_candidates(std::span<const double> positions, std::span<const double> radii, const Cell& cell, double skin,
                      std::vector<std::uint32_t>& keys);
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

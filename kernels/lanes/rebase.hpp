@@ -1,11 +1,12 @@
 #pragma once
 /// Keeping neighbour lists valid while the lanes move: each lane by its own displacements, on its own steps.
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/lanes/group_run.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
 /// Largest displacement and velocity of a group's grains, lane by lane.
 template <class V>
@@ -14,8 +15,8 @@ struct Motion {
   V finite = V(0);                   ///< 0, or NaN once a displacement is not finite
 };
 
-template <class V>
-[[nodiscard]] Motion<V> motion_of(const GroupState<V>& group) {
+template <class Law, class V = typename Law::Value>
+[[nodiscard]] Motion<V> motion_of(const GroupState<Law>& group) {
   Motion<V> m;
   for (const GrainLanes<V>& g : group.grains) {
     const V squared = fused(g.u_x, g.u_x, g.u_y * g.u_y);
@@ -33,9 +34,10 @@ void rebase(Run& run, std::size_t l) {
   auto& lane = run.lanes[l];
   run.kept.clear();
   for (const auto& p : list.pairs) {
-    if (p.tangential != 0 || p.moment != 0) {
-      run.kept.push_back({p.key, static_cast<double>(p.tangential), static_cast<double>(p.moment)});
-    }
+    if (std::all_of(p.history.begin(), p.history.end(), [](auto number) { return number == 0; })) continue;
+    auto& kept = run.kept.emplace_back();
+    kept.key = p.key;
+    std::copy(p.history.begin(), p.history.end(), kept.history.begin());
   }
   move_positions(run, l, list.position);
   list.cell = current_cell(lane, list.cell);
@@ -48,7 +50,7 @@ void rebase(Run& run, std::size_t l) {
 
 /// Lists of the stale lanes anew, and the union of all.
 template <class Run>
-void rebuild(Run& run, const std::array<bool, Run::width>& stale) {
+VOUSSOIR_OWN_SYMBOL void rebuild(Run& run, const std::array<bool, Run::width>& stale) {
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0 || (stale[l] && !run.lanes[l].running)) continue;  // empty, or just discarded
     gather_lane(run.group, l, run.lists[l].pairs);
@@ -84,7 +86,9 @@ void check_lists(Run& run, int step) {
     stale[l] = is_stale(run, l, motion, step);
     any = any || stale[l];
   }
-  if (any) rebuild(run, stale);
+  if (!any) return;
+  const Region region(run.regions, "lists");
+  rebuild(run, stale);
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

@@ -6,12 +6,13 @@
 #include "kernels/lanes/group_run.hpp"
 #include "kernels/state/network.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
-/// Contacts of lane `l`; its cell and its grains must be at the same step. Only what depends on the positions:
-/// tangential forces follow with the sweep.
-template <class Law, class Run>
+/// Contacts of lane `l`; its cell and its grains must be at the same step. Normal forces
+/// only, since tangential forces are not known before the sweep.
+template <class Run>
 [[nodiscard]] std::vector<NetworkContact> network_of(const Run& run, std::size_t l) {
+  using Law = typename Run::Law;
   using V = typename Run::Value;
   const V zero(0);
   std::vector<NetworkContact> out;
@@ -24,8 +25,8 @@ template <class Law, class Run>
       const auto at = geometry_of(pair, run.group.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
       if (!(at.gap[l] < 0)) continue;
       const PairDistance<V> distance = distance_of(at.gap, shape);
-      typename Law::History history{pair.tangential, pair.moment};
-      const auto force = law_of<Law, V>(shape)({distance.overlap, distance.excess, zero, zero}, history);
+      typename Law::History history = pair.history;
+      const auto force = Law(shape.law)({distance.overlap, distance.excess, zero, zero}, history);
       const V to_unit = distance.inverse_length;
       out.push_back({static_cast<int>(i), shape.other, static_cast<double>((at.branch_x * to_unit)[l]),
                      static_cast<double>((at.branch_y * to_unit)[l]),
@@ -37,7 +38,7 @@ template <class Law, class Run>
 
 /// Hands the drives that record at this step their lane's microstructure; rotations count from the request's start. To
 /// be called where cell and grains are at the same step, before the sweep. Compiled out for drives that never record.
-template <class Law, class Run>
+template <class Run>
 void record_microstructures(Run& run, int step) {
   if constexpr (Run::Drive::can_record) {
     for (std::size_t l = 0; l < Run::width; ++l) {
@@ -46,10 +47,10 @@ void record_microstructures(Run& run, int step) {
       Microstructure m;
       for (const auto& g : run.group.grains) m.grain_rotation += static_cast<double>(g.rotation[l]);
       m.grain_rotation = lane.rotation + m.grain_rotation / run.group.n_grains;
-      describe_network(network_of<Law>(run, l), run.group.n_grains, lane.drive.recorded_quantities(), m);
+      describe_network(network_of(run, l), run.group.n_grains, lane.drive.recorded_quantities(), m);
       lane.drive.record(m);
     }
   }
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

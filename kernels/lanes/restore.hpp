@@ -6,7 +6,7 @@
 
 #include "kernels/lanes/group_run.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
 /// The committed state of the lane's RVE as the lane's reference. False, with the reason as status, for a lane that
 /// cannot run; it stays empty.
@@ -35,7 +35,9 @@ template <class Run>
   }
   run.kept.clear();
   for (std::size_t c = 0; c < static_cast<std::size_t>(from.contact_count(rve)); ++c) {
-    run.kept.push_back({from.contact_key(rve, c), from.contact_history(rve, c, 0), from.contact_history(rve, c, 1)});
+    auto& kept = run.kept.emplace_back();
+    kept.key = from.contact_key(rve, c);
+    for (std::size_t k = 0; k < kept.history.size(); ++k) kept.history[k] = from.contact_history(rve, c, k);
   }
   list_pairs(list, run.packing->radii, cached, run.kept);
   set_rate(lane, 0);
@@ -46,7 +48,6 @@ template <class Run>
 template <class Run>
 void restore_grains(Run& run) {
   using V = typename Run::Value;
-  using real = typename Run::real;
   const Packing& packing = *run.packing;
   const std::size_t n = packing.radii.size();
   run.group.n_grains = packing.size();
@@ -55,25 +56,26 @@ void restore_grains(Run& run) {
   run.group.shapes.resize(n);
   run.group.row.resize(n + 1);
   for (std::size_t i = 0; i < n; ++i) {
-    run.group.shapes[i] = grain_shape<real>(packing, i, run.scales.largest_radius);
+    run.group.shapes[i] = grain_shape<typename Run::Law>(packing, i, run.scales.largest_radius,
+                                                         run.settings.overlap_limit);
   }
 }
 
 template <class Run>
-void restore(Run& run, const GroupMembers<static_cast<int>(Run::width)>& members,
-             std::span<const typename Run::Drive::Request> requests) {
-  run.scales = scales_of(*run.packing, run.settings);
+VOUSSOIR_OWN_SYMBOL void restore(Run& run, const GroupMembers<static_cast<int>(Run::width)>& members,
+                                 std::span<const typename Run::Drive::Request> requests) {
+  const Region region(run.regions, "restore");
+  run.scales = scales_of<typename Run::Law>(*run.packing, run.settings);
   restore_grains(run);
   for (std::size_t l = 0; l < Run::width; ++l) {
     run.lanes[l] = {};
     run.lists[l].pairs.clear();
     if (members[l] < 0) continue;
     run.lanes[l].rve = members[l];
-    run.lanes[l].drive = typename Run::Drive(requests[static_cast<std::size_t>(members[l])], *run.packing,
-                                             run.settings);
+    run.lanes[l].drive = typename Run::Drive(requests[static_cast<std::size_t>(members[l])], run.scales, run.settings);
     run.lanes[l].running = restore_lane(run, l);
   }
   run.builder.build(run.group, run.lists, *run.packing);
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

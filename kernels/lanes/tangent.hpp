@@ -1,20 +1,22 @@
 #pragma once
-/// The static tangents of a group's lanes in place of eq. (4) in their reports, where they were found and can be used.
+/// Puts the static tangents of a group's lanes in place of eq. (4) in their reports, where they were found and are
+/// usable.
 
 #include <algorithm>
 
 #include "kernels/lanes/group_run.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::lanes {
 
-/// Whether static tangent `d` [Pa] is no stiffer than the contact one: it cannot be, but where rounding spoilt the
-/// iterations. False for NaN. The slack covers the factor y (kernels/README.md, "Static tangent").
+/// Whether a static tangent `d` [Pa] is at most as stiff as the contact tangent. In exact arithmetic every static
+/// tangent is; one that is stiffer shows that rounding has spoilt the iterations. False for NaN. The slack covers the
+/// factor y (kernels/README.md, "Static tangent").
 [[nodiscard]] inline bool is_softer(const double* d, const double* contact) {
   constexpr double slack = 1.05;
   return d[0] <= slack * contact[0] && d[3] <= slack * contact[3] && d[5] <= slack * contact[5];
 }
 
-/// A tangent that may take eq. (4)'s place in a report.
+/// A tangent that may take the place of eq. (4) in a report.
 struct FoundTangent {
   TangentKind kind;
   double tangent[6];  ///< [Pa]
@@ -48,7 +50,7 @@ template <class V>
           result.converged[l]};
 }
 
-/// `found` into the report, unless it cannot be used. @param contact eq. (4)
+/// Writes `found` into the report if it is usable. @param contact tangent of eq. (4) [Pa]
 inline void replace_tangent(RveReport& report, const FoundTangent& found, const double* contact) {
   if (!is_softer(found.tangent, contact)) return;
   std::copy_n(found.tangent, 6, report.tangent);
@@ -56,18 +58,19 @@ inline void replace_tangent(RveReport& report, const FoundTangent& found, const 
   report.tangent_kind = found.kind;
 }
 
-/// The static tangents into the reports of the lanes that have an answer; eq. (4) stays where they cannot be used, and
-/// the elastic one where a loading one is not found.
-template <class Law, class Run>
-void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
+/// Writes the static tangents into the reports of the lanes that have an answer. Eq. (4) stays where a static tangent
+/// is not usable, and the elastic tangent where no loading tangent is found.
+template <class Run>
+VOUSSOIR_OWN_SYMBOL void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
+  const Region region(run.regions, "tangents");
   const bool loads = run.settings.tangent == TangentKind::loading;
   std::array<bool, Run::width> live{};
   for (std::size_t l = 0; l < Run::width; ++l) live[l] = run.lanes[l].rve >= 0 && !is_failure(reports[l].status);
-  const auto at_once = static_tangent<Law>(run.group, run.springs, live, run.settings);
+  const auto at_once = static_tangent(run.group, run.springs, live, run.settings);
   LoadingTangent<typename Run::Value> on_the_way;
   if (loads) {
     run.step.size = step_sizes<typename Run::Value>(run.lanes, run.settings.tangent_strain);
-    on_the_way = loading_tangent<Law>(run.group, run.springs, run.step, at_once, live, run.settings);
+    on_the_way = loading_tangent(run.group, run.springs, run.step, at_once, live, run.settings);
   }
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (!live[l]) continue;
@@ -87,4 +90,4 @@ void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
   }
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::lanes

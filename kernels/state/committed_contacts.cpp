@@ -2,24 +2,23 @@
 
 #include <cmath>
 
-#include "kernels/contact/contact_law.hpp"
-#include "kernels/lanes/neighbours.hpp"
+#include "kernels/contact/cell.hpp"
+#include "kernels/contact/engine_law.hpp"
 
 namespace voussoir::kernels {
 
 namespace {
 
 /// One law call without motion: histories are within their caps, as an evaluation left them.
-void add_forces(const Packing& packing, double tangential, double moment, CommittedContact& contact, double length) {
-  using V = SingleLane<double>;
-  using Law = LinearContactLaw<V, true>;
+/// @param numbers of the contact's history; @param length |b| [m]
+void add_forces(const Packing& packing, const double* numbers, CommittedContact& contact, double length) {
+  using Law = PlainEngineLaw;
+  using V = Law::Value;
   const auto i = static_cast<std::size_t>(contact.i), j = static_cast<std::size_t>(contact.j);
   const double ri = packing.radii[i], rj = packing.radii[j];
-  const PairConstants k = combine(packing.material_of(i), ri, packing.material_of(j), rj);
-  const PairCaps caps = caps_of(k, ri + rj);
-  const Law law{V(k.normal_stiffness), V(k.tangential_stiffness), V(k.rolling_stiffness), V(caps.tangential),
-                V(caps.moment)};
-  Law::History history{V(tangential), V(moment)};
+  const Law law(Law::combine(packing.material_of(i), ri, packing.material_of(j), rj));
+  Law::History history = no_history<Law>();
+  read_history<Law>(history, 0, [=](int k) { return numbers[k]; });
   const double overlap = ri + rj - length;
   const auto force = law({V(overlap / (ri + rj)), V(overlap / length), V(0.0), V(0.0)}, history);
   contact.normal_force = force.normal_to_branch[0] * length;
@@ -44,7 +43,7 @@ void committed_contacts(const RveBatch& batch, std::size_t rve, std::vector<Comm
     const double length = std::hypot(contact.branch_x, contact.branch_y);
     contact.normal_x = contact.branch_x / length;
     contact.normal_y = contact.branch_y / length;
-    add_forces(batch.packing(rve), s.contact_history(rve, c, 0), s.contact_history(rve, c, 1), contact, length);
+    add_forces(batch.packing(rve), s.histories_of(rve) + c * s.history_size(), contact, length);
   }
 }
 

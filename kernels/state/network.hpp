@@ -1,6 +1,6 @@
 #pragma once
-/// What the contact network of an RVE looks like: fabric and connectivity (method.md, eqs. 22 and 23). Computed for
-/// those who ask.
+/// The contact network of an RVE: fabric and connectivity (method.md, eqs. 22 and 23). Each quantity is computed only
+/// where it was asked for.
 
 #include <array>
 #include <span>
@@ -8,9 +8,7 @@
 
 namespace voussoir::kernels {
 
-struct RveBatch;
-
-/// A contact as far as the network is concerned.
+/// The numbers of a contact that the network needs.
 struct NetworkContact {
   int i, j;                   ///< grains
   double normal_x, normal_y;  ///< unit vector along the branch; its sense does not matter
@@ -35,16 +33,12 @@ struct Microstructure {
   double fabric_anisotropy = 0;        ///< a of eq. (22) [-]; 0 without contacts
   double fabric_direction = 0;         ///< theta_a of eq. (22), from x counter-clockwise, in (-pi/2, pi/2] [rad]
   double mechanical_coordination = 0;  ///< Z_m of eq. (23) [-]; 0 where no grain has two contacts
-  std::array<double, strong_thresholds.size()> strong_coordination{};  ///< the same of the strong networks
+  std::array<double, strong_thresholds.size()> strong_coordination{};  ///< Z_m of the strong networks
 };
 
 /// The quantities of `wanted` that follow from the contacts (and `coordination`) of a packing of `grains` grains into
 /// `out`.
 void describe_network(std::span<const NetworkContact> contacts, int grains, const MicrostructureRequest& wanted,
                       Microstructure& out);
-
-/// Committed states of a batch, RVEs side by side; normal forces are the contact law's. `out` has batch.size() entries.
-/// Cost: README.md, "Microstructure".
-void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<Microstructure> out);
 
 }  // namespace voussoir::kernels

@@ -1,6 +1,7 @@
 #pragma once
-/// What a caller asks of the engine.
+/// The requests that a caller makes of the engine, and the cost of an answer.
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -11,13 +12,14 @@ namespace voussoir::kernels {
 
 enum class Precision { float32, float64 };
 
-/// Contact tangent, eq. (4), or the packing's own static one (static_tangent.hpp): with every contact stuck, or without
-/// the springs that have yielded; or the response to small strains that go on as the last motion did, contacts reaching
-/// their caps on the way (loading_tangent.hpp).
+/// `contact`: the contact tangent of eq. (4). `elastic`, `static_`: the packing's own stiffness with its grains free to
+/// move (tangents/static_tangent.hpp), with every contact stuck or without the springs that have yielded. `loading`:
+/// the response to a small strain that goes on as the last motion did, while contacts reach their caps
+/// (tangents/loading_tangent.hpp).
 enum class TangentKind { contact, elastic, static_, loading };
 
-/// Who advances the RVEs: one SIMD lane each (CPUs), or one team of threads each (GPUs; on a CPU the same bits, more
-/// slowly). `automatic`: teams where Kokkos' default execution space is a device of its own.
+/// `lanes`: one SIMD lane advances an RVE (CPUs). `teams`: a team of threads does (GPUs; on a CPU they give the same
+/// bits more slowly). `automatic`: teams where Kokkos' default execution space is a device of its own.
 enum class Backend { automatic, lanes, teams };
 
 /// Numerical settings of a run. The case file's [engine] table sets them for a mesh; packings are made with these.
@@ -35,8 +37,8 @@ struct EngineSettings {
   TangentKind tangent = TangentKind::contact;
   double tangent_tolerance = 2e-3;  ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
   int tangent_iterations = 800;     ///< limit
-  double tangent_strain = 1e-6;  ///< of a loading tangent, the strain it is the secant of; negative: against the last
-                                 ///< motion [-]
+  double tangent_strain = 1e-6;     ///< strain whose secant a loading tangent is; negative: against the last
+                                    ///< motion [-]
 };
 
 /// Given motion of one RVE: F_rel reached in `strain_steps` equal steps, then at most `hold_cap` steps of rest.
@@ -52,7 +54,7 @@ struct ServoAxis {
   double target = 0;  ///< stress, tension positive [Pa], or rate per step [-] when not stress controlled
 };
 
-/// What a stress-controlled cell did, seen at one step.
+/// State of a stress-controlled cell at one step.
 struct ServoSample {
   int step;
   double strain_x, strain_y;               ///< logarithmic since the request's start, extension positive [-]
@@ -72,6 +74,22 @@ struct ServoRequest {
   std::vector<ServoSample>* trace = nullptr;                      ///< the caller's, one per RVE; samples are appended
   int trace_interval = 100;                                       ///< steps between samples
   MicrostructureRequest microstructure = {};  ///< of the samples; nothing is computed unless asked for
+};
+
+/// Steps that a request is expected to take: RVEs of similar work advance together.
+[[nodiscard]] inline int predicted_steps(const StrainRequest& r) { return r.strain_steps + r.hold_cap / 4; }
+[[nodiscard]] inline int predicted_steps(const ServoRequest& r) { return r.max_steps; }
+
+/// The work of one call of the engine.
+struct Work {
+  std::size_t particle_steps = 0;  ///< executed steps x grains, of the RVEs that ran
+  std::size_t lane_steps = 0;  ///< as particle_steps, but lanes count that were empty or had ended: the hardware's work
+
+  Work& operator+=(const Work& other) {
+    particle_steps += other.particle_steps;
+    lane_steps += other.lane_steps;
+    return *this;
+  }
 };
 
 }  // namespace voussoir::kernels

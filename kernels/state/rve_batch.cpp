@@ -8,15 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "kernels/state/schedule.hpp"
+#include "kernels/state/mobility.hpp"
 
 namespace voussoir::kernels {
 
 namespace {
 /// A contact graph of discs is planar on the torus: at most 3 contacts per grain. One more leaves room for overlaps.
 constexpr int contacts_per_grain = 4;
-constexpr double step_safety = 0.9;  ///< c of kernels/README.md "Mobilities"
-constexpr double neighbours = 6.0;
 }  // namespace
 
 double Packing::mean_diameter() const {
@@ -31,37 +29,12 @@ double Packing::solid_area() const {
   return sum;
 }
 
-double Packing::mean_mobility() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < radii.size(); ++i) sum += mobility_of(material_of(i), radii[i]);
-  return sum / static_cast<double>(radii.size());
-}
-
-double Packing::mean_stiffness() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < radii.size(); ++i) sum += material_of(i).modulus * radii[i];
-  return sum / static_cast<double>(radii.size());
-}
-
-double mobility_of(const GrainMaterial& m, double radius) {
-  const double kn = m.modulus * radius;
-  const double kt = m.stiffness_ratio * kn;
-  return step_safety * step_safety * 4.0 / (neighbours * (kn + 2.0 * kt));
-}
-
-double rotational_mobility_of(const GrainMaterial& m, double radius, double largest_radius) {
-  const double kt = m.stiffness_ratio * m.modulus * radius;
-  const double ratio = largest_radius / radius;
-  const double rolling = m.rolling_stiffness * 2.0 * ratio * ratio / (1.0 + ratio);  // k_r / (k_t r^2) on the largest
-                                                                                     // grain
-  return step_safety * step_safety * 4.0 / (neighbours * (4.0 + 2.0 * rolling) * kt * radius * radius);
-}
-
 double Packing::inertial_time(double pressure) const {
-  return kernels::inertial_time(mean_mobility(), thickness, pressure);
+  return kernels::inertial_time(mean_mobility<PlainEngineLaw>(*this, EngineSettings{}.overlap_limit), thickness,
+                                pressure);
 }
 
-RveStates::RveStates(std::string_view label, std::size_t n, int grains) {
+RveStates::RveStates(std::string_view label, std::size_t n, int grains, int history) {
   const auto g = static_cast<std::size_t>(grains);
   const auto name = [&](const char* what) { return "voussoir::rve_batch::" + std::string(label) + "::" + what; };
   position = Array<double** [2]>(name("position"), n, g);
@@ -69,7 +42,8 @@ RveStates::RveStates(std::string_view label, std::size_t n, int grains) {
   cell = Array<double* [4]>(name("cell"), n);
   contact_count = Array<int*>(name("contact_count"), n);
   contact_key = Array<std::uint32_t**>(name("contact_key"), n, g * contacts_per_grain);
-  contact_history = Array<double** [2]>(name("contact_history"), n, g * contacts_per_grain);
+  contact_history = Array<double***>(name("contact_history"), n, g * contacts_per_grain,
+                                     static_cast<std::size_t>(history));
 }
 
 void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size_t grains) {
@@ -79,7 +53,7 @@ void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size
   std::copy_n(&from.cell(rve, 0), 4, &to.cell(rve, 0));
   to.contact_count(rve) = from.contact_count(rve);
   std::copy_n(&from.contact_key(rve, 0), contacts, &to.contact_key(rve, 0));
-  std::copy_n(&from.contact_history(rve, 0, 0), 2 * contacts, &to.contact_history(rve, 0, 0));
+  std::copy_n(from.histories_of(rve), from.history_size() * contacts, to.histories_of(rve));
 }
 
 const char* name_of(RveStatus s) {
@@ -121,7 +95,7 @@ bool rolls(const RveBatch& batch) {
   });
 }
 
-RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of) {
+RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of, int history) {
   int grains = 0;
   for (const Packing& p : packings) {
     const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
@@ -143,8 +117,8 @@ RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of) 
   batch.packings = std::move(packings);
   batch.packing_of = std::move(packing_of);
   const std::size_t n = batch.size();
-  batch.committed = RveStates("committed", n, grains);
-  batch.trial = RveStates("trial", n, grains);
+  batch.committed = RveStates("committed", n, grains, history);
+  batch.trial = RveStates("trial", n, grains, history);
   batch.candidates.keys.resize(n);
   forget_candidates(batch);
   return batch;

@@ -1,6 +1,6 @@
 #pragma once
-/// All RVEs of a run: what they are (packings), where they stand (committed state), and where the last evaluation left
-/// them (trial state). Data only; verbs are in advance_rves.hpp.
+/// All RVEs of a run: their packings, their committed states, and the trial states that the last evaluation left. This
+/// file holds data; the engine's verbs are in advance_rves.hpp.
 ///
 /// Layout (RVE, grain, component), LayoutRight: one thread walks one group, one RVE is contiguous. State is double,
 /// whatever the lanes compute in, and complete: neighbour lists derive from it.
@@ -12,13 +12,13 @@
 #include <string_view>
 #include <vector>
 
-#include "kernels/contact/contact_law.hpp"
+#include "kernels/contact/engine_law.hpp"
 #include "kernels/contact/kinematics.hpp"
 #include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
 
-/// What all RVEs cloned from one packing share.
+/// The data that all RVEs cloned from one packing share.
 struct Packing {
   std::vector<double> radii;                                             ///< [m]
   std::vector<GrainMaterial> materials = std::vector<GrainMaterial>(1);  ///< the classes of grains (Table 1)
@@ -32,11 +32,10 @@ struct Packing {
   }
   [[nodiscard]] double mean_diameter() const;
   [[nodiscard]] double largest_radius() const;
-  [[nodiscard]] double solid_area() const;      ///< sum of pi r^2 [m^2]
-  [[nodiscard]] double mean_mobility() const;   ///< mean of dt^2/m [m/N], see kernels/README.md "Mobilities"
-  [[nodiscard]] double mean_stiffness() const;  ///< mean of E r [N/m], the normal stiffness of a grain against its like
+  [[nodiscard]] double solid_area() const;  ///< sum of pi r^2 [m^2]
 
-  [[nodiscard]] double inertial_time(double pressure) const;  ///< as below, of the packing's mean mobility
+  /// As below, of the mean mobility that the engine's law gives the packing under the default overlap limit.
+  [[nodiscard]] double inertial_time(double pressure) const;
 };
 
 /// Inertial number per strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| * inertial_time(p) for
@@ -44,11 +43,6 @@ struct Packing {
 [[nodiscard]] KOKKOS_INLINE_FUNCTION double inertial_time(double mean_mobility, double thickness, double pressure) {
   return 1.0 / std::sqrt(mean_mobility * pressure * thickness);
 }
-
-/// dt^2/m [m/N] and dt^2/J [rad/(N m)] of a grain, see kernels/README.md "Mobilities".
-/// @param largest_radius of the packing: a small grain that rolls on a large one is the stiffest rotation
-[[nodiscard]] double mobility_of(const GrainMaterial& material, double radius);
-[[nodiscard]] double rotational_mobility_of(const GrainMaterial& material, double radius, double largest_radius);
 
 /// States of `n` RVEs of at most `grains` grains.
 struct RveStates {
@@ -59,11 +53,17 @@ struct RveStates {
   Array<double**> rotation;      ///< absolute [rad]
   Array<double* [4]> cell;       ///< H row-major; columns are the periodic vectors [m]
   Array<int*> contact_count;
-  Array<std::uint32_t**> contact_key;   ///< pair_key(i, j), ascending
-  Array<double** [2]> contact_history;  ///< tangential force [N], rolling moment [N m]
+  Array<std::uint32_t**> contact_key;  ///< pair_key(i, j), ascending
+  Array<double***> contact_history;    ///< (RVE, contact, k), k as in the law's history_names [SI]
 
   RveStates() = default;
-  RveStates(std::string_view label, std::size_t n, int grains);
+  /// @param history numbers a contact remembers
+  RveStates(std::string_view label, std::size_t n, int grains, int history);
+  [[nodiscard]] std::size_t history_size() const { return contact_history.extent(2); }
+  /// The numbers of all contacts of an RVE, contact by contact; not to be read where a law remembers nothing.
+  [[nodiscard]] double* histories_of(std::size_t rve) const {
+    return contact_history.data() + rve * contact_history.extent(1) * history_size();
+  }
   [[nodiscard]] int contact_capacity() const { return static_cast<int>(contact_key.extent(1)); }
 };
 
@@ -78,7 +78,7 @@ struct RveStates {
 
 inline constexpr int max_grains = 65535;  ///< indices of a pair fit one word
 
-/// How an evaluation of one RVE ended. The last three make the increment unusable; `open` and `step_limit` are
+/// The end of an evaluation of one RVE. The last three make the increment unusable; `open` and `step_limit` are
 /// reported. `neighbour_overflow` also stands for a cell too narrow for its largest grains.
 enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, overlap_limit, not_finite };
 
@@ -98,11 +98,11 @@ struct RveReport {
   double tangent_skew[3] = {};  ///< of a loading tangent, (D_ab - D_ba)/2 of xxyy xxxy yyxy [Pa]
   TangentKind tangent_kind = TangentKind::contact;
   int tangent_iterations = 0;   ///< of a static tangent
-  bool tangent_capped = false;  ///< they reached their limit: too stiff, by less than eq. (4); of `loading`: `elastic`
-                                ///< instead
-  double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
-  double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
-  double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]
+  bool tangent_capped = false;  ///< the iterations reached their limit: the tangent is too stiff, less so than eq. (4);
+                                ///< of `loading`: `elastic` instead
+  double unbalanced = 0;       ///< rms|f| / (max(p, floor) t d) at the last look [-]
+  double inertial_number = 0;  ///< of the strain phase, at the final pressure [-]
+  double largest_overlap = 0;  ///< overlap / (r_i + r_j) [-]
 
   /// Compression positive [Pa].
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double pressure() const { return -0.5 * (stress[0] + stress[3]); }
@@ -131,10 +131,15 @@ struct RveBatch {
 void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size_t grains);
 
 /// Room for RVEs of the given packings; states are to be filled by the caller.
-[[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of);
+/// @param history numbers that a contact of the law remembers
+[[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of,
+                                  int history = history_size<PlainEngineLaw>);
 
 /// The trial states become the committed ones; an RVE whose evaluation failed keeps its committed state.
 void commit(RveBatch& batch);
+
+/// Whether any grain resists rolling; where none does, that part of the law is compiled out.
+[[nodiscard]] bool rolls(const RveBatch& batch);
 
 /// To be called after `committed` was written from outside.
 void forget_candidates(RveBatch& batch);

@@ -1,6 +1,6 @@
 #pragma once
-/// The contacts of a group as springs at rest: what the law's linearisation makes of them, and what they do when grains
-/// move.
+/// The contacts of a group at rest as springs, whose stiffnesses are the law's, and the forces of these springs when
+/// grains move.
 ///
 /// One symmetric operator per contact: k_n, k_t / y and k_r on the changes of length of kernels/README.md "One step",
 /// 3. The force is the engine's own; its torque arms r - delta/2 are taken as r/y, and the rotation of the forces
@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-#include "kernels/lanes/sweep.hpp"
+#include "kernels/contact/pair_forces.hpp"
 #include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
@@ -93,7 +93,7 @@ KOKKOS_FORCEINLINE_FUNCTION SpringStrain<V> spring_strain(const SpringLanes<V>& 
           spin_j - spin_i, along};
 }
 
-/// What the springs of a contact pull with, conjugate to their changes of length.
+/// Forces of a contact's springs, conjugate to their changes of length.
 template <class V>
 struct SpringForce {
   V normal, shear, moment;  ///< -f_n, f_t / y [N], m [N m]
@@ -104,7 +104,7 @@ KOKKOS_FORCEINLINE_FUNCTION SpringForce<V> force_of(const SpringLanes<V>& s, con
   return {s.normal * e.normal, s.tangential * e.sliding, s.rolling * e.rolling};
 }
 
-/// Adds to `on_i` and `on_j` what the springs do to the two grains. Returns the force on i.
+/// Adds the springs' forces and torques on the two grains to `on_i` and `on_j`. Returns the force on i.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull(const SpringLanes<V>& s, const SpringForce<V>& f, const V& radius_i,
                                               const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) {
@@ -116,12 +116,12 @@ KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull(const SpringLanes<V>& s, const Spr
   return {fx, fy, f.moment};
 }
 
-/// Share of its cap at which a spring counts as yielded; above 1, none does.
+/// Share of its cap at which a spring counts as yielded; above 1, no spring does.
 [[nodiscard]] inline double elastic_share(TangentKind kind) { return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0; }
 
 /// The springs of every pair that touches in some lane.
 template <class Law, class V>
-void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<V>& system) {
+void collect_springs(const GroupState<Law>& group, TangentKind kind, SpringSystem<V>& system) {
   using real = real_of<V>;
   const V zero(0), share(static_cast<real>(elastic_share(kind)));
   const auto n = static_cast<std::size_t>(group.n_grains);
@@ -135,15 +135,14 @@ void collect_springs(const GroupState<V>& group, TangentKind kind, SpringSystem<
   for (std::size_t i = 0; i < n; ++i) {
     system.radii[i] = group.shapes[i].radius;
     for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
-      const PairLanes<V>& pair = group.pairs[p];
-      const PairShape<real>& shape = group.pair_shapes[p];
+      const PairLanes<Law>& pair = group.pairs[p];
+      const PairShape<Law>& shape = group.pair_shapes[p];
       const GrainLanes<V>& gj = group.grains[static_cast<std::size_t>(shape.other)];
       const auto at = geometry_of(pair, group.motion, gj.u_x - group.grains[i].u_x, gj.u_y - group.grains[i].u_y);
       if (!Kokkos::Experimental::any_of(at.gap < zero)) continue;
       const PairDistance<V> distance = distance_of(at.gap, shape);
       const V to_unit = distance.inverse_length;
-      const ContactStiffness<V> k = law_of<Law, V>(shape).stiffness(distance.overlap, {pair.tangential, pair.moment},
-                                                                    share);
+      const ContactStiffness<V> k = Law(shape.law).stiffness(distance.overlap, pair.history, share);
       const V y = V(1) + distance.excess;
       system.springs.push_back(
           {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling});
@@ -201,7 +200,7 @@ void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
   }
 }
 
-/// Adds to forces(i) what the contacts do to grain i under the motions(i), both StrainDofs of all grains.
+/// Adds the contacts' forces on grain i under the motions(i) to forces(i); both are StrainDofs of all grains.
 /// act(c, a, strain, radius_i, radius_j, on_i, on_j) is contact c under motion a. Rows gather grain i's part in
 /// registers.
 template <class V, class Motions, class Forces, class Act>

@@ -1,16 +1,17 @@
 #pragma once
-/// A small step of strain on the contacts at rest, with the law's caps: what it does to the forces, and the slopes of
-/// that.
+/// A small step of strain on the contacts at rest, with the law's caps: the changes of the forces and the slopes of
+/// these changes.
 ///
 /// The geometry is linear, the law is not: a contact whose spring would pass its cap follows mu f_n (or arm f_n)
-/// instead, an opening one loses its forces (LinearContactLaw::step). Forces that are carried already turn with their
+/// instead, an opening one loses its forces (the law's `step`). Forces that are carried already turn with their
 /// contacts. All motions and forces are per strain of the step, so that they have the size of static_tangent.hpp's.
 
 #include "kernels/tangents/contact_springs.hpp"
 
 namespace voussoir::kernels {
 
-/// What a contact pulls with for its changes of length, at its state in the step. By closing: of forces at their caps.
+/// Slopes of a contact's forces by its changes of length, at its state in the step. Forces at their caps follow the
+/// closing of the contact.
 template <class V>
 struct StepSlope {
   V normal, shear, moment, shear_by_closing, moment_by_closing;  ///< k_n, k_t / y [N/m], k_r [N m/rad], [N/m], [N]
@@ -28,7 +29,8 @@ struct StepGrain {
   StrainDofs<V> shadow, half, half_image;
 };
 
-/// What the step adds to a SpringSystem. Reused from group to group; empty unless a loading tangent is asked for.
+/// The arrays that a step needs besides a SpringSystem. Reused from group to group; empty unless a loading tangent is
+/// asked for.
 template <class V>
 struct StepSystem {
   PerStrain<V> size;  ///< signed strain of each column's step [-]
@@ -60,16 +62,25 @@ VOUSSOIR_LANES_INLINE GrainDofs<V> pull_and_turn(const SpringLanes<V>& s, const 
   return {change.x + tx, change.y + ty, change.spin};
 }
 
+/// f_t of a contact at rest. @param ratio R/|b|; @param history within the caps
+template <class Law, class V>
+VOUSSOIR_LANES_INLINE V carried_tangential(const Law& law, const V& overlap, const V& ratio,
+                                           typename Law::History history) {
+  return law({overlap, overlap * ratio, V(0), V(0)}, history).tangential;
+}
+
 /// The contacts' carried forces and the arrays' sizes. After collect_springs.
-template <class V>
-void prepare_step(const GroupState<V>& group, const SpringSystem<V>& system, StepSystem<V>& step) {
+template <class Law, class V>
+void prepare_step(const GroupState<Law>& group, const SpringSystem<V>& system, StepSystem<V>& step) {
   step.springs.resize(system.springs.size());
   step.grains.resize(system.grains.size());
   for (std::size_t c = 0; c < system.springs.size(); ++c) {
     const SpringLanes<V>& s = system.springs[c];
     const auto p = static_cast<std::size_t>(system.shapes[c].pair);
-    const V fn = V(group.pair_shapes[p].normal_stiffness) * system.overlaps[c] * s.ratio;  // both over |b|
-    const V ft = group.pairs[p].tangential / s.branch;
+    const V& overlap = system.overlaps[c];
+    const Law law(group.pair_shapes[p].law);
+    const V fn = law.secant(overlap) * overlap * s.ratio;  // both forces over |b|
+    const V ft = carried_tangential(law, overlap, s.ratio, group.pairs[p].history) / s.branch;
     step.springs[c].turned_x = fused(fn, s.normal_y, -(ft * s.normal_x));
     step.springs[c].turned_y = -fused(fn, s.normal_x, ft * s.normal_y);
   }
@@ -77,23 +88,23 @@ void prepare_step(const GroupState<V>& group, const SpringSystem<V>& system, Ste
 
 /// The law's answer for contact c under strain `e` of column `a`, per strain of the step; its slopes are kept.
 template <class Law, class V>
-VOUSSOIR_LANES_INLINE SpringForce<V> answer(const GroupState<V>& group, const SpringSystem<V>& system,
+VOUSSOIR_LANES_INLINE SpringForce<V> answer(const GroupState<Law>& group, const SpringSystem<V>& system,
                                             StepSystem<V>& step, std::size_t c, std::size_t a,
                                             const SpringStrain<V>& e) {
   const auto p = static_cast<std::size_t>(system.shapes[c].pair);
   const V& size = step.size[a];
   const V over_size = V(1) / size, over_ratio = V(1) / system.springs[c].ratio;
   const V over_sum(group.pair_shapes[p].inverse_sum);
-  const ContactStep<V> now = law_of<Law, V>(group.pair_shapes[p])
-                                 .step(system.overlaps[c], {group.pairs[p].tangential, group.pairs[p].moment},
-                                       -(size * e.normal * over_sum), size * e.sliding, size * e.rolling);
+  const ContactStep<V> now = Law(group.pair_shapes[p].law)
+                                 .step(system.overlaps[c], group.pairs[p].history, -(size * e.normal * over_sum),
+                                       size * e.sliding, size * e.rolling);
   step.springs[c].slope[a] = {now.normal_stiffness, now.tangential.slope * over_ratio, now.moment.slope,
                               now.tangential.by_closing * over_ratio * over_sum, now.moment.by_closing * over_sum};
-  const V fn = V(group.pair_shapes[p].normal_stiffness) * now.closing / over_sum;
+  const V fn = now.normal_change / over_sum;
   return {-(fn * over_size), now.tangential.change * over_ratio * over_size, now.moment.change * over_size};
 }
 
-/// Adds what a contact contributes to the change of the stress. @param force change of that on i; @param dx, dy of the
+/// Adds a contact's part of the change of the stress. @param force change of that on i; @param dx, dy of the
 /// far end
 template <class V>
 VOUSSOIR_LANES_INLINE void add_change(const SpringLanes<V>& s, const StepSpring<V>& carried, const GrainDofs<V>& force,
@@ -107,7 +118,7 @@ VOUSSOIR_LANES_INLINE void add_change(const SpringLanes<V>& s, const StepSpring<
 
 /// Residual forces on the grains at their present motions, the contacts' slopes there, and the change of the stress.
 template <class Law, class V>
-void take_step(const GroupState<V>& group, SpringSystem<V>& system, StepSystem<V>& step, StressChange<V>& change) {
+void take_step(const GroupState<Law>& group, SpringSystem<V>& system, StepSystem<V>& step, StressChange<V>& change) {
   const V zero(0);
   const GrainDofs<V> none{zero, zero, zero};
   for (SolverGrain<V>& g : system.grains) g.residual = {none, none, none};
@@ -117,7 +128,7 @@ void take_step(const GroupState<V>& group, SpringSystem<V>& system, StepSystem<V
     for (std::size_t a = 0; a < unit_strains; ++a) {
       V dx, dy;
       const SpringStrain<V> e = strain_of(s, a, gi, gj, ri, rj, dx, dy);
-      const SpringForce<V> f = answer<Law>(group, system, step, c, a, e);
+      const SpringForce<V> f = answer(group, system, step, c, a, e);
       const GrainDofs<V> on_i = pull_and_turn(s, step.springs[c], f, e.across, ri, rj, gi.residual[a], gj.residual[a]);
       add_change(s, step.springs[c], on_i, dx, dy, change[a]);
     }

@@ -17,11 +17,11 @@
 
 namespace voussoir::kernels {
 
-inline constexpr int most_rounds = 12;  ///< of Newton; those that converge take 2 to 12
-/// Of a column, if settings.tangent_iterations are not fewer; 99 of 100 that converge take fewer than 100 (biaxial_bvp
-/// past its peak, strains of 1e-6 to 1e-4).
+inline constexpr int most_rounds = 12;  ///< of Newton; steps that converge take 2 to 12
+/// Most iterations for a column, if settings.tangent_iterations is not less. Of the columns that converge, 99 of 100
+/// take fewer than 100 iterations (biaxial_bvp past its peak, strains of 1e-6 to 1e-4).
 inline constexpr int most_step_iterations = 150;
-inline constexpr double round_reduction = 0.1;  ///< of the residual by one round's linear solution
+inline constexpr double round_reduction = 0.1;  ///< factor on the residual by one round's linear solution
 
 /// Answer of a group: sums over contacts, to be divided by the volume.
 template <class V>
@@ -136,7 +136,7 @@ void take_second_half(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<
     }
   }
   for (std::size_t a = 0; a < unit_strains; ++a) {
-    V also = solver.running[a];  // what the first half gained is kept where the second cannot be taken
+    V also = solver.running[a];  // the gain of the first half is kept where the second half cannot be taken
     solver.omega[a] = usable(-(along[a] / squared[a]), also);
   }
   for (std::size_t i = 0; i < system.grains.size(); ++i) {
@@ -148,7 +148,7 @@ void take_second_half(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<
   }
 }
 
-/// Freezes the columns that are done: reduced enough, out of iterations, or broken down. False when none is left.
+/// Freezes the columns that are reduced enough, out of iterations, or broken down. False when no column is left.
 template <class V>
 [[nodiscard]] bool goes_on(const SpringSystem<V>& system, Biconjugate<V>& solver, int limit) {
   const V zero(0), most(static_cast<real_of<V>>(limit));
@@ -165,7 +165,7 @@ template <class V>
   return any;
 }
 
-/// Which columns of which lanes another round may better. `converged` holds those that need none.
+/// Marks the columns of the lanes that another round may improve; `converged` marks those that need no other round.
 template <class V>
 [[nodiscard]] bool begin_columns(const SpringSystem<V>& system, const StaticTangent<V>& elastic,
                                  const PerStrain<V>& live, double tolerance, int limit, Biconjugate<V>& solver,
@@ -190,7 +190,7 @@ template <class V>
   return any;
 }
 
-/// Signed sizes of the steps: on as the last motion went, forward where it did not go.
+/// Signed sizes of the steps: in the sense of the last motion, positive where there was no motion.
 template <class V, class Lanes>
 [[nodiscard]] PerStrain<V> step_sizes(const Lanes& lanes, double strain) {
   PerStrain<V> size;
@@ -206,7 +206,7 @@ template <class V, class Lanes>
 
 /// @param elastic of the same springs, whose motions stand in `system`; @param step with its sizes
 template <class Law, class V>
-LoadingTangent<V> loading_tangent(const GroupState<V>& group, SpringSystem<V>& system, StepSystem<V>& step,
+LoadingTangent<V> loading_tangent(const GroupState<Law>& group, SpringSystem<V>& system, StepSystem<V>& step,
                                   const StaticTangent<V>& elastic, const std::array<bool, V::size()>& live,
                                   const EngineSettings& settings) {
   const int limit = std::min(settings.tangent_iterations, most_step_iterations);
@@ -219,7 +219,7 @@ LoadingTangent<V> loading_tangent(const GroupState<V>& group, SpringSystem<V>& s
   }
   prepare_step(group, system, step);
   for (int round = 0; round <= most_rounds; ++round) {
-    take_step<Law>(group, system, step, out.change);
+    take_step(group, system, step, out.change);
     if (!begin_columns(system, elastic, wanted, settings.tangent_tolerance, limit, solver, out) || round == most_rounds)
       break;
     begin_round(system, step, solver);

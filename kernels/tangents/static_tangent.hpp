@@ -20,7 +20,7 @@
 namespace voussoir::kernels {
 
 inline constexpr int tangent_look_interval = 16;  ///< iterations between looks at the energies
-inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine one: mechanisms
+inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine energy: mechanisms
                                          ///< have none
 
 /// Answer of a group: sums over contacts, to be divided by the volume.
@@ -72,7 +72,7 @@ void turn_directions(SpringSystem<V>& system, const PerStrain<V>& beta) {
   }
 }
 
-/// Which solutions of which lanes go on, and what their energies are.
+/// The solutions that go on, lane by lane, and their energies.
 template <class V>
 struct Progress {
   PerStrain<V> running;
@@ -109,9 +109,9 @@ void advance_motions(SpringSystem<V>& system, const PerStrain<V>& alpha) {
   }
 }
 
-/// Freezes what changed its diagonal entry by less than the tolerance since the last look (the decrease of the energy
-/// over the last iterations estimates the error: Hestenes and Stiefel; Strakos and Tichy 2002); false when nothing is
-/// left.
+/// Freezes the solutions whose diagonal entry changed by less than the tolerance since the last look (the decrease of
+/// the energy over the last iterations estimates the error: Hestenes and Stiefel; Strakos and Tichy 2002); false when
+/// no solution is left.
 template <class V>
 [[nodiscard]] bool look_at(Progress<V>& progress, StaticTangent<V>& out, int iteration, double tolerance) {
   bool any = false;
@@ -166,7 +166,7 @@ void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent
 /// @param live lanes whose answer is wanted; the others do not prolong the iterations
 /// Call after homogenise(), which brings the contacts' histories to the final positions.
 template <class Law, class V>
-StaticTangent<V> static_tangent(const GroupState<V>& group, SpringSystem<V>& system,
+StaticTangent<V> static_tangent(const GroupState<Law>& group, SpringSystem<V>& system,
                                 const std::array<bool, V::size()>& live, const EngineSettings& settings) {
   StaticTangent<V> out;
   Progress<V> progress;
@@ -174,7 +174,7 @@ StaticTangent<V> static_tangent(const GroupState<V>& group, SpringSystem<V>& sys
     progress.energy[a] = V(0);
     for (std::size_t l = 0; l < V::size(); ++l) progress.running[a][l] = live[l] ? real_of<V>(1) : real_of<V>(0);
   }
-  collect_springs<Law>(group, settings.tangent, system);
+  collect_springs(group, settings.tangent, system);
   load_springs(system, progress.energy);
   out.affine = progress.affine = progress.energy;
   relax_springs(system, progress, out, settings);

@@ -3,23 +3,24 @@
 /// team ends with its RVE. An RVE's answer has the bits of `EngineSettings::backend = lanes` on the same processor,
 /// whatever the team's size.
 ///
-/// Called through `advance` (advance_rves.hpp).
+/// Called through `kernels::advance` (advance_rves.hpp).
 
 #include <span>
 
-#include "kernels/advance_rves.hpp"
+#include "kernels/state/requests.hpp"
+#include "kernels/state/rve_batch.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
 /// Given motions of some RVEs (their numbers, each once), on Kokkos' default execution space.
 /// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team the space cannot form,
 /// or packings whose list does not fit the scratch
-Work advance_teams(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports, std::span<const int> rves);
+Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
+             std::span<RveReport> reports, std::span<const int> rves);
 
 /// Stress-controlled cells.
-Work advance_teams(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports, std::span<const int> rves);
+Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
+             std::span<RveReport> reports, std::span<const int> rves);
 
 /// Bytes of scratch one running team takes, in fast memory and besides it.
 struct TeamScratchBytes {
@@ -27,4 +28,4 @@ struct TeamScratchBytes {
 };
 [[nodiscard]] TeamScratchBytes team_scratch_bytes(int grains, Precision precision);
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

@@ -1,6 +1,6 @@
 #pragma once
-/// What teams read and write: packings, states and requests in the memory of the space that runs them. Where that is
-/// the host's, states are the batch's own.
+/// The data that teams read and write: packings, states and requests in the memory of the space that runs them. Where
+/// that is the host's memory, the states are the batch's own.
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include "kernels/course/rve_course.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
 template <class T, class Space>
 using TeamArray = Kokkos::View<T, Kokkos::LayoutRight, typename Space::memory_space>;
@@ -31,18 +31,19 @@ struct TeamStates {
   TeamArray<double* [4], Space> cell;
   TeamArray<int*, Space> contact_count;
   TeamArray<std::uint32_t**, Space> contact_key;
-  TeamArray<double** [2], Space> contact_history;
+  TeamArray<double***, Space> contact_history;
 };
 
-template <class real, class Space>
-[[nodiscard]] TeamPackings<real, Space> team_packings(const RveBatch& batch, const EngineSettings& settings) {
+template <class Law, class Space>
+[[nodiscard]] TeamPackings<real_of<typename Law::Value>, Space> team_packings(const RveBatch& batch,
+                                                                              const EngineSettings& settings) {
   const std::size_t n = batch.packings.size();
   std::size_t grains = 0;
   for (const Packing& p : batch.packings) grains = std::max(grains, p.radii.size());
   const auto unset = [](const char* label) {
     return Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label));
   };
-  using Packings = TeamPackings<real, Space>;
+  using Packings = TeamPackings<real_of<typename Law::Value>, Space>;
   const Packings out{.scales = decltype(Packings::scales)(unset("voussoir::team_batch::scales"), n),
                      .radii = decltype(Packings::radii)(unset("voussoir::team_batch::radii"), n, grains),
                      .shapes = decltype(Packings::shapes)(unset("voussoir::team_batch::shapes"), n, grains),
@@ -53,10 +54,10 @@ template <class real, class Space>
   const auto materials = Kokkos::create_mirror_view(out.materials);
   for (std::size_t k = 0; k < n; ++k) {
     const Packing& packing = batch.packings[k];
-    scales(k) = scales_of(packing, settings);
+    scales(k) = scales_of<Law>(packing, settings);
     for (std::size_t i = 0; i < packing.radii.size(); ++i) {
       radii(k, i) = packing.radii[i];
-      shapes(k, i) = grain_shape<real>(packing, i, scales(k).largest_radius);
+      shapes(k, i) = grain_shape<Law>(packing, i, scales(k).largest_radius, settings.overlap_limit);
       materials(k, i) = packing.material_of(i);
     }
   }
@@ -112,4 +113,4 @@ struct TeamBatch {
   int most_grains = 0;                      ///< of all packings
 };
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

@@ -5,7 +5,7 @@
 #include "kernels/teams/team_rebase.hpp"
 #include "kernels/teams/team_step.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
 /// Entry `c` of the tangent's upper triangle in the order of the list.
 template <class Run>
@@ -30,7 +30,7 @@ KOKKOS_FUNCTION void homogenise_team(const Run& run) {
     const int i = at.first(p);
     const GrainLanes<V>&gi = at.grains(i), &gj = at.grains(at.shapes(p).other);
     const PairGeometry<V> now = geometry_of(at.pairs(p), cell, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
-    const RestingPair<V> pair = rest<typename Run::Law>(at.pairs(p), at.shapes(p), now, cell, V(run.shape(i).radius));
+    const RestingPair<V> pair = rest(at.pairs(p), at.shapes(p), now, cell, V(run.shape(i).radius));
     at.actions(p) = pair.action;
     at.branches(p) = {now.branch_x, now.branch_y, pair.overlap};
     at.springs(p) = {pair.normal, pair.tangential, pair.weight};
@@ -65,8 +65,9 @@ template <class Run>
       run, run.listed(), [&](int p) { return at.springs(p).weight[0] > 0; },
       [&](int p, int c) {
         to.contact_key(rve, c) = pair_key(at.first(p), at.shapes(p).other);
-        to.contact_history(rve, c, 0) = static_cast<double>(at.pairs(p).tangential[0]);
-        to.contact_history(rve, c, 1) = static_cast<double>(at.pairs(p).moment[0]);
+        write_history<typename Run::Law>(at.pairs(p).history, 0, [&](int k, const typename Run::real& number) {
+          to.contact_history(rve, c, k) = static_cast<double>(number);
+        });
       });
   alone(run, [&] {
     const Mat2 cell = run.shared().cell;
@@ -92,8 +93,9 @@ KOKKOS_FUNCTION void keep_committed(const Run& run) {
   });
   each(run, from.contact_count(rve), [&](int c) {
     to.contact_key(rve, c) = from.contact_key(rve, c);
-    to.contact_history(rve, c, 0) = from.contact_history(rve, c, 0);
-    to.contact_history(rve, c, 1) = from.contact_history(rve, c, 1);
+    for (int k = 0; k < history_size<typename Run::Law>; ++k) {
+      to.contact_history(rve, c, k) = from.contact_history(rve, c, k);
+    }
   });
   alone(run, [&] {
     for (int k = 0; k < 4; ++k) to.cell(rve, k) = from.cell(rve, k);
@@ -132,4 +134,4 @@ KOKKOS_FUNCTION void finish(const Run& run) {
   keep_committed(run);
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

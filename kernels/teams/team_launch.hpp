@@ -1,19 +1,18 @@
 #pragma once
-/// The team kernel and its launch. Only advance_teams.cpp and the programs of tests/cuda include it: it is long to
+/// The team kernel and its launch. Only advance_teams.cpp and tests include it: it is long to
 /// compile.
 
+#include <Kokkos_Profiling_ScopedRegion.hpp>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
 
-#include "kernels/advance_rves.hpp"
 #include "kernels/course/flush_subnormals.hpp"
-#include "kernels/state/schedule.hpp"
 #include "kernels/teams/team_finish.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
-/// What a measuring step decides, by one thread.
+/// Judges a measuring step, by one thread.
 template <class Run>
 KOKKOS_FUNCTION void judge_team(const Run& run, int step) {
   auto& course = run.course();
@@ -55,7 +54,8 @@ KOKKOS_FUNCTION void advance_team(const Run& run) {
 
 template <class Law, class Drive, class Space>
 struct AdvanceTeams {
-  using V = decltype(Law::normal_stiffness);
+  using ContactLaw = Law;
+  using V = typename Law::Value;
   using Policy = Kokkos::TeamPolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>;
   using Member = typename Policy::member_type;
 
@@ -74,7 +74,7 @@ struct AdvanceTeams {
 /// @throws std::invalid_argument where a level is too small
 template <class Kernel>
 void ask_for_scratch(typename Kernel::Policy& policy, Kernel& kernel) {
-  using Scratch = TeamScratch<typename Kernel::V, typename decltype(kernel.batch.drives)::value_type,
+  using Scratch = TeamScratch<typename Kernel::ContactLaw, typename decltype(kernel.batch.drives)::value_type,
                               typename Kernel::Policy::execution_space>;
   const int grains = kernel.batch.most_grains;
   const std::size_t hot = Scratch::hot_bytes(grains), cold = Scratch::cold_bytes(grains);
@@ -124,19 +124,23 @@ void append_samples(const Batch& batch, std::span<const ServoRequest> requests) 
 template <class Batch>
 void append_samples(const Batch&, std::span<const StrainRequest>) {}
 
-template <class Space, class real, class Drive>
-[[nodiscard]] TeamBatch<real, Drive, Space> team_batch(const RveBatch& batch,
-                                                       std::span<const typename Drive::Request> requests,
-                                                       const EngineSettings& settings, std::span<const int> rves) {
+template <class Space, class Law, class Drive>
+[[nodiscard]] TeamBatch<real_of<typename Law::Value>, Drive, Space> team_batch(
+    const RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
+    std::span<const int> rves) {
   std::vector<int> order(rves.begin(), rves.end());
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
     return predicted_steps(requests[static_cast<std::size_t>(a)]) >
            predicted_steps(requests[static_cast<std::size_t>(b)]);
   });
   std::vector<Drive> drives;
-  for (std::size_t k = 0; k < batch.size(); ++k) drives.emplace_back(requests[k], batch.packing(k), settings);
-  TeamBatch<real, Drive, Space> out{
-      .packings = team_packings<real, Space>(batch, settings),
+  std::vector<RunScales> scales;
+  for (const Packing& packing : batch.packings) scales.push_back(scales_of<Law>(packing, settings));
+  for (std::size_t k = 0; k < batch.size(); ++k) {
+    drives.emplace_back(requests[k], scales[static_cast<std::size_t>(batch.packing_of[k])], settings);
+  }
+  TeamBatch<real_of<typename Law::Value>, Drive, Space> out{
+      .packings = team_packings<Law, Space>(batch, settings),
       .committed = team_states<Space>(batch.committed),
       .trial = team_states<Space>(batch.trial),
       .packing_of = team_array<Space>("voussoir::team_launch::packing_of", std::span<const int>(batch.packing_of)),
@@ -155,9 +159,12 @@ Work launch_teams(RveBatch& batch, std::span<const typename Drive::Request> requ
                   std::span<RveReport> reports, std::span<const int> rves) {
   using Kernel = AdvanceTeams<Law, Drive, Space>;
   if (settings.tangent != TangentKind::contact) throw std::invalid_argument("teams: the tangent is that of eq. (4)");
+  if (batch.committed.history_size() != static_cast<std::size_t>(history_size<Law>)) {
+    throw std::invalid_argument("teams: the batch holds the histories of another law");
+  }
   if (rves.empty()) return {};
-  Kernel kernel{.batch = team_batch<Space, real_of<typename Kernel::V>, Drive>(batch, requests, settings, rves),
-                .settings = settings};
+  const Kokkos::Profiling::ScopedRegion region("voussoir::teams");
+  Kernel kernel{.batch = team_batch<Space, Law, Drive>(batch, requests, settings, rves), .settings = settings};
   auto policy = team_policy(static_cast<int>(rves.size()), settings.team_size, kernel);
   policy.set_chunk_size(1);
   ask_for_scratch(policy, kernel);
@@ -176,4 +183,4 @@ Work launch_teams(RveBatch& batch, std::span<const typename Drive::Request> requ
   return work;
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

@@ -5,13 +5,13 @@
 #include "kernels/contact/pair_reference.hpp"
 #include "kernels/teams/team_run.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
 /// Contacts with the history that a new list takes over, by ascending key.
 template <class Keys, class Histories>
 struct KeptContacts {
   const Keys& keys;            ///< pair_key
-  const Histories& histories;  ///< (contact, 2): [N], [N m]
+  const Histories& histories;  ///< (contact, k), as in RveStates
   int count;
 
   /// Where the pair stands, or -1.
@@ -89,6 +89,7 @@ template <class Run>
 /// opened by more than the skin and is dropped. False where there is no room.
 template <class Run, class Kept>
 [[nodiscard]] KOKKOS_FUNCTION bool list_pairs(const Run& run, const Kept& kept) {
+  using Law = typename Run::Law;
   using V = typename Run::V;
   using real = typename Run::real;
   const auto& at = run.at;
@@ -96,18 +97,19 @@ template <class Run, class Kept>
   if (!find_pairs(run, cell)) return false;
   each(run, run.listed(), [&](int p) {
     const int i = at.first(p), j = at.shapes(p).other;
-    at.shapes(p) = pair_shape<real>(j, run.material(i), run.radius(i), run.material(j), run.radius(j));
+    at.shapes(p) = pair_shape<Law>(j, run.material(i), run.radius(i), run.material(j), run.radius(j));
     const PairReference reference = pair_reference(at.position(j, 0) - at.position(i, 0),
                                                    at.position(j, 1) - at.position(i, 1), run.radius(i) + run.radius(j),
                                                    cell);
     const int k = kept.find(pair_key(i, j));
-    at.pairs(p) = {V(static_cast<real>(reference.branch_x)), V(static_cast<real>(reference.branch_y)),
-                   V(static_cast<real>(reference.gap)), V(k < 0 ? real(0) : static_cast<real>(kept.histories(k, 0))),
-                   V(k < 0 ? real(0) : static_cast<real>(kept.histories(k, 1)))};
+    PairLanes<Law> pair{V(static_cast<real>(reference.branch_x)), V(static_cast<real>(reference.branch_y)),
+                        V(static_cast<real>(reference.gap)), no_history<Law>()};
+    if (k >= 0) read_history<Law>(pair.history, 0, [&](int q) { return kept.histories(k, q); });
+    at.pairs(p) = pair;
     at.actions(p) = {V(0), V(0), V(0), V(0)};
     at.branches(p) = {V(0), V(0), V(0)};
   });
   return true;
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

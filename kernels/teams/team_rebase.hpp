@@ -3,7 +3,7 @@
 
 #include "kernels/teams/team_lists.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
 /// The RVE's course ends here. Called by all threads.
 template <class Run>
@@ -76,11 +76,12 @@ template <class Run>
 KOKKOS_FUNCTION void rebase(const Run& run) {
   const auto& at = run.at;
   const int kept = pack(
-      run, run.listed(), [&](int p) { return at.pairs(p).tangential[0] != 0 || at.pairs(p).moment[0] != 0; },
+      run, run.listed(), [&](int p) { return remembers<typename Run::Law>(at.pairs(p).history, 0); },
       [&](int p, int to) {
         at.kept_key(to) = pair_key(at.first(p), at.shapes(p).other);
-        at.kept_history(to, 0) = static_cast<double>(at.pairs(p).tangential[0]);
-        at.kept_history(to, 1) = static_cast<double>(at.pairs(p).moment[0]);
+        write_history<typename Run::Law>(at.pairs(p).history, 0, [&](int k, const typename Run::real& number) {
+          at.kept_history(to, k) = static_cast<double>(number);
+        });
       });
   move_positions(run);
   each(run, run.grains, [&](int i) { at.grains(i).u_x[0] = at.grains(i).u_y[0] = 0; });
@@ -122,4 +123,4 @@ KOKKOS_FUNCTION void check_list(const Run& run, int step) {
   }
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

@@ -8,12 +8,12 @@
 #include "kernels/teams/team_batch.hpp"
 #include "kernels/teams/team_scratch.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
 template <class LawType, class DriveType, class SpaceType, class MemberType>
 struct TeamRun {
   using Law = LawType;
-  using V = decltype(Law::normal_stiffness);
+  using V = typename Law::Value;
   using real = real_of<V>;
   using Drive = DriveType;
   using Space = SpaceType;
@@ -24,7 +24,7 @@ struct TeamRun {
   int rve;
   int packing;
   int grains;
-  TeamScratch<V, Drive, Space> at;
+  TeamScratch<Law, Drive, Space> at;
 
   KOKKOS_FUNCTION TeamRun(const MemberType& team, const TeamBatch<real, Drive, Space>& all, const EngineSettings& s,
                           int hot_level)
@@ -118,4 +118,4 @@ KOKKOS_FORCEINLINE_FUNCTION int sums_before(const Run& run, int n, const Counts&
   return out;
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

@@ -8,13 +8,13 @@
 #include "kernels/contact/resting_pair.hpp"
 #include "kernels/course/rve_course.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
 /// Room of a team's list. Discs in contact have at most 3 pairs each, a skin lists more. An RVE that needs more room
 /// ends as `neighbour_overflow`.
 inline constexpr int listed_per_grain = 8;
 
-/// What all threads of a team share.
+/// The data that all threads of a team share.
 template <class V, class Drive>
 struct TeamShared {
   RveCourse<Drive> course;
@@ -22,7 +22,7 @@ struct TeamShared {
   SweepSums<V> sums;
   Homogenised<V> rest;  ///< at the end
   Mat2 cell;            ///< at the last rebase
-  ListState list;       ///< what the last look said
+  ListState list;       ///< result of the last look
 };
 
 /// A pair's current branch, kept by measuring steps.
@@ -43,8 +43,9 @@ struct PairSprings {
   V weight;  ///< 1 where the pair touches
 };
 
-template <class V, class Drive, class Space>
+template <class Law, class Drive, class Space>
 struct TeamScratch {
+  using V = typename Law::Value;
   using Memory = typename Space::scratch_memory_space;
   template <class T>
   using Array = Kokkos::View<T, Kokkos::LayoutRight, Memory, Kokkos::MemoryUnmanaged>;
@@ -52,14 +53,14 @@ struct TeamScratch {
   using Grains = Array<GrainLanes<V>*>;
   using Positions = Array<double* [2]>;
   using Counts = Array<int*>;
-  using Pairs = Array<PairLanes<V>*>;
-  using Shapes = Array<PairShape<real_of<V>>*>;
+  using Pairs = Array<PairLanes<Law>*>;
+  using Shapes = Array<PairShape<Law>*>;
   using Actions = Array<PairAction<V>*>;
   using Branches = Array<PairBranch<V>*>;
   using Forces = Array<GrainForce<V>*>;
   using Springs = Array<PairSprings<V>*>;
   using Keys = Array<std::uint32_t*>;
-  using Histories = Array<double* [2]>;
+  using Histories = Array<double**>;
 
   Shared shared;  ///< one
   Grains grains;
@@ -93,7 +94,7 @@ struct TeamScratch {
         forces(team.team_scratch(1), n),
         springs(team.team_scratch(1), capacity(n)),
         kept_key(team.team_scratch(1), capacity(n)),
-        kept_history(team.team_scratch(1), capacity(n)) {}
+        kept_history(team.team_scratch(1), capacity(n), history_size<Law>) {}
 
   static KOKKOS_FUNCTION int capacity(int n) { return listed_per_grain * n; }
 
@@ -105,8 +106,8 @@ struct TeamScratch {
     return Positions::shmem_size(n) + Counts::shmem_size(n + 1) + Counts::shmem_size(n) + Forces::shmem_size(n) +
            2 * Counts::shmem_size(pairs) + Pairs::shmem_size(pairs) + Shapes::shmem_size(pairs) +
            Actions::shmem_size(pairs) + Branches::shmem_size(pairs) + Springs::shmem_size(pairs) +
-           Keys::shmem_size(pairs) + Histories::shmem_size(pairs);
+           Keys::shmem_size(pairs) + Histories::shmem_size(pairs, history_size<Law>);
   }
 };
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

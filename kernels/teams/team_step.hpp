@@ -5,9 +5,10 @@
 /// gathers its pairs, those with smaller neighbours first. That is the order of the lanes' sweep: same bits, and no
 /// atomics.
 
+#include "kernels/contact/grain_motion.hpp"
 #include "kernels/teams/team_run.hpp"
 
-namespace voussoir::kernels {
+namespace voussoir::kernels::teams {
 
 /// Contacts and law of all pairs. Branches and overlaps are kept for `Sweep::measure` only.
 template <Sweep mode, class Run>
@@ -16,16 +17,16 @@ KOKKOS_FUNCTION void press_pairs(const Run& run) {
   const auto& at = run.at;
   const CellMotion<V>& cell = run.shared().motion;
   each(run, run.listed(), [&](int p) {
-    PairShape<typename Run::real>& shape = at.shapes(p);
-    PairLanes<V>& pair = at.pairs(p);
+    PairShape<typename Run::Law>& shape = at.shapes(p);
+    PairLanes<typename Run::Law>& pair = at.pairs(p);
     const int i = at.first(p);
     const GrainLanes<V>&gi = at.grains(i), &gj = at.grains(shape.other);
     const PairGeometry<V> now = geometry_of(pair, cell, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
     const bool touches = Kokkos::Experimental::any_of(now.gap < V(0));
-    if (!touches && shape.active == 0) return;  // what the pair did last, nothing, still stands
+    if (!touches && shape.active == 0) return;  // the pair's last action was none, and that still holds
     shape.active = touches ? 1 : 0;
-    at.actions(p) = act<typename Run::Law>(pair, shape, now, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
-                                           rim_of(V(run.shape(i).radius), gi.spin), gj.spin);
+    at.actions(p) = act(pair, shape, now, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
+                        rim_of(V(run.shape(i).radius), gi.spin), gj.spin);
     if constexpr (mode == Sweep::measure) at.branches(p) = {now.branch_x, now.branch_y, overlap_measure(now, shape)};
   });
 }
@@ -103,4 +104,4 @@ KOKKOS_FUNCTION void sum_step(const Run& run) {
   });
 }
 
-}  // namespace voussoir::kernels
+}  // namespace voussoir::kernels::teams

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "kernels/contact/contact_law.hpp"
-#include "kernels/lanes/sweep.hpp"
+#include "kernels/contact/engine_law.hpp"
+#include "kernels/contact/grain_motion.hpp"
+#include "kernels/contact/pair_forces.hpp"
+#include "kernels/contact/pair_reference.hpp"
 
 namespace {
 
@@ -20,11 +22,12 @@ constexpr double overlap = 1.0e-6;     // of neighbours at the start [m]
 constexpr double shear_step = 1.0e-6;  // F_xy per step [-]
 
 /// State of one RVE in team scratch. The list is full, (i, j) and (j, i): no thread writes to another's grain.
-template <class V, class Space>
+template <class Law, class Space>
 struct Scratch {
+  using V = typename Law::Value;
   using Memory = typename Space::scratch_memory_space;
   using Grains = Kokkos::View<GrainLanes<V>*, Memory, Kokkos::MemoryUnmanaged>;
-  using Pairs = Kokkos::View<PairLanes<V>**, Kokkos::LayoutRight, Memory, Kokkos::MemoryUnmanaged>;
+  using Pairs = Kokkos::View<PairLanes<Law>**, Kokkos::LayoutRight, Memory, Kokkos::MemoryUnmanaged>;
   Grains grains;
   Pairs pairs;
 
@@ -38,17 +41,17 @@ struct Scratch {
 template <class V, bool Rolling, class Space>
 struct ShearRow {
   using real = real_of<V>;
-  using Law = LinearContactLaw<V, Rolling>;
+  using Law = EngineLaw<V, Rolling>;
   using Policy = Kokkos::TeamPolicy<Space>;
   using Member = typename Policy::member_type;
 
-  PairShape<real> pair_shape;
+  PairShape<Law> pair_shape;
   GrainShape<real> grain_shape;
   Kokkos::View<double***, Kokkos::LayoutRight, typename Space::memory_space> result;  ///< (RVE, grain, u_x u_y
                                                                                       ///< rotation)
 
   KOKKOS_FUNCTION void operator()(const Member& team) const {
-    const Scratch<V, Space> state(team);
+    const Scratch<Law, Space> state(team);
     const auto each_grain = Kokkos::TeamThreadRange(team, n_grains);
     Kokkos::parallel_for(each_grain, [&](int i) { start(state, i, team.league_rank()); });
     team.team_barrier();
@@ -68,11 +71,12 @@ struct ShearRow {
   }
 
   /// Grains in a row along (1, 1), each RVE a little more compressed than the one before.
-  KOKKOS_FUNCTION void start(const Scratch<V, Space>& state, int i, int rve) const {
+  KOKKOS_FUNCTION void start(const Scratch<Law, Space>& state, int i, int rve) const {
     state.grains(i) = GrainLanes<V>{};
     const double distance = 2.0 * radius - overlap * (1.0 + 0.01 * rve);
     for (int j = 0; j < n_grains; ++j) {
-      PairLanes<V> pair{};
+      PairLanes<Law> pair{};
+      pair.history = no_history<Law>();
       const double branch = (j - i) * distance / Kokkos::sqrt(2.0);
       pair.branch_x = pair.branch_y = V(static_cast<real>(branch));
       pair.gap = V(static_cast<real>(2.0 * branch * branch - 4.0 * radius * radius));
@@ -80,28 +84,28 @@ struct ShearRow {
     }
   }
 
-  KOKKOS_FUNCTION void gather(const Scratch<V, Space>& state, const CellMotion<V>& cell, int i) const {
+  KOKKOS_FUNCTION void gather(const Scratch<Law, Space>& state, const CellMotion<V>& cell, int i) const {
     GrainLanes<V>& gi = state.grains(i);
     for (int j = 0; j < n_grains; ++j) {
       if (j == i) continue;
       const GrainLanes<V>& gj = state.grains(j);
-      PairLanes<V>& pair = state.pairs(i, j);
+      PairLanes<Law>& pair = state.pairs(i, j);
       const PairGeometry<V> at = geometry_of(pair, cell, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
-      const PairAction<V> action = act<Law>(pair, pair_shape, at, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
-                                            rim_of(V(grain_shape.radius), gi.spin), gj.spin);
+      const PairAction<V> action = act(pair, pair_shape, at, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
+                                       rim_of(V(grain_shape.radius), gi.spin), gj.spin);
       gi.force_x = gi.force_x + action.force_x;
       gi.force_y = gi.force_y + action.force_y;
       gi.torque = gi.torque + action.torque_i;
     }
   }
 
-  KOKKOS_FUNCTION void move(const Scratch<V, Space>& state, const CellMotion<V>& cell, int i) const {
+  KOKKOS_FUNCTION void move(const Scratch<Law, Space>& state, const CellMotion<V>& cell, int i) const {
     GrainLanes<V>& grain = state.grains(i);
     const V fx = grain.force_x, fy = grain.force_y, torque = grain.torque;
     integrate(grain, grain_shape, cell, V(real(0.3)), fx, fy, torque);
   }
 
-  KOKKOS_FUNCTION void store(const Scratch<V, Space>& state, int i, int rve) const {
+  KOKKOS_FUNCTION void store(const Scratch<Law, Space>& state, int i, int rve) const {
     result(rve, i, 0) = static_cast<double>(state.grains(i).u_x[0]);
     result(rve, i, 1) = static_cast<double>(state.grains(i).u_y[0]);
     result(rve, i, 2) = static_cast<double>(state.grains(i).rotation[0]);
@@ -112,19 +116,9 @@ template <class V, bool Rolling, class Space>
 auto shear_row() {
   using real = real_of<V>;
   const GrainMaterial sand;
-  const PairConstants k = combine(sand, radius, sand, radius);
-  PairShape<real> pair{};
-  pair.inverse_sum = real(0.5 / radius);
-  pair.minus_inverse_sum_squared = real(-0.25 / (radius * radius));
-  pair.minus_half_sum = real(-radius);
-  pair.radius_other = real(radius);
-  pair.normal_stiffness = real(k.normal_stiffness);
-  pair.tangential_stiffness = real(k.tangential_stiffness);
-  pair.rolling_stiffness = real(k.rolling_stiffness);
-  const PairCaps caps = caps_of(k, 2.0 * radius);
-  pair.tangential_cap = real(caps.tangential);
-  pair.moment_cap = real(caps.moment);
-  const double a = 0.1 / k.normal_stiffness;  // a tenth of the squared stable step
+  using Law = EngineLaw<V, Rolling>;
+  const PairShape<Law> pair = pair_shape<Law>(0, sand, radius, sand, radius);
+  const double a = 0.1 / Law::normal_stiffness_of(sand, radius, 0.0);  // a tenth of the squared stable step
   const GrainShape<real> grain{real(radius), real(a), real(2.0 * a / (radius * radius)), real(0.5 * a),
                                real(a / (radius * radius))};
 
@@ -133,7 +127,7 @@ auto shear_row() {
                         .grain_shape = grain,
                         .result = decltype(Functor::result)("voussoir::law_compile_test::result", n_rves, n_grains, 3)};
   auto policy = typename Functor::Policy(Space(), n_rves, Kokkos::AUTO);
-  policy.set_scratch_size(0, Kokkos::PerTeam(Scratch<V, Space>::bytes()));
+  policy.set_scratch_size(0, Kokkos::PerTeam(Scratch<Law, Space>::bytes()));
   Kokkos::parallel_for("voussoir::law_compile_test::shear_row", policy, functor);
   return Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), functor.result);
 }

@@ -62,7 +62,7 @@ TEST_P(Neighbours, AreThoseOfAllPairs) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Cloud cloud = random_cloud(grains, ratio, shear, seed);
     std::vector<std::uint32_t> keys;
-    find_candidates(cloud.positions, cloud.radii, cloud.cell, 0.1, keys);
+    lanes::find_candidates(cloud.positions, cloud.radii, cloud.cell, 0.1, keys);
     EXPECT_EQ(keys, all_pairs(cloud, 0.1));
     EXPECT_FALSE(keys.empty());
   }

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/contact/engine_law.hpp"
+#include "kernels/contact/pair_forces.hpp"
 #include "kernels/contact/pair_reference.hpp"
-#include "kernels/lanes/sweep.hpp"
 
 namespace voussoir::kernels {
 namespace {
@@ -23,7 +24,7 @@ struct Errors {
 template <class real>
 Errors largest_errors(double from, double to) {
   using V = SingleLane<real>;
-  const auto shape = pair_shape<real>(1, {}, r_i, {}, r_j);
+  const auto shape = pair_shape<EngineLaw<V, true>>(1, {}, r_i, {}, r_j);
   Errors worst{};
   constexpr int n = 2000;
   for (int k = 0; k <= n; ++k) {
@@ -71,7 +72,7 @@ TEST(PairDistance, FollowsTheClosedFormsInDouble) {
 
 TEST(PairDistance, ApartThereIsNoOverlap) {
   using V = SingleLane<double>;
-  const auto shape = pair_shape<double>(1, {}, r_i, {}, r_j);
+  const auto shape = pair_shape<PlainEngineLaw>(1, {}, r_i, {}, r_j);
   for (const double gap : {0.0, 1e-12, sum * sum}) {
     const PairDistance<V> d = distance_of(V(gap), shape);
     EXPECT_EQ(d.overlap[0], 0.0);

@@ -237,10 +237,10 @@ TEST_F(TeamKernel, HasTheLanesBitsAndTraceUnderAServo) {
 
 TEST(TeamScratch, GrainsOfAnRveFitTheFastMemoryOfAGpu) {
   constexpr std::size_t fast = 40 * 1024;  // what Kokkos leaves of a block's 48 KiB
-  EXPECT_LT(team_scratch_bytes(700, Precision::float32).hot, fast);
+  EXPECT_LT(teams::team_scratch_bytes(700, Precision::float32).hot, fast);
   for (const int grains : {700, 1500}) {
     for (const Precision precision : {Precision::float32, Precision::float64}) {
-      const TeamScratchBytes bytes = team_scratch_bytes(grains, precision);
+      const teams::TeamScratchBytes bytes = teams::team_scratch_bytes(grains, precision);
       std::printf("%d grains: %zu bytes fast, %zu besides\n", grains, bytes.hot, bytes.cold);
       EXPECT_LT(bytes.hot + bytes.cold, 20U << 20);  // Kokkos' limit of level 1
     }

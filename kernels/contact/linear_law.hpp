@@ -1,0 +1,174 @@
+#pragma once
+/// The linear law: normal spring, tangential spring with Coulomb cap, rolling spring with plastic cap (Iwashita and Oda
+/// 1998). Its rules are Yade's, so that the two codes can be compared grain by grain (method.md §3).
+
+#include "kernels/contact/contact_law.hpp"
+
+namespace voussoir::kernels {
+
+/// Constants of one pair in contact.
+struct PairConstants {
+  double normal_stiffness;      ///< k_n [N/m]
+  double tangential_stiffness;  ///< k_t [N/m]
+  double rolling_stiffness;     ///< k_r [N m/rad]
+  double friction;              ///< mu [-]
+  double rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
+};
+
+/// Caps of the springs per overlap over R.
+struct PairCaps {
+  double tangential;  ///< mu k_n R [N]
+  double moment;      ///< [N m]
+};
+
+[[nodiscard]] KOKKOS_INLINE_FUNCTION PairCaps caps_of(const PairConstants& k, double sum_radii) {
+  const double fn = k.normal_stiffness * sum_radii;
+  return {k.friction * fn, k.rolling_arm * fn};
+}
+
+/// Harmonic mean 2 a b / (a + b), of two springs in series; 0 if either is 0.
+KOKKOS_INLINE_FUNCTION double harmonic_mean(double a, double b) { return a + b > 0 ? 2.0 * a * b / (a + b) : 0.0; }
+
+/// Combination rules of method.md §3 for grains of radii r1, r2 [m].
+KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2, double r2) {
+  const double kt = harmonic_mean(m1.modulus * m1.stiffness_ratio * r1, m2.modulus * m2.stiffness_ratio * r2);
+  const double beta = harmonic_mean(m1.rolling_stiffness, m2.rolling_stiffness);
+  const double arm1 = m1.rolling_limit * r1;
+  const double arm2 = m2.rolling_limit * r2;
+  return {.normal_stiffness = harmonic_mean(m1.modulus * r1, m2.modulus * r2),
+          .tangential_stiffness = kt,
+          .rolling_stiffness = beta * kt * r1 * r2,
+          .friction = m1.friction < m2.friction ? m1.friction : m2.friction,
+          .rolling_arm = arm1 < arm2 ? arm1 : arm2};
+}
+
+template <class V, bool Rolling>
+struct LinearContactLaw {
+  using Value = V;
+  static constexpr bool has_rolling = Rolling;
+
+  /// Constants of one pair, in the sweep's precision.
+  struct Pair {
+    real_of<V> normal_stiffness, tangential_stiffness, rolling_stiffness;  ///< as in PairConstants
+    real_of<V> tangential_cap, moment_cap;                                 ///< as in PairCaps
+  };
+
+  /// Spring forces carried from step to step.
+  struct History {
+    V tangential;  ///< [N]
+    V moment;      ///< [N m], neither read nor written without rolling
+  };
+  static constexpr std::array<std::string_view, 2> history_names{"tangential_force", "rolling_moment"};
+
+  template <class Numbers, class Call>
+  KOKKOS_FORCEINLINE_FUNCTION static void for_each_number(Numbers& history, const Call& call) {
+    call(0, history.tangential);
+    call(1, history.moment);
+  }
+
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static Pair combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2,
+                                                           double r2) {
+    const PairConstants c = kernels::combine(m1, r1, m2, r2);
+    const PairCaps caps = caps_of(c, r1 + r2);
+    const auto rounded = [](double x) { return static_cast<real_of<V>>(x); };
+    return {.normal_stiffness = rounded(c.normal_stiffness),
+            .tangential_stiffness = rounded(c.tangential_stiffness),
+            .rolling_stiffness = rounded(c.rolling_stiffness),
+            .tangential_cap = rounded(caps.tangential),
+            .moment_cap = rounded(caps.moment)};
+  }
+
+  /// @param overlap largest, over R; these stiffnesses do not depend on it
+  [[nodiscard]] static double normal_stiffness_of(const GrainMaterial& m, double radius,
+                                                  [[maybe_unused]] double overlap) {
+    return m.modulus * radius;
+  }
+
+  /// Rows of a grain with `contacts` contacts. For displacements the contacts are those with its like, for rotations it
+  /// rolls on the packing's largest grain, which is the stiffest rotation of a small grain.
+  /// @param radius, largest_radius [m]; @param overlap largest, over R
+  [[nodiscard]] static StableRows stable_rows(const GrainMaterial& m, double radius, double largest_radius,
+                                              double contacts, double overlap) {
+    const double kn = normal_stiffness_of(m, radius, overlap);
+    const double kt = m.stiffness_ratio * kn;
+    const double kt_of_spin = m.stiffness_ratio * m.modulus * radius;  // equals kt up to rounding; both forms stay, so
+                                                                       // that results keep their bits
+    const double ratio = largest_radius / radius;
+    const double rolling = m.rolling_stiffness * 2.0 * ratio * ratio / (1.0 + ratio);  // k_r/(k_t r^2)
+    return {.translation = contacts * (kn + 2.0 * kt),
+            .rotation = contacts * (4.0 + 2.0 * rolling) * kt_of_spin * radius * radius};
+  }
+
+  V normal_stiffness, tangential_stiffness, rolling_stiffness, tangential_cap, moment_cap;  ///< Pair in all lanes
+
+  KOKKOS_FORCEINLINE_FUNCTION explicit LinearContactLaw(const Pair& pair)
+      : normal_stiffness(pair.normal_stiffness),
+        tangential_stiffness(pair.tangential_stiffness),
+        rolling_stiffness(pair.rolling_stiffness),
+        tangential_cap(pair.tangential_cap),
+        moment_cap(pair.moment_cap) {}
+
+  /// Without contact every force and the history become zero: both caps are multiples of f_n.
+  KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> operator()(const ContactMotion<V>& motion, History& history) const {
+    const V fn = secant(motion.overlap) * motion.overlap_to_branch;
+    history.tangential = clamp_to(fused(tangential_stiffness, motion.sliding, history.tangential),
+                                  tangential_cap * motion.overlap);
+    if constexpr (Rolling) {
+      history.moment = clamp_to(fused(rolling_stiffness, motion.rolling, history.moment), moment_cap * motion.overlap);
+      return {fn, history.tangential, history.moment};
+    } else {
+      return {fn, history.tangential, V(0)};
+    }
+  }
+
+  /// f_n/delta [N/m]: f_n over any length is this number times the overlap over that length.
+  KOKKOS_FORCEINLINE_FUNCTION const V& secant([[maybe_unused]] const V& overlap) const { return normal_stiffness; }
+
+  /// Derivatives of the forces by the motion at an overlap, whatever the caps.
+  KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> springs([[maybe_unused]] const V& overlap) const {
+    return {normal_stiffness, tangential_stiffness, rolling_stiffness};
+  }
+
+  /// Derivatives with the springs left out that have yielded (their force follows f_n only, which has no potential and
+  /// is neglected). @param overlap over R [-]; @param history within the caps, as operator() leaves it
+  /// @param elastic_share share of its cap below which a spring holds; above 1, every spring with a cap holds
+  KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> stiffness(const V& overlap, const History& history,
+                                                            const V& elastic_share) const {
+    const V zero(0);
+    const auto touches = zero < overlap;
+    const V pressed = larger(overlap, zero);
+    const auto sticks = Kokkos::abs(history.tangential) < elastic_share * (tangential_cap * pressed);
+    ContactStiffness<V> k{Kokkos::Experimental::condition(touches, normal_stiffness, zero),
+                          Kokkos::Experimental::condition(sticks, tangential_stiffness, zero), zero};
+    if constexpr (Rolling) {
+      const auto holds = Kokkos::abs(history.moment) < elastic_share * (moment_cap * pressed);
+      k.rolling = Kokkos::Experimental::condition(holds, rolling_stiffness, zero);
+    }
+    return k;
+  }
+
+  /// The change of the forces that operator() would give, computed without the cancellation of a difference. A contact
+  /// that does not touch stays apart.
+  /// @param overlap over R, and history, at rest, within the caps; @param closing increase of the overlap over R
+  /// @param sliding, rolling as in ContactMotion
+  KOKKOS_FORCEINLINE_FUNCTION ContactStep<V> step(const V& overlap, const History& history, const V& closing,
+                                                  const V& sliding, const V& rolling) const {
+    using Kokkos::Experimental::condition;
+    const V zero(0);
+    const auto stays = (zero < overlap) && (zero < overlap + closing);
+    const V followed = condition(stays, closing, -overlap), pressed = overlap + followed;
+    const auto where_it_stays = [&](const V& x) { return condition(stays, x, zero); };
+    ContactStep<V> out{normal_stiffness * followed,
+                       where_it_stays(normal_stiffness),
+                       limited_force(where_it_stays(tangential_stiffness), sliding, history.tangential,
+                                     tangential_cap * pressed, where_it_stays(tangential_cap)),
+                       {zero, zero, zero}};
+    if constexpr (Rolling) {
+      out.moment = limited_force(where_it_stays(rolling_stiffness), rolling, history.moment, moment_cap * pressed,
+                                 where_it_stays(moment_cap));
+    }
+    return out;
+  }
+};
+
+}  // namespace voussoir::kernels

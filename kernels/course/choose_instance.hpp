@@ -1,0 +1,45 @@
+#pragma once
+/// The choice at run time between the compiled instances of the engine: precision, number of lanes side by side, and
+/// whether grains resist rolling. The law itself is chosen in contact/engine_law.hpp. Lanes and teams both use this
+/// choice.
+
+#include "kernels/contact/engine_law.hpp"
+#include "kernels/state/rve_batch.hpp"
+
+namespace voussoir::kernels {
+
+/// A type as an argument.
+template <class Type>
+struct Instance {
+  using type = Type;
+};
+
+enum class Width {
+  one,    ///< one RVE by itself: teams
+  widest  ///< one RVE a SIMD lane, as many as the processor has
+};
+
+/// Whether most RVEs have a packing of their own: they would leave wide lanes empty and run one to a group instead.
+[[nodiscard]] inline bool mostly_alone(const RveBatch& batch) { return batch.size() < 2 * batch.packings.size(); }
+
+/// Calls body(Instance<float or double>).
+template <class Body>
+auto choose_precision(Precision precision, const Body& body) {
+  return precision == Precision::float32 ? body(Instance<float>{}) : body(Instance<double>{});
+}
+
+/// Calls body(Instance<Law>) with the law over the value type V that the batch and the precision ask for.
+template <Width width, class Body>
+auto choose_instance(const RveBatch& batch, Precision precision, const Body& body) {
+  const auto with = [&]<class V>(Instance<V>) {
+    return rolls(batch) ? body(Instance<EngineLaw<V, true>>{}) : body(Instance<EngineLaw<V, false>>{});
+  };
+  return choose_precision(precision, [&]<class real>(Instance<real>) {
+    if constexpr (width == Width::widest) {
+      if (!mostly_alone(batch)) return with(Instance<WideLane<real>>{});
+    }
+    return with(Instance<SingleLane<real>>{});
+  });
+}
+
+}  // namespace voussoir::kernels
