@@ -192,7 +192,7 @@ def path_scatter(curves):
 
 def noise_share(ours, at_rest):
     """Error of a stress component that an early end of the hold leaves, over unbalanced ratio x pressure: what the pool of RVEs
-    assumes when it tells Newton how noisy its stresses are (host/material/answers.cpp). `at_rest`: the same evaluations held longer."""
+    assumes when it tells Newton how noisy its stresses are (host/rve_pool.cpp). `at_rest`: the same evaluations held longer."""
     off, expected = [], []
     for key, (stress, _, _, unbalanced, *_) in ours.items():
         if key in at_rest:
