@@ -158,10 +158,6 @@ double Table::quantity(std::string_view key, Dimension dimension, const Quantity
   return read_quantity(take(key, rule.fallback.has_value()), dimension, rule, rule.fallback);
 }
 
-double Table::number(std::string_view key, const QuantityRule& rule) const {
-  return quantity(key, Dimension::none, rule);
-}
-
 std::int64_t Table::integer(std::string_view key, const IntegerRule& rule) const {
   return read_integer(take(key, rule.fallback.has_value()), rule, rule.fallback);
 }
@@ -256,7 +252,5 @@ CaseFile CaseFile::load(const std::filesystem::path& path, const std::vector<std
 }
 
 Table CaseFile::root() const { return {state_, state_->root}; }
-
-const std::filesystem::path& CaseFile::path() const { return state_->path; }
 
 }  // namespace voussoir::io

@@ -47,8 +47,6 @@ class Table {
 
   /// The SI value of a text such as "5 mm"; Dimension::none takes plain numbers and "%".
   [[nodiscard]] double quantity(std::string_view key, Dimension dimension, const QuantityRule& rule = {}) const;
-  /// Dimensionless quantity.
-  [[nodiscard]] double number(std::string_view key, const QuantityRule& rule = {}) const;
   [[nodiscard]] std::int64_t integer(std::string_view key, const IntegerRule& rule = {}) const;
   [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = {}) const;
   [[nodiscard]] std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
@@ -95,7 +93,6 @@ class CaseFile {
   [[nodiscard]] static CaseFile load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 
   [[nodiscard]] Table root() const;
-  [[nodiscard]] const std::filesystem::path& path() const;
 
   /// Throws InputError for the first key that nobody has read, with the nearest known name as a hint.
   void finish() const;

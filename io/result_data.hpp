@@ -30,11 +30,13 @@ struct Provenance {
   std::string fingerprint = {};  ///< of the resolved case
   std::string version = "unknown";
   std::string git_hash = "unknown";
-  std::string kokkos = "unknown";   ///< Kokkos version, backends, instruction set
-  std::string command = "unknown";  ///< command line
-  std::string date = "unknown";     ///< start of the run, ISO 8601, UTC
-  int threads = 1;                  ///< of the first rank
-  int ranks = 1;                    ///< processes
+  std::string build_compiler = "unknown";  ///< name and version
+  std::string build_type = "unknown";      ///< CMake's, such as "Release"
+  std::string kokkos = "unknown";          ///< Kokkos version, backends, instruction set
+  std::string command = "unknown";         ///< command line
+  std::string date = "unknown";            ///< start of the run, ISO 8601, UTC
+  int threads = 1;                         ///< of the first rank
+  int ranks = 1;                           ///< processes
 };
 
 enum class FieldLocation {

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* format_name = "voussoir run";
 namespace fs = std::filesystem;
 
-/// Calls visit(name, member) for the texts of a provenance: the one list of its attributes.
+/// Calls visit(name, member) for the texts that every provenance has. With the texts below these are its attributes.
 template <class Source, class Visit>
 void for_each_text(Source& source, Visit&& visit) {
   visit("case_kind", source.case_kind);
@@ -31,13 +31,21 @@ void for_each_text(Source& source, Visit&& visit) {
   visit("date", source.date);
 }
 
+/// The same for texts that files of the first versions lack.
+template <class Source, class Visit>
+void for_each_later_text(Source& source, Visit&& visit) {
+  visit("build_compiler", source.build_compiler);
+  visit("build_type", source.build_type);
+}
+
 void write_provenance(Hdf5File& file, const Provenance& provenance) {
   file.set_attribute("/", "format", std::string(format_name));
   file.set_attribute("/", "format_version", std::int64_t{1});
   file.write_text("/input", provenance.input);
   file.make_group("/provenance");
-  for_each_text(provenance,
-                [&](const char* name, const std::string& value) { file.set_attribute("/provenance", name, value); });
+  const auto write = [&](const char* name, const std::string& text) { file.set_attribute("/provenance", name, text); };
+  for_each_text(provenance, write);
+  for_each_later_text(provenance, write);
   file.set_attribute("/provenance", "threads", std::int64_t{provenance.threads});
   file.set_attribute("/provenance", "ranks", std::int64_t{provenance.ranks});
 }
@@ -228,11 +236,15 @@ Provenance read_provenance(const std::filesystem::path& run_file) {
   }
   Provenance provenance;
   provenance.input = file.read_text("/input");
-  for_each_text(provenance,
-                [&](const char* name, std::string& value) { value = file.text_attribute("/provenance", name); });
-  provenance.threads = static_cast<int>(file.integer_attribute("/provenance", "threads"));
+  const auto read = [&](const char* name, std::string& text) { text = file.text_attribute("/provenance", name); };
+  for_each_text(provenance, read);
   const std::vector<std::string> names = file.attributes("/provenance");
-  if (std::find(names.begin(), names.end(), "ranks") != names.end()) {  // absent in files of the first versions
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  for_each_later_text(provenance, [&](const char* name, std::string& text) {
+    if (has(name)) read(name, text);
+  });
+  provenance.threads = static_cast<int>(file.integer_attribute("/provenance", "threads"));
+  if (has("ranks")) {  // as the texts above
     provenance.ranks = static_cast<int>(file.integer_attribute("/provenance", "ranks"));
   }
   return provenance;

@@ -20,23 +20,6 @@ constexpr std::array table{
     Unit{"cm", Dimension::length, 1e-2},
     Unit{"mm", Dimension::length, 1e-3},
     Unit{"km", Dimension::length, 1e3},
-    Unit{"m2", Dimension::area, 1},
-    Unit{"cm2", Dimension::area, 1e-4},
-    Unit{"mm2", Dimension::area, 1e-6},
-    Unit{"s", Dimension::time, 1},
-    Unit{"ms", Dimension::time, 1e-3},
-    Unit{"us", Dimension::time, 1e-6},
-    Unit{"min", Dimension::time, 60},
-    Unit{"h", Dimension::time, 3600},
-    Unit{"1/s", Dimension::rate, 1},
-    Unit{"%/s", Dimension::rate, 1e-2},
-    Unit{"%/min", Dimension::rate, 1e-2 / 60},
-    Unit{"m/s", Dimension::velocity, 1},
-    Unit{"mm/s", Dimension::velocity, 1e-3},
-    Unit{"m/s2", Dimension::acceleration, 1},
-    Unit{"N", Dimension::force, 1},
-    Unit{"kN", Dimension::force, 1e3},
-    Unit{"MN", Dimension::force, 1e6},
     Unit{"Pa", Dimension::pressure, 1},
     Unit{"kPa", Dimension::pressure, 1e3},
     Unit{"MPa", Dimension::pressure, 1e6},
@@ -92,18 +75,6 @@ std::string_view dimension_name(Dimension dimension) {
       return "dimensionless number";
     case Dimension::length:
       return "length";
-    case Dimension::area:
-      return "area";
-    case Dimension::time:
-      return "time";
-    case Dimension::rate:
-      return "rate";
-    case Dimension::velocity:
-      return "velocity";
-    case Dimension::acceleration:
-      return "acceleration";
-    case Dimension::force:
-      return "force";
     case Dimension::pressure:
       return "pressure";
     case Dimension::unit_weight:

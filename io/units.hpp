@@ -9,18 +9,12 @@
 namespace voussoir::io {
 
 enum class Dimension {
-  none,          ///< dimensionless: a plain number, or "%"
-  length,        ///< [m]
-  area,          ///< [m2]
-  time,          ///< [s]
-  rate,          ///< strain rate [1/s]
-  velocity,      ///< [m/s]
-  acceleration,  ///< [m/s2]
-  force,         ///< [N]
-  pressure,      ///< stress, modulus [Pa]
-  unit_weight,   ///< [N/m3]
-  density,       ///< [kg/m3]
-  angle          ///< [rad]
+  none,         ///< dimensionless: a plain number, or "%"
+  length,       ///< [m]
+  pressure,     ///< stress, modulus [Pa]
+  unit_weight,  ///< [N/m3]
+  density,      ///< [kg/m3]
+  angle         ///< [rad]
 };
 
 /// One unit a user may write; value in SI = value as written * factor.

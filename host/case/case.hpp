@@ -1,6 +1,6 @@
 #pragma once
-/// A case: everything a run is told, typed, validated and in SI. The case file (io/case_file.hpp) knows text, keys and
-/// units; this header knows what they mean. Every member's default is the default of its key.
+/// A case: all input of a run, typed, validated and in SI. The case file (io/case_file.hpp) knows text, keys and units;
+/// this header says what the values mean. Every member's default is the default of its key.
 
 #include <array>
 #include <cstddef>
@@ -21,7 +21,8 @@ enum class CaseKind { pack, probe, biaxial, biaxial_bvp, calibrate, column, tunn
 enum class MaterialKind { grains, linear_elastic };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
 
-/// [[soil.class]] Grains up to a size, made of one stuff (Table 1). Keys that are not given are those of [soil].
+/// [[soil.class]] Grains up to a size, which share one material (Table 1). A key that is not given has the value of
+/// [soil].
 struct GrainClassCase {
   double size_to = 0;  ///< largest diameter of the class [m]
   double modulus = 0, stiffness_ratio = 0, friction = 0, rolling_stiffness = 0, rolling_limit = 0;  ///< as in SoilCase
@@ -114,8 +115,8 @@ struct VolumeLossCase {
   LossGeometry geometry = LossGeometry::updated_lagrangian;
 };
 
-/// The key `tangent`: of the tangents that the engine knows the one that it shall find, or none by name ("auto"), which
-/// leaves the choice to the engine (tangent_kind in engine.hpp).
+/// The key `tangent`: the tangent that the engine shall find. "auto" is no value here and leaves the choice to
+/// tangent_kind (engine.hpp).
 using TangentChoice = std::optional<kernels::TangentKind>;
 
 /// [newton] What "converged" means (design.md, The continuum), and how it is reached.
@@ -162,8 +163,8 @@ struct PathSegment {
 struct ProbeCase {
   double pressure = 1.0e5;  ///< isotropic pressure of the packing [Pa]
   double strain = 1.0e-4;   ///< size of each probe [-]
-  int replicas = 1;  ///< copies of path and probes whose gradients differ by 1e-6 of their size: what chaos makes of
-                     ///< them
+  int replicas = 1;  ///< copies of path and probes whose gradients differ by 1e-6 of their size; the scatter of their
+                     ///< answers is that of chaos
   TangentChoice tangent = kernels::TangentKind::contact;  ///< that is reported; kernels/README.md, "Static tangent"; a
                                                           ///< loading one of `strain`
   std::vector<PathSegment> path;
@@ -191,7 +192,7 @@ struct BiaxialBvpCase {
   [[nodiscard]] int increments() const { return static_cast<int>(strain / strain_step + 0.5); }
 };
 
-/// A target of a calibration: its value and the difference from it that counts as one [rad, or -].
+/// A target of a calibration: its value, and the difference from it that adds 1 to the misfit [rad, or -].
 struct CalibrationTarget {
   double value = 0, tolerance = 0;
 };
@@ -210,7 +211,7 @@ struct CalibrateCase {
   double peak_strain_minimum = 0.02;  ///< axial strain at the peak, mean of the pressures: within these limits [-]
   double peak_strain_maximum = 0.05;
   double peak_strain_tolerance = 0.01;  ///< [-]
-  int confirm_grains = 700;             ///< the tests of the optimum and of [soil] as it stands
+  int confirm_grains = 700;             ///< of the packings on which the optimum and [soil] as given are tested
   std::vector<std::int64_t> confirm_seeds = {1, 2, 3};
   double confirm_inertial_number = 1.0e-4;  ///< [-]
 };
@@ -235,7 +236,8 @@ struct Case {
 
   std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
   std::string resolved;     ///< TOML of every value after defaults and overrides
-  std::string fingerprint;  ///< of everything that decides the numbers; in SI to 12 digits, however it was written
+  std::string fingerprint;  ///< of all values that decide the results, in SI to 12 digits: other units give the same
+                            ///< one
 };
 
 /// Kinds that advance in load increments on a mesh: with checkpoints, and interrupted between two of them.

@@ -132,9 +132,11 @@ void print_sensitivity(const Optimum& optimum, const SearchBox& box) {
     std::printf("  %s doubled: phi_p %+.1f  phi_cs %+.1f  psi_max %+.1f deg  peak strain %+.1f %%\n",
                 parameter_names[box.parameter(d)], s[0] / degree, s[1] / degree, s[2] / degree, s[3] * 100);
   }
-  std::printf("  the surface leaves %.1f, %.1f, %.1f deg and %.1f %% of the sets near it\n",
-              optimum.scatter[0] / degree, optimum.scatter[1] / degree, optimum.scatter[2] / degree,
-              optimum.scatter[3] * 100);
+  std::printf(
+      "  the sets near the optimum differ from the response surface by %.1f deg in phi_p, %.1f deg in phi_cs, %.1f deg "
+      "in "
+      "psi_max and %.1f %% in the peak strain (root mean square)\n",
+      optimum.scatter[0] / degree, optimum.scatter[1] / degree, optimum.scatter[2] / degree, optimum.scatter[3] * 100);
 }
 
 std::vector<io::TableColumn> sensitivity_table(const Optimum& optimum) {

@@ -15,25 +15,25 @@ namespace voussoir::host {
 /// The tests of one parameter set: every seed at every pressure.
 struct SetTests {
   ParameterSet set{};
-  int tests = 0, valid = 0;              ///< run, and held as they should (biaxial.hpp)
+  int tests = 0, valid = 0;              ///< tests that ran, and those of them that held (strength.hpp)
   std::size_t seeds = 0;                 ///< packings at each pressure
-  std::vector<std::int64_t> held_seeds;  ///< those all of whose tests held; the others are left out whole
+  std::vector<std::int64_t> held_seeds;  ///< seeds all of whose tests held; the tests of other seeds are left out
   Observation mean{};  ///< over the held seeds; of each: common angles of the pressures, mean dilatancy and peak strain
   Observation deviation{};          ///< standard deviation over them; 0 with fewer than two
   std::vector<double> contraction;  ///< largest eps_v, mean over them, by pressure [-]
   std::vector<BiaxialCurve> curves;
   std::vector<Strength> strengths;  ///< of each curve
-  std::string fault;                ///< why there are no tests; empty: there are
+  std::string fault;                ///< why the set has no tests; empty if it has some
 
-  /// Two thirds of the seeds at least held. In wide gradings a single small grain crushed between large ones ends a
-  /// test
-  /// (`overlap_limit`), mostly past the peak; to refuse the set for it would leave few.
+  /// At least two thirds of the seeds held. In wide gradings a single small grain that is crushed between large ones
+  /// ends a test (`overlap_limit`), mostly past the peak; few sets would be left if one lost test refused its set.
   [[nodiscard]] bool usable() const { return !held_seeds.empty() && 3 * held_seeds.size() >= 2 * seeds; }
   /// The largest contraction grows with the pressure.
   [[nodiscard]] bool contraction_grows() const;
 };
 
-/// What a set's tests (curves and strengths, in any order) show: held seeds, and means where they are enough.
+/// Fills in the held seeds of a set from its tests (curves and strengths, in any order), and the means if enough seeds
+/// held.
 void summarise(SetTests& tests, const std::vector<std::int64_t>& seeds, const std::vector<double>& pressures);
 
 /// What all sets have in common.

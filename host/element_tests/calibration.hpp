@@ -1,6 +1,6 @@
 #pragma once
-/// The search behind `kind = "calibrate"`: a grid of parameters, a quadratic response surface through what was measured
-/// there, and where to measure next. No grains here: what is measured comes from calibrate_tests.hpp.
+/// The search behind `kind = "calibrate"`: a grid of parameters, a quadratic response surface through the measurements
+/// on it, and the places to measure next. No grains are in here: the measurements come from calibrate_tests.hpp.
 
 #include <array>
 #include <cstddef>
@@ -17,7 +17,7 @@ struct Parameter {
 };
 using ParameterSet = std::array<double, Parameter::count>;  ///< beta [-], eta [-], t [m]
 
-/// What Table 2 is compared with.
+/// Quantities of the tests that are compared with Table 2.
 struct Observable {
   enum Index : std::size_t { peak_angle, critical_angle, dilatancy_angle, peak_strain, count };
 };
@@ -65,7 +65,7 @@ class ResponseSurface {
   ResponseSurface(const SearchBox& box, std::span<const Measured> points, std::span<const double> center, double range);
 
   [[nodiscard]] Observation at(std::span<const double> place) const;
-  /// Root mean square (weighted) of what the surface leaves.
+  /// Weighted root mean square of the difference between measurements and surface.
   [[nodiscard]] const Observation& scatter() const { return scatter_; }
 
  private:
@@ -73,7 +73,7 @@ class ResponseSurface {
   Observation scatter_{};
 };
 
-/// The optimum of all that was measured, as the surface sees it after `round` refinements.
+/// The optimum of the surface through all measurements after `round` refinements.
 struct Optimum {
   ParameterSet set{};
   Observation scatter{};
@@ -83,8 +83,8 @@ struct Optimum {
 [[nodiscard]] Optimum find_optimum(const SearchBox& box, std::span<const Measured> points, const CalibrateCase& targets,
                                    int round);
 
-/// What the next round measures: the optimum and one step to either side along each dimension, the step halved each
-/// round.
+/// The sets that the next round measures: the optimum, and one step to either side along each dimension. Each round
+/// halves the step.
 [[nodiscard]] std::vector<ParameterSet> around(const SearchBox& box, const ParameterSet& center, int round);
 
 /// The soil with another parameter set.

@@ -105,8 +105,10 @@ std::string take_path(const ProbeCase& probe, const EngineCase& engine, PackedRv
   });
   if (end.missed > 0) {
     const std::string said = fmt::format(
-        "seed {}: sigma_xx is missed by up to {:.2g} % after {} of the path's increments; take smaller ones", rve.seed,
-        end.largest_miss * 100, end.missed);
+        "seed {}: {} increments of the path did not hold sigma_xx, which was off by up to {:.2g} % of its value; "
+        "smaller "
+        "increments hold it better",
+        rve.seed, end.missed, end.largest_miss * 100);
     std::fprintf(stderr, "probe: %s\n", said.c_str());
   }
   if (!end.usable) return fmt::format("seed {}, {}", rve.seed, end.message);

@@ -1,5 +1,5 @@
 #pragma once
-/// Increments put on RVEs one after another, as the mesh would put them: a material driven alone.
+/// Drives RVEs without a mesh: increments follow one another as the mesh would put them on a point.
 
 #include <functional>
 #include <span>
@@ -25,14 +25,15 @@ struct PathPoint {
 struct PathEnd {
   bool usable = true;
   std::string message;      ///< what failed and when; empty when usable
-  int missed = 0;           ///< increments that end beyond `lateral_tolerance`: `most_evaluations` did not do
+  int missed = 0;           ///< increments that end beyond `lateral_tolerance` after `most_evaluations`
   double largest_miss = 0;  ///< of all RVEs and held increments, |sigma_xx - wanted| over the wanted one [-]
 };
 
-/// Walks all RVEs of `pool` along the segments, each increment by `evaluate` and `commit`. Where a segment holds
-/// sigma_xx, the gradient's xx is found for it (at most `most_evaluations` evaluations an increment, to
-/// `lateral_tolerance`); what is missed of it is counted, and asked for again by the next increment.
-/// @param scale by RVE: factor on its gradients; replicas differ by a little there
+/// Takes all RVEs of `pool` along the segments, each increment by `evaluate` and `commit`. Where a segment holds
+/// sigma_xx, each increment searches the gradient's xx at which sigma_xx has its value, to `lateral_tolerance` and with
+/// at most `most_evaluations` evaluations. An increment that misses the value is counted; the next one aims at the same
+/// value again.
+/// @param scale a factor on the gradients of each RVE; replicas have slightly different factors
 /// @param note called for each RVE after each increment
 [[nodiscard]] PathEnd walk_path(RvePool& pool, std::span<const PathSegment> segments, std::span<const double> scale,
                                 const std::function<void(const PathPoint&)>& note);

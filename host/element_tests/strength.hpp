@@ -1,5 +1,5 @@
 #pragma once
-/// What soil mechanics reads from the curves of drained biaxial tests (method.md §3).
+/// Strength and dilatancy from the curves of drained biaxial tests (method.md §3).
 
 #include <span>
 
@@ -25,11 +25,11 @@ struct Strength {
 /// p [Pa] where a test under `pressure` [Pa] on x mobilises `angle` [rad].
 [[nodiscard]] double mean_stress_at(double pressure, double angle);
 
-/// The test ended as it should and sigma_xx was held, its scatter below a tenth.
+/// True if the test reached its end and sigma_xx was held with a scatter below a tenth.
 [[nodiscard]] bool held(const BiaxialCurve& curve, const Strength& strength);
 
-/// Friction angle of several tests: sin phi is the slope of q against p through the origin, from the angle of each test
-/// and its p there.
+/// Friction angle of several tests: sin phi is the slope of a line q against p through the origin, fitted to each
+/// test's angle and the p [Pa] at which the test had that angle.
 [[nodiscard]] double common_angle(std::span<const double> angles, std::span<const double> p);
 
 }  // namespace voussoir::host

@@ -1,5 +1,5 @@
 #pragma once
-/// How large a case is, and what it will cost.
+/// The size of a case and its cost, estimated before it is run.
 
 #include <cstddef>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a user is told of a case's size before it is run.
+/// The estimates as text for the user, before a case is run.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace voussoir::host {
 
-/// Throws io::InputError where output.rves names a point that the mesh has not.
+/// Throws io::InputError where output.rves names a point that the mesh does not have.
 void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& case_name);
 
 /// Lines for `check`: points, increments, work, memory and disk.

@@ -1,5 +1,6 @@
 #pragma once
-/// The engine's reports as fem sees them: the same sums in the same order, wherever the RVEs were run.
+/// The engine's reports as fem takes them. The sums run in the same order on whichever ranks the RVEs ran, so that the
+/// bits are the same.
 
 #include <span>
 
@@ -10,17 +11,19 @@ namespace voussoir::host {
 
 [[nodiscard]] fem::Stress stress_of(const kernels::RveReport& report);
 
-/// The symmetric tangent [Pa], which is the one that fem is given.
+/// The symmetric tangent [Pa]; fem is given this one.
 [[nodiscard]] fem::Tangent tangent_of(const kernels::RveReport& r);
 
-/// With its antisymmetric part, which loading tangents have: rows by stress, columns by strain [Pa].
+/// The tangent with its antisymmetric part, which only loading tangents have: rows by stress, columns by strain [Pa].
 [[nodiscard]] fem::Tangent whole_tangent_of(const kernels::RveReport& r);
 
-/// Stresses [Pa] and tangents [Pa] of the reports; all spans have the same length, or `tangent` none.
+/// Copies stresses [Pa] and tangents [Pa] of the reports. The spans have one entry a report; an empty `tangent` is left
+/// as it is.
 void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
                   std::span<fem::Tangent> tangent);
 
-/// What a whole evaluation says of itself, but for its work. @param pressure_floor of the engine's ratios [Pa]
+/// The report of a whole evaluation from those of its RVEs; `work` and `deferral_error` are the caller's to fill in.
+/// @param pressure_floor the engine's unbalanced ratios are relative to at least this pressure [Pa]
 [[nodiscard]] fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor);
 
 }  // namespace voussoir::host

@@ -1,20 +1,22 @@
 #pragma once
-/// RVEs whose stress hardly changes answer by the tangent of their grains' last run instead of by their grains
+/// An RVE whose stress hardly changes is deferred: the tangent of its grains' last run answers in place of the grains
 /// (`engine.defer`).
 ///
-/// F = R U is the deformation gradient since that run, sigma_g and D its stress and tangent (eq. (4) where the
-/// mesh asked for none), e = log U. The answer is
-/// R (sigma_g + D : e) R^T, as long as max(|D : e|, (D_xxxx + D_yyyy)/2 |e|) <= bound x trust x p_g and no more than
-/// `most_commits` commits in a row; else the grains run with the whole of F. Only an RVE whose grains came to rest
-/// under pressure is deferred. Once it runs within an increment it runs to the increment's end, so that the residual
-/// does not jump to and fro between iterates.
+/// Let F = R U be the deformation gradient since that run, e = log U, and let sigma_g, p_g and D be the stress, the
+/// pressure and the tangent that the run found (the tangent of eq. (4) where the mesh asked for none). The deferred RVE
+/// answers R (sigma_g + D : e) R^T. It may do so as long as
+///     max(|D : e|, (D_xxxx + D_yyyy)/2 |e|) <= bound x trust x p_g
+/// and for at most `most_commits` commits in a row. Otherwise its grains run, with the whole of F. An RVE is deferred
+/// only if its grains came to rest under pressure. Once its grains run within an increment they run in every later
+/// evaluation of that increment, so that the residual does not jump to and fro between iterates.
 ///
-/// This bounds what is deferred, not by how much the answer is off: grains that are about to collapse do not show it in
-/// their tangent, and their stress stays that before the collapse until they run. So every deferral ends in a check:
-/// the grains' answer against what the tangent makes of the same F. Their difference over p_g is the error, where the
-/// tangent might still have answered; beyond, the increment's own share of the difference is left out, in proportion of
-/// the stress' change. Where the error exceeds the bound the RVE's trust falls below 1, and doubles with every check
-/// passed.
+/// The bound limits the change of stress that is deferred. It does not limit the error of the answer: the tangent does
+/// not show that grains are about to collapse, and the RVE keeps its stress from before the collapse until its grains
+/// run. Each deferral therefore ends in a check: when the grains have run, their stress is compared with the stress
+/// that the tangent gives for the same F. The error is the difference over p_g if the tangent might still have
+/// answered. Beyond the bound, the part of the difference that belongs to the increment itself is left out, in
+/// proportion to the change of stress. Where the error exceeds the bound, the trust in this RVE falls below 1; each
+/// check that it passes doubles the trust again.
 
 #include <cstddef>
 #include <span>
@@ -25,11 +27,11 @@
 
 namespace voussoir::host {
 
-/// What the grains' last run makes of a deformation gradient.
+/// The answer to a deformation gradient that follows from the grains' last run.
 struct Extrapolation {
   fem::Stress stress;    ///< [Pa]
   fem::Tangent tangent;  ///< turned with the RVE [Pa]
-  double change = 0;     ///< of the stress, as bounded above [Pa]
+  double change = 0;     ///< of the stress: the maximum above, which the bound limits [Pa]
 };
 
 /// @param gradient F - I since the run that `grains` reports
@@ -37,45 +39,45 @@ struct Extrapolation {
 
 class Deferral {
  public:
-  /// In a row. Costs a sixteenth of the savings at the most, and shows a wrong answer two or three load increments
-  /// later.
+  /// The most commits in a row without a run of the grains. The limit costs a sixteenth of the savings at the most, and
+  /// it shows a wrong answer two or three load increments later.
   static constexpr int most_commits = 16;
 
-  /// @param bound share of an RVE's pressure, 0: no RVE is deferred and nothing is stored; @param pressure_floor below
-  /// which none is deferred [Pa]
+  /// @param bound share of an RVE's pressure; with 0 no RVE is deferred and nothing is stored
+  /// @param pressure_floor an RVE of less pressure is not deferred [Pa]
   Deferral(double bound, double pressure_floor) : bound_(bound), pressure_floor_(pressure_floor) {}
 
   [[nodiscard]] bool on() const { return bound_ > 0; }
   [[nodiscard]] double bound() const { return bound_; }
 
-  /// What of an RVE outlives an increment.
+  /// The part of an RVE's record that outlives an increment.
   struct Committed {
-    fem::Gradient gradient = fem::Gradient::Zero();  ///< F - I since the grains ran; what the grains have yet to be
-                                                     ///< given
+    fem::Gradient gradient = fem::Gradient::Zero();  ///< F - I since the grains ran, which they have not followed yet
     kernels::RveReport grains;                       ///< of that run
     double trust = 1;                                ///< share of the bound that this RVE is granted
     int commits = 0;                                 ///< since the grains ran
   };
 
-  /// All grains have just run, with these answers.
+  /// Begins with RVEs whose grains have all just run and gave these reports.
   void start(std::span<const kernels::RveReport> grains);
   void begin_increment();
 
-  /// F - I that the grains would be given for this increment's `h`.
+  /// F - I since the grains' last run, if this increment's displacement gradient is `h`.
   [[nodiscard]] fem::Gradient whole(std::size_t rve, const fem::Gradient& h) const;
 
-  /// Answers for the grains, with 0 steps, if it may; false: they have to run with `whole`.
+  /// Writes a report of 0 steps in place of the grains' and returns true if the RVE may be deferred. Otherwise returns
+  /// false: its grains have to run with `whole`.
   bool answer(std::size_t rve, const fem::Gradient& h, kernels::RveReport& report);
 
   [[nodiscard]] bool runs(std::size_t rve) const { return trial_[rve].runs; }
 
-  /// The grains ran and answered `report`; nothing was deferred before: no error.
+  /// Takes the error from the grains' `report`, now that they have run. There is none if nothing was deferred before.
   void check(std::size_t rve, const fem::Gradient& h, const kernels::RveReport& report);
 
-  /// Takes the increment over. True: the grains did not run, their state is still the committed one.
+  /// Commits the increment. Returns true if the grains did not run: their committed state is to stay as it is.
   bool commit(std::size_t rve, const fem::Gradient& h, const kernels::RveReport& report);
 
-  /// Largest error over pressure that the grains' runs of the last evaluation have shown [-]
+  /// The largest error over pressure that the runs of the last evaluation have shown [-].
   [[nodiscard]] double error() const;
 
   [[nodiscard]] Committed& committed(std::size_t rve) { return rves_[rve]; }

@@ -27,7 +27,7 @@ class MirroredBatch final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<fem::PointField> fields() const override;
   [[nodiscard]] std::vector<std::byte> state() const override { return batch_->state(); }
   void set_state(std::span<const std::byte> bytes) override { batch_->set_state(bytes); }
-  /// Empty where the batch behind has no grains.
+  /// Empty where the mirrored batch has no grains.
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-/// One RVE per Gauss point behind fem's one door: chooses step counts, runs the engine, answers with stress and
-/// tangent.
+/// One RVE at each Gauss point, as a fem::MaterialBatch: the pool chooses step counts, runs the engine and answers with
+/// stress and tangent.
 
 #include "fem/material_batch.hpp"
 #include "host/case/case.hpp"
@@ -12,14 +12,13 @@
 
 namespace voussoir::host {
 
-/// What a pool is told besides its packing and its size.
+/// Settings of a pool; its packing and its size are given besides.
 struct PoolOptions {
   EngineCase engine;
   kernels::TangentKind tangent = kernels::TangentKind::contact;
   double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< of a static one [-]
   double tangent_strain = 1.0e-6;                                          ///< of a loading tangent [-]
-  kernels::MicrostructureRequest microstructure = {};  ///< what fields() shall hold besides; computed there, at each
-                                                       ///< call
+  kernels::MicrostructureRequest microstructure = {};  ///< adds fields to fields(), which computes them at each call
 };
 
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
@@ -39,11 +38,12 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
   [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
-  [[nodiscard]] PackedRve packed(std::size_t rve) const;  ///< where its grains last ran, for another pool to start from
+  [[nodiscard]] PackedRve packed(std::size_t rve) const;  ///< its grains as their last run left them; another pool may
+                                                          ///< start from there
 
-  /// For a pool that is one rank's part of a larger one: the engine's own reports, and states one by one.
-  /// `advance` is `evaluate`; what the RVEs answered is in trial_reports(), eq. (4) instead of a dearer tangent where
-  /// none is wanted.
+  /// The rest is for a pool that is one rank's part of a larger pool, which needs the engine's own reports and the
+  /// states one by one. `advance` evaluates as `evaluate` does and leaves the answers in trial_reports(); without
+  /// `with_tangents` their tangents are those of eq. (4), which cost nothing.
   kernels::Work advance(std::span<const fem::Gradient> gradients, bool with_tangents);
   [[nodiscard]] const std::vector<kernels::RveReport>& trial_reports() const { return trial_reports_; }
   [[nodiscard]] const std::vector<kernels::RveReport>& committed_reports() const { return committed_reports_; }

@@ -1,6 +1,6 @@
 #pragma once
-/// A material whose points can be drawn grain by grain. A batch implements it beside fem::MaterialBatch where it has
-/// grains.
+/// A material whose points can be drawn grain by grain. A batch that has grains implements this interface besides
+/// fem::MaterialBatch.
 
 #include <cstdint>
 #include <span>

@@ -9,7 +9,8 @@
 
 namespace voussoir::host {
 
-/// Uniform in [0, 1): the standard's distributions differ between libraries, the engine's bits do not.
+/// Random numbers, uniform in [0, 1). The distributions of the standard library differ between implementations; the
+/// bits of its engine do not, so they are used directly.
 class Uniform {
  public:
   explicit Uniform(std::int64_t seed) : engine_(static_cast<std::uint64_t>(seed)) {}

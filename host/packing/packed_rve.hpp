@@ -1,5 +1,5 @@
 #pragma once
-/// A packing with the state of its one RVE, and its way into a batch and out.
+/// A packing with the state of its one RVE, and how the state enters a batch and leaves it.
 
 #include <cstdint>
 #include <limits>
@@ -33,13 +33,14 @@ struct PackedRve {
 [[nodiscard]] std::vector<kernels::GrainMaterial> grain_materials(const SoilCase& soil);
 [[nodiscard]] std::vector<std::uint8_t> classes_of(const SoilCase& soil, std::span<const double> radii);
 
-/// What a packing of these radii [m] is made of.
+/// The packing of grains of these radii [m], made of this soil.
 [[nodiscard]] kernels::Packing packing_of(const SoilCase& soil, std::vector<double> radii, double thickness);
 
 /// A batch of one RVE per packing, each in its packing's state.
 [[nodiscard]] kernels::RveBatch batch_of(std::span<const PackedRve> rves);
 
-/// The RVE's state into a batch's committed states (throws std::invalid_argument if it has too many contacts), and out.
+/// Copies the state into a batch's committed states, and from there. store_rve throws std::invalid_argument if the RVE
+/// has more contacts than the batch has room for.
 void store_rve(const PackedRve& from, kernels::RveBatch& batch, std::size_t rve);
 void load_rve(const kernels::RveStates& from, std::size_t rve, PackedRve& to);
 

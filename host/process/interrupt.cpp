@@ -9,7 +9,7 @@ volatile std::sig_atomic_t stop_requested = 0;
 
 extern "C" void voussoir_on_signal(int signal) {
   stop_requested = 1;
-  std::signal(signal, SIG_DFL);  // whoever insists is obeyed
+  std::signal(signal, SIG_DFL);  // a second signal has its usual effect: it ends the process
 }
 
 }  // namespace

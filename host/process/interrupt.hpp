@@ -4,7 +4,7 @@
 
 namespace voussoir::host {
 
-/// From now on they set the flag instead of ending the process; a second one ends it at once.
+/// From now on these signals set a flag instead of ending the process. A second signal ends the process at once.
 void catch_interrupts();
 
 /// True once a signal has arrived.

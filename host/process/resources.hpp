@@ -1,5 +1,5 @@
 #pragma once
-/// What this process takes from its machine.
+/// Resources that this process takes from its machine.
 
 namespace voussoir::host {
 

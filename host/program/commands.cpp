@@ -61,9 +61,11 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
 int command_info(const std::filesystem::path& result_file) {
   try {  // a file that cannot be read is wrong input here
     const io::Provenance origin = io::read_provenance(result_file);
-    std::printf("kind %s, version %s (%s), %s, %d ranks, %d threads, begun %s\ncommand: %s\nfingerprint: %s\n",
-                origin.case_kind.c_str(), origin.version.c_str(), origin.git_hash.c_str(), origin.kokkos.c_str(),
-                origin.ranks, origin.threads, origin.date.c_str(), origin.command.c_str(), origin.fingerprint.c_str());
+    std::printf(
+        "kind %s, version %s (%s), %s, %d ranks, %d threads, begun %s\nbuild: %s, %s\ncommand: %s\nfingerprint: %s\n",
+        origin.case_kind.c_str(), origin.version.c_str(), origin.git_hash.c_str(), origin.kokkos.c_str(), origin.ranks,
+        origin.threads, origin.date.c_str(), origin.build_compiler.c_str(), origin.build_type.c_str(),
+        origin.command.c_str(), origin.fingerprint.c_str());
     const io::MeshData mesh = io::read_mesh(result_file);
     std::printf("%zu nodes, %zu elements\n", mesh.nodes(), mesh.elements());
     print_increments(io::read_increments(result_file));

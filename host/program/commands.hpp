@@ -1,5 +1,5 @@
 #pragma once
-/// What the commands do once the command line is parsed. They return exit codes; input errors are thrown.
+/// The commands, once the command line is parsed. They return exit codes and throw input errors.
 
 #include <filesystem>
 #include <string>

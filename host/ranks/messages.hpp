@@ -1,6 +1,6 @@
 #pragma once
-/// What the first rank asks and the others answer. A message is a Command and its values; a reply is a `true` and its
-/// values, or a `false` and a sentence.
+/// The first rank's commands and the other ranks' replies, as bytes. A message is a Command and its values; a reply is
+/// `true` and its values, or `false` and a sentence that says what failed.
 
 #include <cstdint>
 
@@ -37,7 +37,7 @@ Message message_of(Command command, const Values&... values) {
   return message;
 }
 
-/// As far as a pool needs it: the packing and its state, not how it was made.
+/// Writes the packing and its state, which is all that a pool needs; how the packing was made is left out.
 inline void write_rve(ByteWriter& write, const PackedRve& rve) {
   write.list(rve.packing.radii);
   write.list(rve.packing.materials);
@@ -68,8 +68,8 @@ inline PackedRve read_rve(ByteReader& read) {
   return rve;
 }
 
-/// Both directions. The names are bound one by one so that a new option does not compile before it is sent; a preset
-/// has done its work where the case was read.
+/// Writes or reads the options of a pool. Every member is bound to a name here, so that a new option does not compile
+/// until somebody decides whether it is sent. The preset's name is not: its values are in the other members.
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
   auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure] = options;

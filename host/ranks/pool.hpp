@@ -1,6 +1,6 @@
 #pragma once
-/// One pool of RVEs over all ranks: the first rank's part of it, and the conversation with the others. Gauss points are
-/// dealt out one by one rather than in blocks, so that the costly ones near the opening spread.
+/// One pool of RVEs over all ranks: the first rank's own part, and its conversation with the other ranks. Gauss points
+/// are dealt out one by one and not in blocks, so that the costly points near the opening spread over the ranks.
 
 #include <optional>
 
@@ -16,7 +16,7 @@ struct RankInfo {
   int threads = 1;
 };
 
-/// Of `n` points those of each rank, ascending; in turn, in proportion to the ranks' threads.
+/// The points of each rank, ascending, out of `n`: dealt out in turn, in proportion to the ranks' threads.
 [[nodiscard]] std::vector<std::vector<std::size_t>> deal_points(std::size_t n, std::span<const RankInfo> ranks);
 
 class RankPool final : public fem::MaterialBatch, public SnapshotSource {
@@ -36,7 +36,7 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
  private:
-  /// What spreading the pool costs, for the log.
+  /// The cost of spreading the pool, for the log.
   struct Ledger {
     std::size_t evaluations = 0;
     double bytes = 0;       ///< of the evaluations' messages

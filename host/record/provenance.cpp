@@ -35,6 +35,8 @@ io::Provenance provenance_of(const RunOptions& options, const Case& input, const
   p.fingerprint = input.fingerprint;
   p.version = build_version;
   p.git_hash = build_revision;
+  p.build_compiler = build_compiler;
+  p.build_type = build_type;
   p.kokkos = kokkos_description();
   p.command = options.command;
   p.date = utc_now();

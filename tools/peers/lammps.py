@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 
 DENSITY = 2650.0  # [kg/m3]
-MODULUS, RATIO, FRICTION, ROLLING, LIMIT = 3.0e9, 0.5, 0.466307658, 1.0, 0.6  # host/case.hpp, SoilCase
+MODULUS, RATIO, FRICTION, ROLLING, LIMIT = 3.0e9, 0.5, 0.466307658, 1.0, 0.6  # host/case/case.hpp, SoilCase
 
 SCRIPT = """
 units si

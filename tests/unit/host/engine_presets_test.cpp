@@ -99,6 +99,40 @@ TEST(EnginePresets, WhatDeferralCostsIsSaidWhereItIsOn) {
 
 TEST(EnginePresets, AnUnknownOneIsRefused) { EXPECT_THROW((void)probe_case({"engine.preset=quick"}), io::InputError); }
 
+TEST(EngineSettings, AreThoseOfTheCase) {
+  const kernels::EngineSettings settings = engine_settings({.precision = kernels::Precision::float64,
+                                                            .hold_tolerance = 2e-5,
+                                                            .backend = kernels::Backend::teams,
+                                                            .skin = 0.03});
+  EXPECT_EQ(settings.precision, kernels::Precision::float64);
+  EXPECT_EQ(settings.hold_tolerance, 2e-5);
+  EXPECT_EQ(settings.backend, kernels::Backend::teams);
+  EXPECT_EQ(settings.skin, 0.03);
+}
+
+TEST(EngineSettings, ATangentWithoutANameFollowsTheBackend) {
+  const EngineCase lanes{.backend = kernels::Backend::lanes}, teams{.backend = kernels::Backend::teams};
+  EXPECT_EQ(tangent_kind({}, lanes), kernels::TangentKind::elastic);
+  EXPECT_EQ(tangent_kind({}, teams), kernels::TangentKind::contact);
+  for (const EngineCase& engine : {lanes, teams}) {
+    EXPECT_EQ(tangent_kind(kernels::TangentKind::loading, engine), kernels::TangentKind::loading);
+    EXPECT_EQ(tangent_kind(kernels::TangentKind::contact, engine), kernels::TangentKind::contact);
+  }
+}
+
+TEST(EngineSettings, TangentsAreReadByTheirNames) {
+  using enum kernels::TangentKind;
+  const std::vector<std::pair<const char*, TangentChoice>> names{
+      {"auto", std::nullopt}, {"contact", contact}, {"elastic", elastic}, {"static", static_}, {"loading", loading}};
+  for (const auto& [name, kind] : names) {
+    EXPECT_EQ(case_of("column", {std::string("newton.tangent=") + name}).newton.tangent, kind) << name;
+    EXPECT_EQ(probe_case({std::string("probe.tangent=") + name}).probe.tangent, kind) << name;
+  }
+  EXPECT_EQ(case_of("column", {}).newton.tangent, std::nullopt);
+  EXPECT_EQ(probe_case({}).probe.tangent, contact);
+  EXPECT_THROW((void)probe_case({"probe.tangent=plastic"}), io::InputError);
+}
+
 TEST(EnginePresets, AreSpokenOfWhereTheEngineDecides) {
   Case input;
   input.kind = CaseKind::tunnel;

@@ -40,7 +40,7 @@ void read_all(const CaseFile& file) {
   const Table soil = root.table("soil");
   static_cast<void>(soil.quantity("radius", Dimension::length, {.positive = true}));
   static_cast<void>(soil.quantity("weight", Dimension::unit_weight, {.at_least = "0 N/m3", .at_most = "30 kN/m3"}));
-  static_cast<void>(soil.number("friction"));
+  static_cast<void>(soil.quantity("friction", Dimension::none));
   static_cast<void>(soil.boolean("kept"));
   static_cast<void>(soil.text("shape"));
   static_cast<void>(soil.quantity("thickness", Dimension::length, {.fallback = "0.1 m"}));
@@ -165,7 +165,7 @@ name = "only"
 )");
   read_all(file);
   EXPECT_EQ(file.root().table("soil").quantity("radius", Dimension::length), 0.005);  // of whole.toml
-  EXPECT_EQ(file.root().table("soil").number("friction"), 0.7);                       // soil.toml is the later one
+  EXPECT_EQ(file.root().table("soil").quantity("friction", Dimension::none), 0.7);    // soil.toml is the later one
   EXPECT_TRUE(file.root().table("soil").boolean("kept"));                             // the file itself
   EXPECT_EQ(file.root().tables("stage").size(), 1U);                                  // an array is replaced
   EXPECT_EQ(file.resolved().find("extends"), std::string::npos);

@@ -59,9 +59,34 @@ class ResultFileTest : public testing::Test {
   }
 
   fs::path folder_ = fs::current_path() / "result";
-  Provenance provenance_{
-      .case_kind = "tunnel", .input = "kind = \"tunnel\"\n", .fingerprint = "ab", .threads = 2, .ranks = 3};
+  Provenance provenance_{.case_kind = "tunnel",
+                         .input = "kind = \"tunnel\"\n",
+                         .fingerprint = "ab",
+                         .build_compiler = "GNU 12.2.0",
+                         .build_type = "Release",
+                         .threads = 2,
+                         .ranks = 3};
 };
+
+/// A run.h5 of the first versions, which did not say what built the program and how many processes ran.
+TEST_F(ResultFileTest, ProvenanceOfTheFirstVersionsIsRead) {
+  fs::create_directories(folder_);
+  Hdf5File file = Hdf5File::create(folder_ / "run.h5");
+  file.set_attribute("/", "format", std::string("voussoir run"));
+  file.write_text("/input", provenance_.input);
+  file.make_group("/provenance");
+  for (const char* name : {"case_kind", "fingerprint", "version", "git_hash", "kokkos", "command", "date"}) {
+    file.set_attribute("/provenance", name, std::string("old ") + name);
+  }
+  file.set_attribute("/provenance", "threads", std::int64_t{4});
+  file.close();
+  const Provenance read = read_provenance(folder_ / "run.h5");
+  EXPECT_EQ(read.git_hash, "old git_hash");
+  EXPECT_EQ(read.build_compiler, "unknown");
+  EXPECT_EQ(read.build_type, "unknown");
+  EXPECT_EQ(read.threads, 4);
+  EXPECT_EQ(read.ranks, 1);
+}
 
 TEST_F(ResultFileTest, EverythingReadsBack) {
   ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
@@ -79,6 +104,8 @@ TEST_F(ResultFileTest, EverythingReadsBack) {
   writer.write(info(1), fields(), {snapshot});
 
   EXPECT_EQ(read_provenance(folder_ / "run.h5").input, provenance_.input);
+  EXPECT_EQ(read_provenance(folder_ / "run.h5").build_compiler, "GNU 12.2.0");
+  EXPECT_EQ(read_provenance(folder_ / "run.h5").build_type, "Release");
   EXPECT_EQ(read_provenance(folder_ / "run.h5").threads, 2);
   EXPECT_EQ(read_provenance(folder_ / "run.h5").ranks, 3);
   EXPECT_EQ(read_mesh(folder_ / "run.h5").coordinates, mesh().coordinates);
