@@ -137,7 +137,7 @@ void write_result(const fs::path& folder) {
     const double loss = gravity ? 0 : 0.025 * (k - 7);
     IncrementInfo info{.index = k, .stage = gravity ? "gravity" : "volume_loss", .stage_index = gravity ? k : k - 7};
     info.load_parameter = gravity ? k / 6.0 : loss;
-    info.volume_loss = loss;
+    info.extra["volume_loss"] = {loss, "-"};
     info.converged = true;
     info.iterations = 3 + k % 4;
     info.evaluations = info.iterations + (k == 9 ? 6 : 1);
