@@ -28,6 +28,8 @@ struct HertzLaw {
   template <class Numbers, class Call>
   KOKKOS_FORCEINLINE_FUNCTION static void for_each_number(Numbers&, const Call&) {}
 
+  KOKKOS_FORCEINLINE_FUNCTION static void keep(const History&, History&) {}
+
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static Pair combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2,
                                                            double r2) {
     return {static_cast<real_of<V>>(hertz_constant(m1, r1, m2, r2) * std::sqrt(r1 + r2))};

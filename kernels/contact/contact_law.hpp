@@ -16,6 +16,8 @@
 ///   normal_stiffness_of(...) d f_n/d delta of a grain against its like, for the control of stresses
 ///   Law(pair)               the law of that pair, with the member functions
 ///     operator()(motion, history)    forces; the history becomes 0 where the grains do not touch
+///     keep(changed, history)         takes over those numbers of a history that operator() can have changed: the sweep
+///                                    works on a copy in registers and does not write the others back
 ///     secant(overlap)                f_n/delta
 ///     springs(overlap)               derivatives of the forces as if there were no caps
 ///     stiffness(overlap, history, elastic_share)   the same without the springs that have yielded

@@ -66,6 +66,12 @@ struct LinearContactLaw {
     call(1, history.moment);
   }
 
+  /// Takes over the numbers that operator() changes.
+  KOKKOS_FORCEINLINE_FUNCTION static void keep(const History& changed, History& history) {
+    history.tangential = changed.tangential;
+    if constexpr (Rolling) history.moment = changed.moment;
+  }
+
   [[nodiscard]] KOKKOS_INLINE_FUNCTION static Pair combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2,
                                                            double r2) {
     const PairConstants c = kernels::combine(m1, r1, m2, r2);

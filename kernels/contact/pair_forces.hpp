@@ -88,22 +88,6 @@ KOKKOS_FORCEINLINE_FUNCTION GrainRim<V> rim_of(const V& radius, const V& spin) {
   return {radius, spin, radius * spin};
 }
 
-/// The law's answer. With rolling the history is copied first, which makes the sweep two operations shorter
-/// (g++ 12). Without rolling the law leaves a part of the history alone, and that part is then neither read nor
-/// written.
-template <class Law, class V>
-KOKKOS_FORCEINLINE_FUNCTION ContactForce<V> answer_of(const Law& law, const ContactMotion<V>& motion,
-                                                      typename Law::History& history) {
-  if constexpr (Law::has_rolling) {
-    typename Law::History copy = history;
-    const ContactForce<V> force = law(motion, copy);
-    history = copy;
-    return force;
-  } else {
-    return law(motion, history);
-  }
-}
-
 /// Law and forces of a pair that touches in at least one lane. (dw_x, dw_y) is w_j - w_i. The branch is not made a unit
 /// vector, because n and t are needed only in products that can be divided by |b| afterwards. D_xx b is subtracted from
 /// D b, since it has no part along t.
@@ -119,8 +103,9 @@ KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<Law>& pair, const PairSh
   const V radius_j = V(shape.radius_other);
   const V sliding = fused(to_sliding, across, -fused(radius_j, spin_j, i.rolled));
 
-  const ContactForce<V> f = answer_of<Law, V>(
-      Law(shape.law), {distance.overlap, distance.excess, sliding, spin_j - i.spin}, pair.history);
+  typename Law::History history = pair.history;
+  const ContactForce<V> f = Law(shape.law)({distance.overlap, distance.excess, sliding, spin_j - i.spin}, history);
+  Law::keep(history, pair.history);
 
   const V minus_half_sum(shape.minus_half_sum);
   const V arm_i = fused(minus_half_sum, distance.overlap, i.radius);

@@ -67,7 +67,7 @@ class LoadingTangent : public testing::Test {
 // The columns are those of the signed sizes that the motion to the trial state gives.
 TEST_F(LoadingTangent, GoesOnAsTheLastMotionDid) {
   RveBatch batch = sheared_;
-  batch.committed = RveStates("copy", batch.size(), batch.packing(0).size());
+  batch.committed = RveStates("copy", batch.size(), batch.packing(0).size(), history_size<PlainEngineLaw>);
   for (std::size_t k = 0; k < batch.size(); ++k) copy_state(sheared_.committed, batch.committed, k, 80);
   forget_candidates(batch);
   StrainRequest on = still;
