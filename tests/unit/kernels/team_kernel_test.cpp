@@ -12,6 +12,7 @@
 
 #include "kernels/teams/advance_teams.hpp"
 #include "tests/engine_support.hpp"
+#include "tests/throws.hpp"
 
 namespace voussoir::kernels {
 namespace {
@@ -168,6 +169,10 @@ TEST_F(TeamKernel, HasTheLanesBitsWithWideGrading) {
   const auto reports = expect_lanes_bits(
       [&] { return clones(rve, 2); },
       std::vector(2, StrainRequest{.f_rel = {f, 0.3, 0, f}, .strain_steps = 4000, .hold_cap = 100}), in_double());
+  for (const RveReport& r : reports) {
+    EXPECT_FALSE(is_failure(r.status)) << name_of(r.status);
+    EXPECT_GT(r.contacts, 0) << "nothing touches: the test shows nothing";
+  }
 }
 
 TEST_F(TeamKernel, EndsWithTheLanesStatuses) {
@@ -250,9 +255,9 @@ TEST(TeamScratch, GrainsOfAnRveFitTheFastMemoryOfAGpu) {
 TEST_F(TeamKernel, RefusesWhatItCannotDo) {
   RveBatch batch = clones(dense_, 1);
   EngineSettings settings{.backend = Backend::teams, .tangent = TangentKind::elastic};
-  EXPECT_THROW(run(batch, {general}, settings), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { run(batch, {general}, settings); }, "the tangent is that of eq. (4)");
   settings = {.backend = Backend::teams, .team_size = 100000};
-  EXPECT_THROW(run(batch, {general}, settings), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { run(batch, {general}, settings); }, "no teams of that size");
 }
 
 }  // namespace
