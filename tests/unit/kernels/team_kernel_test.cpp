@@ -165,13 +165,13 @@ TEST_F(TeamKernel, HasTheLanesBitsWithWideGrading) {
   reference::Rve rve = gas(60, 1e-4, 1e-3);
   rve.cell.xy += 0.4 * rve.cell.yy;
   for (auto& x : rve.positions) x.x += 0.4 * x.y;
-  const double f = 0.95;
+  const double f = 0.7;
   const auto reports = expect_lanes_bits(
       [&] { return clones(rve, 2); },
       std::vector(2, StrainRequest{.f_rel = {f, 0.3, 0, f}, .strain_steps = 4000, .hold_cap = 100}), in_double());
   for (const RveReport& r : reports) {
     EXPECT_FALSE(is_failure(r.status)) << name_of(r.status);
-    EXPECT_GT(r.contacts, 0) << "nothing touches: the test shows nothing";
+    EXPECT_GT(r.contacts, 60) << "hardly a grain touches: the test shows nothing";
   }
 }
 
