@@ -1,13 +1,12 @@
-"""Every case is checked and run, shrunk where it is long, and compared with what its expected.csv says."""
+"""Every case is checked and run, shrunk where it is long, and compared with the numbers that it must give."""
 
 import re
 import subprocess
 from pathlib import Path
 
-from program import PROGRAM, ROOT, check, check_expected, command, draw_and_read_back, fresh, run, table
+from expected import check_expected
+from program import PROGRAM, ROOT, check, command, draw_and_read_back, fresh, run, table
 
-# Settings that shorten a case; columns of expected.csv that it cannot be held to then (None: nothing is known of the
-# case); figures.
 FIGURES = [
     "settlement_troughs.png",
     "displacement.png",
@@ -21,12 +20,30 @@ FIGURES = [
     "stress_rotation.png",
     "trends.md",
 ]
-ONE_PACKING = ["packing.candidates=1", "packing.folder=packings"]
-RUNS = {
-    "tunnel_elastic": ([], (), FIGURES),
+FIGURES_OF_GRAINS = [
+    "void_ratio.png",
+    "grain_rotation.png",
+    "localisation.png",
+    "rve_paths.png",
+    "rve_network.png",
+    "force_chains.png",
+]
+
+
+def packing(name):
+    """A packing that is always the same: one made from the recipe is another one wherever a last bit differs."""
+    return f"packing.file={ROOT / 'tests/data' / name}_particles.csv"
+
+
+SAND, LOOSE_SAND, GRAVEL = (packing(f"packings/{name}") for name in ("cps_d_150", "cps_md_150", "cpg_d_400"))
+YADE = packing("yade/CPS_D")
+# Settings that shorten a case, and its figures. A shortened case is held to its expected_short.csv, a whole one to its
+# expected.csv.
+RUNS: dict[str, tuple[list[str], list[str]]] = {
+    "tunnel_elastic": ([], FIGURES),
     "tunnel_quick": (
         [
-            "packing.folder=packings",
+            SAND,
             "ground.mesh_size_opening=2.5 m",
             "ground.mesh_size_far=8 m",
             "gravity.uniform_step=0.1",
@@ -35,69 +52,37 @@ RUNS = {
             "output.rves=[0, 5]",
             'output.microstructure=["fabric", "coordination", "strong_networks"]',
         ],
-        ("load_parameter", "area_loss", "crown_settlement", "surface_settlement"),
-        [
-            *FIGURES,
-            "void_ratio.png",
-            "grain_rotation.png",
-            "localisation.png",
-            "rve_paths.png",
-            "rve_network.png",
-            "force_chains.png",
-        ],
+        FIGURES + FIGURES_OF_GRAINS,
     ),
-    "column": (["packing.grains=300", *ONE_PACKING, "column.elements=6"], (), []),
-    "biaxial": (
-        [
-            "packing.grains=300",
-            "packing.seeds=[1]",
-            "packing.folder=packings",
-            'biaxial.pressures=["100 kPa"]',
-            "biaxial.strain=6 %",
-        ],
-        ("peak_angle", "peak_strain", "contraction"),
-        [],
-    ),
-    "biaxial_bvp": (
-        [
-            "packing.grains=100",
-            "packing.folder=packings",
-            "biaxial_bvp.columns=1",
-            "biaxial_bvp.rows=2",
-            "biaxial_bvp.strain=4 %",
-        ],
-        ("q_over_p", "volumetric_strain"),
-        [],
-    ),
-    "pack_gravel": (["packing.grains=300", "packing.folder=packings"], None, []),
-    "probe": (["packing.grains=60", "packing.folder=packings"], None, []),
-    "pack": (["packing.grains=100", "packing.seeds=[1]", "packing.folder=packings"], None, []),
+    "column": ([SAND, "column.elements=6"], []),
+    "biaxial": ([YADE, 'biaxial.pressures=["100 kPa"]', "biaxial.strain=6 %"], []),
+    "biaxial_bvp": ([YADE, "biaxial_bvp.columns=1", "biaxial_bvp.rows=2", "biaxial_bvp.strain=4 %"], []),
+    "pack_gravel": (["packing.grains=300", "packing.seeds=[1, 2, 3, 4]"], []),
+    "probe": ([YADE], []),
+    "pack": (["packing.grains=100", "packing.seeds=[1, 2, 3, 4, 5, 6, 7, 8]"], []),
 }
 # Calibrations: two sets, one of them confirmed, in one pressure and to 6 %; the wide grading, which so few grains hold badly, to 4 %.
-RUNS |= {
-    f"calibrate_{soil}": (
-        [
-            f"packing.grains={grains}",
-            "packing.seeds=[1]",
-            "packing.folder=packings",
-            f"biaxial.strain={strain} %",
-            'biaxial.pressures=["200 kPa"]',
-            "calibrate.rolling_stiffness=[0.03, 0.12]",
-            "calibrate.thickness=[]",
-            "calibrate.rounds=0",
-            f"calibrate.confirm_grains={grains}",
-            "calibrate.confirm_seeds=[1, 2]",
-            "calibrate.confirm_inertial_number=3e-4",
-        ],
-        None,
-        [],
-    )
-    for soil, grains, strain in (("cps_d", 150, 6), ("cps_md", 150, 6), ("cpg_d", 300, 4))
-}
-# The study's tunnels: few grains and elements and a first step of the volume loss, those of other depths in elastic ground;
-# their meshes are counted in full size.
+# Once with packings of the recipe, and the search again on one packing that is always the same, which has no second one to confirm with.
+SEARCHES: dict[str, list[str]] = {}
+for soil, file, grains, seeds, strain in (
+    ("cps_d", SAND, 150, 8, 6),
+    ("cps_md", LOOSE_SAND, 150, 8, 6),
+    ("cpg_d", GRAVEL, 300, 4, 4),
+):
+    common = [
+        f"biaxial.strain={strain} %",
+        'biaxial.pressures=["200 kPa"]',
+        "calibrate.rolling_stiffness=[0.03, 0.12]",
+        "calibrate.thickness=[]",
+        "calibrate.rounds=0",
+        "calibrate.confirm_inertial_number=3e-4",
+    ]
+    made = [f"packing.grains={grains}", f"packing.seeds={list(range(1, seeds + 1))}"]
+    confirmed = [f"calibrate.confirm_grains={grains}", "calibrate.confirm_seeds=[1, 2]"]
+    RUNS[f"calibrate_{soil}"] = ([*common, *made, *confirmed], [])
+    SEARCHES[f"calibrate_{soil}"] = [*common, file, "packing.seeds=[0]"]
+# The study's tunnels: few grains and elements and a first step of the volume loss; their meshes are counted in full size.
 STUDY = [
-    *ONE_PACKING,
     "ground.mesh_size_opening=2.5 m",
     "ground.mesh_size_far=17 m",
     "ground.width=8 m",
@@ -114,11 +99,8 @@ STUDY_ELEMENTS = {
     "tunnel_cps_md_cd3": 836,
     "tunnel_cpg_d_cd3": 836,
 }
-RUNS |= {case: ([*STUDY, "material=linear_elastic"], None, []) for case in ("tunnel_cps_d_cd2", "tunnel_cps_d_cd4")}
-RUNS |= {
-    case: ([*STUDY, f"packing.grains={grains}"], None, [])
-    for case, grains in (("tunnel_cps_d_cd3", 150), ("tunnel_cps_md_cd3", 150), ("tunnel_cpg_d_cd3", 400))
-}
+SOILS = {"cps_d": SAND, "cps_md": LOOSE_SAND, "cpg_d": GRAVEL}
+RUNS |= {case: ([*STUDY, SOILS[case[len("tunnel_") : -len("_cd3")]]], []) for case in STUDY_ELEMENTS}
 ESTIMATE = 3  # factor within which `check` must foretell a shrunk run's work; 2 is what it promises of whole ones
 
 
@@ -135,7 +117,8 @@ for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml"
     case = folder.name
     check((folder / "README.md").exists(), f"cases/{case} has no README.md")
     check(case in RUNS, f"cases/{case} is run by no test")
-    settings, without, figures = RUNS[case]
+    settings, figures = RUNS[case]
+    packings = fresh(f"packings_{case}")
     words = [
         PROGRAM,
         "check",
@@ -151,9 +134,12 @@ for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml"
             abs(points / 4 - STUDY_ELEMENTS[case]) <= 5, f"cases/{case}: {points / 4} elements, not those of the study"
         )
     results = fresh(f"results_{case}")
-    run(command(case, results, settings))
-    if without is not None:
-        check_expected(results, folder / "expected.csv", without)
+    run(command(case, results, [*settings, f"packing.folder={packings}"]))
+    check_expected(results, folder / ("expected_short.csv" if settings else "expected.csv"), packings)
+    if case in SEARCHES:
+        results = fresh(f"results_{case}_search")
+        run(command(case, results, [*SEARCHES[case], f"packing.folder={packings}"]), code=3)  # nothing confirms it
+        check_expected(results, folder / "expected_search.csv")
     if figures:
         draw_and_read_back(results, figures)
     foretold = re.search(r"about (\S+) particle-steps", checked.stdout)

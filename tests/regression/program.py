@@ -3,7 +3,6 @@
 VOUSSOIR is the program, VOUSSOIR_ROOT the checkout; ctest sets both.
 """
 
-import csv
 import os
 import shutil
 import subprocess
@@ -113,36 +112,3 @@ def table(folder):
     for row in rows:
         row["stage"] = row["stage"].decode() if isinstance(row["stage"], bytes) else row["stage"]
     return rows
-
-
-def measured(folder, rows, line):
-    """The number that a line of expected.csv speaks of."""
-    where, wanted, column = line["stage"], int(line["stage_index"]), line["column"]
-    if where.startswith("tables/"):
-        with h5py.File(Path(folder) / "run.h5", "r") as opened:
-            check(f"{where}/{column}" in opened, f"{folder}: run.h5 has no {where}/{column}")
-            return float(opened[f"{where}/{column}"][wanted])
-    stage = [row for row in rows if row["stage"] == where]
-    matches = stage[-1:] if wanted < 0 else [row for row in stage if row["stage_index"] == wanted]
-    check(matches, f"{folder}: no increment {wanted} of {where}")
-    return float(matches[0][column])
-
-
-def check_expected(folder, expected, without=()):
-    """expected.csv: stage, stage_index (-1: the stage's last), column of the table, value, tolerance (absolute); or
-    tables/NAME, row, column. `without`: columns that a shrunk run cannot be held to."""
-    rows = table(folder)
-    with open(expected, newline="") as opened:
-        lines = list(csv.DictReader(row for row in opened if not row.startswith("#")))
-    unknown = set(without) - {line["column"] for line in lines}
-    check(not unknown, f"{expected}: has no {unknown}")
-    for line in lines:
-        if line["column"] in without:
-            continue
-        value = measured(folder, rows, line)
-        holds = abs(value - float(line["value"])) <= float(line["tolerance"])  # false for a NaN
-        check(holds, f"{folder}: {line} but it is {value}")
-        print(
-            f"{line['stage']} {line['stage_index']} {line['column']}: {value:.6g}, "
-            f"expected {line['value']} +- {line['tolerance']}"
-        )

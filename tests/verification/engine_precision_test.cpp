@@ -32,9 +32,9 @@ TEST(FloatAgainstDouble, OneKilopascalStaysAtRest) {
                    {.precision = Precision::float32, .hold_tolerance = 0.0}, reports);
   for (std::size_t k = 0; k < rves.size(); ++k) {
     EXPECT_EQ(reports[k].steps, 20000);
-    EXPECT_LT(reports[k].unbalanced, 1e-5) << seeds[k];
-    // The packing was at rest to 1e-4, and its pressure within 1e-3; what is left of both may go on to settle.
-    EXPECT_NEAR(reports[k].pressure(), rves[k].pressure, 2e-3 * rves[k].pressure) << seeds[k];
+    EXPECT_LT(reports[k].unbalanced, 3e-6) << seeds[k];  // 2.6e-7 was measured
+    // What the packing's rest has left of unbalanced forces may go on to settle: 2e-7 of the pressure was measured.
+    EXPECT_NEAR(reports[k].pressure(), rves[k].pressure, 1e-5 * rves[k].pressure) << seeds[k];
   }
 }
 
@@ -72,20 +72,23 @@ TEST(FloatAgainstDouble, TenPercentShearIsWithinTheScatterOfPackings) {
   };
   const auto in_float = test(Precision::float32), in_double = test(Precision::float64);
   for (const auto& curve : in_float) ASSERT_EQ(curve.status, kernels::RveStatus::converged);
-  double largest = 0;
-  for (const double strain : {0.005, 0.02, 0.05, 0.1}) {
+  // Five times the largest of what seeds 1 to 32 gave, eight at a time, over their scatter: means 1.4e-4, 1.7e-4, 8e-4
+  // and 3.5e-2, single packings 6.2e-4, 8.3e-4, 4.1e-3 and 0.22. Two paths of one packing part like strangers in the
+  // end.
+  struct Bound {
+    double strain, of_means, of_each;
+  };
+  for (const auto& [strain, of_means, of_each] :
+       {Bound{0.005, 7e-4, 3e-3}, Bound{0.02, 8e-4, 4e-3}, Bound{0.05, 4e-3, 2e-2}, Bound{0.1, 0.17, 1.1}}) {
     const std::vector<double> f = ratios(in_float, strain), d = ratios(in_double, strain);
     const Statistics sf = statistics(f), sd = statistics(d);
-    RecordProperty("difference_over_scatter_at_" + std::to_string(strain),
-                   std::to_string((sf.mean - sd.mean) / sd.deviation));
-    std::printf("strain %.3f  q/p float %.4f double %.4f  scatter of the seeds %.4f\n", strain, sf.mean, sd.mean,
-                sd.deviation);
-    // Two paths of one packing part like strangers in the end; their means do so by less than one packing from the
-    // next.
-    EXPECT_LT(std::abs(sf.mean - sd.mean), sd.deviation) << strain;
-    if (strain > 0.005) continue;
+    double largest = 0;
     for (std::size_t k = 0; k < f.size(); ++k) largest = std::max(largest, std::abs(f[k] - d[k]));
-    EXPECT_LT(largest, 0.2 * sd.deviation) << "before they part";
+    std::printf(
+        "strain %.3f  q/p float %.4f double %.4f  scatter %.4f; over it the means differ by %.6f, one by %.6f\n",
+        strain, sf.mean, sd.mean, sd.deviation, (sf.mean - sd.mean) / sd.deviation, largest / sd.deviation);
+    EXPECT_LT(std::abs(sf.mean - sd.mean), of_means * sd.deviation) << strain;
+    EXPECT_LT(largest, of_each * sd.deviation) << strain;
   }
 }
 

@@ -34,7 +34,7 @@ TEST(EngineStiffness, FromFiftyToTenMillionEveryRveRestsAndShears) {
   for (const double kappa : {50.0, 1e3, 1e5, 1e7}) {
     const host::PackedRve rve = packing_of_stiffness(kappa, 1e4);
     ASSERT_EQ(rve.status, RveStatus::converged) << kappa;
-    EXPECT_NEAR(rve.pressure, 1e4, 1e-2 * 1e4) << kappa;
+    EXPECT_NEAR(rve.pressure, 1e4, 3e-4 * 1e4) << kappa;  // 2e-5 was measured
     for (const Precision precision : {Precision::float32, Precision::float64}) {
       RveBatch batch = host::batch_of(std::span(&rve, 1));
       const Mat2 shear{1.0, 1e-3, 0.0, 1.0};

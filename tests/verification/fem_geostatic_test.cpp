@@ -37,16 +37,16 @@ TEST(Geostatic, ColumnIsExact) {
   ASSERT_EQ(solver.solve_increment(state, load, increment).status, NewtonStatus::converged);
   const GeostaticStress expected{gamma, height, surcharge, 1, [](double) { return k0; }};
   for (int i = 0; i < mesh.n_points(); ++i)
-    EXPECT_LT((increment.stress[i] - expected(increment.points.positions.col(i))).norm(), 1e-9 * gamma * height);
+    EXPECT_LT((increment.stress[i] - expected(increment.points.positions.col(i))).norm(), 1e-12 * gamma * height);
   const double modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
   for (int node = 0; node < mesh.n_nodes(); ++node) {
     const double y = mesh.coordinates(1, node);
     EXPECT_NEAR(increment.displacement[2 * node + 1], -(surcharge * y + gamma * (height * y - y * y / 2)) / modulus,
-                1e-12);
+                1e-14);
   }
   double base = 0;
   for (const int node : mesh.node_set("base")) base += increment.reactions[2 * node + 1];
-  EXPECT_NEAR(base, 3 * (gamma * height + surcharge), 1e-6);
+  EXPECT_NEAR(base, 3 * (gamma * height + surcharge), 1e-7);
 }
 
 /// The whole tunnel: gravity with the opening held by (15), (16) on the fixed mesh, then the opening fixed where it
@@ -107,7 +107,7 @@ TEST_F(ElasticTunnel, ReactionsTakeOverTheTractionsAndTheLossRemovesItsArea) {
   for (const int node : mesh.node_set("opening"))
     if (mesh.coordinates(0, node) > 0)  // on the axis the support's force comes on top
       difference += (increment.reactions.segment<2>(2 * node) - held.segment<2>(2 * node)).squaredNorm();
-  EXPECT_LT(std::sqrt(difference), 1e-3 * (weight + top).norm());
+  EXPECT_LT(std::sqrt(difference), 1e-4 * (weight + top).norm());
 
   const LoadPath path{[&](double) { return still.external_force; },
                       [&](double from, double to) {
@@ -132,7 +132,7 @@ TEST_F(ElasticTunnel, ReactionsTakeOverTheTractionsAndTheLossRemovesItsArea) {
   ASSERT_EQ(report.status, StepStatus::finished) << report.message;
   EXPECT_LT(worst, 1e-12);
   const int crown = mesh.node_set("crown")[0];
-  EXPECT_NEAR(-state.displacement[2 * crown + 1], 5 * (1 - std::sqrt(0.8)), 1e-12);  // eq. (19): 0.528 m
+  EXPECT_NEAR(-state.displacement[2 * crown + 1], 5 * (1 - std::sqrt(0.8)), 1e-13);  // eq. (19): 0.528 m
   EXPECT_LT(state.displacement[2 * mesh.node_set("top").back() + 1], -0.05);         // the surface settles above it
 }
 

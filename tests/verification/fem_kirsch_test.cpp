@@ -106,13 +106,13 @@ TEST(Kirsch, DisplacementConvergesWithThirdOrderAndEnergyWithSecond) {
     std::printf("%2d x %2d elements: |u error| %.2e (order %.2f), energy %.2e (order %.2f)\n", n, n, fine.displacement,
                 order_u, fine.energy, order_e);
     if (n > 8) {
-      EXPECT_GT(order_u, 2.8);
-      EXPECT_GT(order_e, 1.85);
+      EXPECT_GT(order_u, 2.95);
+      EXPECT_GT(order_e, 1.97);
     }
     coarse = fine;
   }
-  EXPECT_LT(coarse.displacement, 1e-5);
-  EXPECT_LT(coarse.energy, 2e-3);
+  EXPECT_LT(coarse.displacement, 2e-6);
+  EXPECT_LT(coarse.energy, 4e-4);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST(YadeBiaxial, CurveUpToThePeakAndPeakAngle) {
   recipe.pressure = 1.0e5;
   const PackedRve rve = settle_foreign_packing(soil, recipe);
   ASSERT_EQ(rve.status, kernels::RveStatus::converged);
-  EXPECT_NEAR(rve.void_ratio, 0.17549275, 1e-5);
+  EXPECT_NEAR(rve.void_ratio, 0.17549275, 1e-7);
   const kernels::EngineSettings settings{.precision = kernels::Precision::float64};
   const BiaxialCurve curve = biaxial_tests(std::span(&rve, 1), 0.045, 1e-4, 2000, settings).front();
   ASSERT_EQ(curve.status, kernels::RveStatus::converged);

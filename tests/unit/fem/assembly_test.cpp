@@ -39,7 +39,7 @@ TEST(Assembly, StiffnessIsTheDerivativeOfTheInternalForce) {
   std::vector<Stress> stress;
   for (int i = 0; i < p.mesh.n_points(); ++i) stress.push_back(p.tangents[i] * strain_of(h[i]));
   const Eigen::VectorXd f = internal_force(p.mesh, p.points, stress).force;
-  EXPECT_LT((k * u - f).norm(), 1e-12 * f.norm());  // the law is linear: no finite difference is needed
+  EXPECT_LT((k * u - f).norm(), 1e-13 * f.norm());  // the law is linear: no finite difference is needed
 }
 
 TEST(SparseSolver, SolvesAndReportsWhatIsNotPositiveDefinite) {
@@ -51,7 +51,7 @@ TEST(SparseSolver, SolvesAndReportsWhatIsNotPositiveDefinite) {
   const std::vector<double> values = assembler.assemble(p.points, p.tangents, fixed);
   ASSERT_EQ(solver.factorise(values), FactorStatus::ok);
   const Eigen::MatrixXd right = Eigen::MatrixXd::Random(p.mesh.n_dofs(), 3);
-  EXPECT_LT((dense(assembler.pattern(), values) * solver.solve(right) - right).norm(), 1e-9 * right.norm());
+  EXPECT_LT((dense(assembler.pattern(), values) * solver.solve(right) - right).norm(), 1e-11 * right.norm());
 
   for (int i = 4; i < 8; ++i) p.tangents[i] *= -3;  // one element
   EXPECT_EQ(solver.factorise(assembler.assemble(p.points, p.tangents, fixed)), FactorStatus::not_positive_definite);
@@ -74,7 +74,7 @@ TEST(NoiseForce, IsTheMeanNormOfIndependentStressErrors) {
     for (int dof = 0; dof < p.mesh.n_dofs(); ++dof) sum += fixed[dof] ? 0 : f[dof] * f[dof];
   }
   const double expected = noise_force(p.mesh, p.points, fixed, 100);
-  EXPECT_NEAR(std::sqrt(sum / samples), expected, 0.02 * expected);
+  EXPECT_NEAR(std::sqrt(sum / samples), expected, 0.005 * expected);
 }
 
 }  // namespace

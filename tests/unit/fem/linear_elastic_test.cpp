@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/linear_elastic.hpp"
+#include "tests/throws.hpp"
 
 namespace voussoir::fem {
 namespace {
@@ -32,7 +33,7 @@ TEST(LinearElastic, EvaluatesFromTheCommittedStateOnly) {
   EXPECT_LT((evaluate_one(material, h) - 2 * once).norm(), 1e-9);
   material.set_state(before);
   EXPECT_EQ(evaluate_one(material, h), once);
-  EXPECT_THROW(material.set_state(std::span(before).first(8)), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { material.set_state(std::span(before).first(8)); }, "of another batch");
 }
 
 TEST(LinearElastic, LogarithmicStrainLetsARotationTurnTheStressOnly) {
@@ -46,8 +47,8 @@ TEST(LinearElastic, LogarithmicStrainLetsARotationTurnTheStressOnly) {
 }
 
 TEST(LinearElastic, ImpossibleConstantsAreRefused) {
-  EXPECT_THROW(LinearElastic(1, {.young = 0}), std::invalid_argument);
-  EXPECT_THROW(LinearElastic(1, {.poisson = 0.5}), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { LinearElastic(1, {.young = 0}); }, "Young's modulus");
+  expect_throws<std::invalid_argument>([&] { LinearElastic(1, {.poisson = 0.5}); }, "Poisson's ratio");
 }
 
 }  // namespace

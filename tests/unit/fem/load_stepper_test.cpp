@@ -3,6 +3,7 @@
 #include "fem/load_stepper.hpp"
 #include "fem/mesh_rectangle.hpp"
 #include "tests/fem_support.hpp"
+#include "tests/throws.hpp"
 
 namespace voussoir::fem {
 namespace {
@@ -192,11 +193,11 @@ TEST(LoadStepper, ImpossibleInputIsRefused) {
   const auto advance = [&](const std::vector<double>& targets, const StepOptions& options) {
     static_cast<void>(advance_load(block.solver, block.state, block.path, targets, options));
   };
-  EXPECT_THROW(advance({1, 1}, {}), std::invalid_argument);
-  EXPECT_THROW(advance({-1}, {}), std::invalid_argument);
-  EXPECT_THROW(advance({std::nan("")}, {}), std::invalid_argument);
-  EXPECT_THROW(advance({1}, {.cut = 1}), std::invalid_argument);
-  EXPECT_THROW(advance({1}, {.smallest = 0}), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { advance({1, 1}, {}); }, "targets must be finite and increase");
+  expect_throws<std::invalid_argument>([&] { advance({-1}, {}); }, "targets must be finite and increase");
+  expect_throws<std::invalid_argument>([&] { advance({std::nan("")}, {}); }, "targets must be finite and increase");
+  expect_throws<std::invalid_argument>([&] { advance({1}, {.cut = 1}); }, "cut must be between");
+  expect_throws<std::invalid_argument>([&] { advance({1}, {.smallest = 0}); }, "smallest must be in");
 }
 
 TEST(GeometricTargets, GrowThenWalkEvenly) {
@@ -213,7 +214,8 @@ TEST(GeometricTargets, GrowThenWalkEvenly) {
   EXPECT_EQ(targets.back(), 1.0);
   EXPECT_NEAR(static_cast<double>(targets.size()), 30, 3);
   EXPECT_EQ(geometric_targets(0.5, 2, 1), std::vector<double>({0.5, 1.0}));
-  EXPECT_THROW(static_cast<void>(geometric_targets(0, 1.5, 0.05)), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { static_cast<void>(geometric_targets(0, 1.5, 0.05)); },
+                                       "start must be positive");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "fem/newton.hpp"
 #include "tests/fem_support.hpp"
+#include "tests/throws.hpp"
 
 namespace voussoir::fem {
 namespace {
@@ -74,10 +75,11 @@ TEST(Newton, SofteningConvergesWithAnderson) {
     ASSERT_EQ(report.status, NewtonStatus::converged) << "increment " << k;
     solver.commit(block.state, increment);
   }
-  EXPECT_NEAR(block.state.displacement[2 * block.mesh.node_set("top")[0]], 0.06, 1e-12);
+  EXPECT_NEAR(block.state.displacement[2 * block.mesh.node_set("top")[0]], 0.06, 1e-14);
 }
 
 TEST(Newton, NeverSaysConvergedWhereItIsNot) {
+  int converged = 0;
   for (int limit = 1; limit <= 30; ++limit) {
     Block block({.too_stiff = 2.5});
     NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.max_iterations = limit});
@@ -89,7 +91,10 @@ TEST(Newton, NeverSaysConvergedWhereItIsNot) {
     const bool still = report.correction_history.back() <= 1e-2 * increment.displacement.norm();
     EXPECT_EQ(report.status, small && still ? NewtonStatus::converged : NewtonStatus::max_iterations);
     EXPECT_LE(report.iterations, limit);
+    converged += report.status == NewtonStatus::converged ? 1 : 0;
   }
+  EXPECT_GT(converged, 0) << "none converges: the test shows nothing";
+  EXPECT_LT(converged, 30) << "all converge: the test shows nothing";
 }
 
 TEST(Newton, RefactoringSeldomGivesTheSameAnswer) {
@@ -176,7 +181,7 @@ TEST(Newton, NoiseFloorsWidenTheBoundsAndCanBeSwitchedOff) {
     NewtonReport& report = factor > 0 ? noisy : quiet;
     report = solver.solve_increment(block.state, block.load(0.01, 0), increment);
     ASSERT_EQ(report.status, NewtonStatus::converged);
-    EXPECT_NEAR(report.residual_bound - report.noise_floor, 1e-3 * report.reaction_norm, 1e-9 * report.reaction_norm);
+    EXPECT_NEAR(report.residual_bound - report.noise_floor, 1e-3 * report.reaction_norm, 1e-13 * report.reaction_norm);
   }
   EXPECT_EQ(quiet.noise_floor, 0);
   EXPECT_GT(noisy.noise_floor, 0);
@@ -276,11 +281,12 @@ TEST(Newton, ImpossibleOptionsAreRefused) {
   const auto make = [&](const NewtonOptions& options) {
     NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, options);
   };
-  EXPECT_THROW(make({.tolerance = 0}), std::invalid_argument);
-  EXPECT_THROW(make({.max_iterations = 0}), std::invalid_argument);
-  EXPECT_THROW(make({.anderson_depth = -1}), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { make({.tolerance = 0}); }, "tolerances must be positive");
+  expect_throws<std::invalid_argument>([&] { make({.max_iterations = 0}); }, "max_iterations and refactor_every");
+  expect_throws<std::invalid_argument>([&] { make({.anderson_depth = -1}); }, "Anderson's depth");
   SofteningMaterial other(7, {});
-  EXPECT_THROW(NewtonSolver(block.mesh, other, Kinematics::fixed_mesh, {}), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { NewtonSolver(block.mesh, other, Kinematics::fixed_mesh, {}); },
+                                       "the material has 7 points");
 }
 
 }  // namespace

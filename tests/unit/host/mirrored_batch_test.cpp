@@ -112,14 +112,14 @@ TEST(MirroredBatch, FieldsAreThoseOfTheMirroredGrains) {
   const auto snapshots = mirrored.snapshots(points);
   for (std::size_t p = 0; p < n; ++p) {
     const auto [a, direction] = fabric_of(snapshots[p]);
-    EXPECT_NEAR(value_of(mirrored, "fabric_anisotropy", p), a, 1e-12) << p;
-    EXPECT_NEAR(value_of(mirrored, "fabric_direction", p), direction, 1e-12) << p;
+    EXPECT_NEAR(value_of(mirrored, "fabric_anisotropy", p), a, 1e-14) << p;
+    EXPECT_NEAR(value_of(mirrored, "fabric_direction", p), direction, 1e-14) << p;
     double rotation = 0;
     for (const double angle : snapshots[p].rotation)
       rotation += angle / static_cast<double>(snapshots[p].rotation.size());
-    EXPECT_NEAR(value_of(mirrored, "grain_rotation", p), rotation, 1e-15) << p;
+    EXPECT_NEAR(value_of(mirrored, "grain_rotation", p), rotation, 1e-16) << p;
   }
-  EXPECT_GT(std::abs(value_of(mirrored, "fabric_direction", 0)), 0.01) << "along an axis: the test shows nothing";
+  EXPECT_GT(std::abs(value_of(mirrored, "fabric_direction", 0)), 0.1) << "along an axis: the test shows nothing";
   for (const fem::PointField& field : mirrored.fields()) {
     const bool is_odd = field.name == "fabric_direction" || field.name == "grain_rotation";
     EXPECT_EQ(field.values[1], is_odd ? -field.values[0] : field.values[0]) << field.name;

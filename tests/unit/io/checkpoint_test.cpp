@@ -9,6 +9,7 @@
 
 #include "io/checkpoint.hpp"
 #include "io/checksum.hpp"
+#include "tests/throws.hpp"
 
 namespace voussoir::io {
 namespace {
@@ -60,8 +61,10 @@ TEST_F(CheckpointTest, SameBitsBack) {
   EXPECT_EQ(loaded->checkpoint.get_doubles("displacement")[0], 1.0 / 3);
   EXPECT_EQ(loaded->checkpoint.get_integers("counts"), (std::vector<std::int64_t>{1, -2}));
   EXPECT_EQ(loaded->checkpoint.get_text("stage"), "gravity");
-  EXPECT_THROW(static_cast<void>(loaded->checkpoint.get("velocity")), std::runtime_error);
-  EXPECT_THROW(static_cast<void>(loaded->checkpoint.get_doubles("stage")), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { static_cast<void>(loaded->checkpoint.get("velocity")); },
+                                    "has no \"velocity\"");
+  expect_throws<std::runtime_error>([&] { static_cast<void>(loaded->checkpoint.get_doubles("stage")); },
+                                    "\"stage\" has 7 bytes");
 }
 
 TEST_F(CheckpointTest, TheLastTwoAreKept) {
@@ -82,7 +85,7 @@ TEST_F(CheckpointTest, DamagedOneIsPassedOver) {
   ASSERT_EQ(loaded->skipped.size(), 1U);
   EXPECT_NE(loaded->skipped[0].find("checkpoint_0002.bin"), std::string::npos);
   damage("checkpoint_0001.bin");
-  EXPECT_THROW(static_cast<void>(store_.load_latest()), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { static_cast<void>(store_.load_latest()); }, "no checkpoint is readable");
 }
 
 TEST_F(CheckpointTest, AnyTruncationIsNoticed) {
@@ -105,12 +108,13 @@ TEST_F(CheckpointTest, KilledWriterLeavesTheFormerOne) {
 
 TEST_F(CheckpointTest, AnotherCaseIsRefused) {
   store_.save(1, example(1));
-  EXPECT_THROW(static_cast<void>(CheckpointStore(folder_, "case B").load_latest()), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { static_cast<void>(CheckpointStore(folder_, "case B").load_latest()); },
+                                    "belongs to another case (fingerprint case A, this case has case B)");
 }
 
 TEST_F(CheckpointTest, UnwritableFolderIsAnError) {
   std::ofstream(folder_) << "a file where the folder should be";
-  EXPECT_THROW(store_.save(1, example(1)), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { store_.save(1, example(1)); }, "checkpoints");
 }
 
 TEST(ChecksumTest, IsOfTheSequenceNotOfItsPiecesAndSeesEveryBit) {

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "io/packing_file.hpp"
+#include "tests/throws.hpp"
 
 namespace voussoir::io {
 namespace {
@@ -82,16 +83,20 @@ TEST_F(PackingFileTest, NoContactsIsAPackingToo) {
 TEST_F(PackingFileTest, SizesThatDisagreeAreRefused) {
   Packing packing = example();
   packing.x.pop_back();
-  EXPECT_THROW(save_packing(folder_ / "p.h5", packing), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { save_packing(folder_ / "p.h5", packing); },
+                                       "p.h5: 3 radii, but 2 x, 3 y, 3 rotations");
   packing = example();
   packing.history.pop_back();
-  EXPECT_THROW(save_packing(folder_ / "p.h5", packing), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { save_packing(folder_ / "p.h5", packing); },
+                                       "contact arrays differ in length");
   packing = example();
   packing.contact_j[0] = 3;
-  EXPECT_THROW(save_packing(folder_ / "p.h5", packing), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { save_packing(folder_ / "p.h5", packing); },
+                                       "contact 0 joins grains 0 and 3 of 3");
   packing = example();
   packing.radius[1] = -1;
-  EXPECT_THROW(save_packing(folder_ / "p.h5", packing), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { save_packing(folder_ / "p.h5", packing); },
+                                       "grain 1 has a radius that is not positive");
   EXPECT_FALSE(fs::exists(folder_ / "p.h5"));
 }
 
@@ -106,9 +111,11 @@ TEST_F(PackingFileTest, CacheFindsOnlyWhatFitsTheRecipe) {
 }
 
 TEST_F(PackingFileTest, DamagedAndForeignFilesAreErrors) {
-  EXPECT_THROW(static_cast<void>(load_packing(folder_ / "none.h5")), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { static_cast<void>(load_packing(folder_ / "none.h5")); },
+                                    "none.h5: cannot open");
   std::ofstream(folder_ / "text.h5") << "not HDF5";
-  EXPECT_THROW(static_cast<void>(load_packing(folder_ / "text.h5")), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { static_cast<void>(load_packing(folder_ / "text.h5")); },
+                                    "text.h5: cannot open");
 }
 
 TEST_F(PackingFileTest, PairOfCsvAndJson) {
@@ -138,7 +145,8 @@ TEST_F(PackingFileTest, BadPairsSayWhereTheyAreBad) {
   says(message(particles_, "{\"Lz\": "), "a_meta.json: ");
   says(message(particles_, R"({"hSize": [[0, 0, 0], [0, 1, 0], [0, 0, 1]]})"), "positive area");
   says(message(particles_, R"({"Lz": 0, "hSize": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]})"), "thickness");
-  EXPECT_THROW(static_cast<void>(load_packing_csv(folder_ / "a.csv")), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { static_cast<void>(load_packing_csv(folder_ / "a.csv")); },
+                                    "must be named NAME_particles.csv");
 }
 
 }  // namespace

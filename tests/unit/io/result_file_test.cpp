@@ -9,6 +9,7 @@
 #include "io/atomic_file.hpp"
 #include "io/hdf5.hpp"
 #include "io/result_file.hpp"
+#include "tests/throws.hpp"
 
 namespace voussoir::io {
 namespace {
@@ -241,7 +242,8 @@ TEST_F(ResultFileTest, TablesStayThroughIncrementsAndResume) {
 TEST_F(ResultFileTest, TablesThatCannotBeReadBackAreRefused) {
   ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
   const auto refuses = [&](const std::string& name, const std::vector<TableColumn>& columns) {
-    EXPECT_THROW(writer.set_table(name, columns), std::invalid_argument) << name;
+    expect_throws<std::invalid_argument>([&] { writer.set_table(name, columns); },
+                                         "table \"" + name + "\": names, or lengths of its columns");
   };
   refuses("a/b", {{"x", "-", {1}}});
   refuses("", {{"x", "-", {1}}});
@@ -269,23 +271,29 @@ TEST_F(ResultFileTest, RunsWithoutAMeshHaveNoXdmf) {
 
 TEST_F(ResultFileTest, WhatDoesNotFitIsRefusedBeforeAnythingIsWritten) {
   ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
-  const auto refuses = [&](const Field& field) { EXPECT_THROW(writer.write(info(1), {field}), std::invalid_argument); };
-  refuses({"displacement", "m", FieldLocation::node, 2, counted(25)});
-  refuses({"stress", "Pa", FieldLocation::gauss, 3, counted(6)});
-  refuses({"a/b", "m", FieldLocation::element, 1, counted(2)});
-  refuses({"none", "m", FieldLocation::element, 0, {}});
-  EXPECT_THROW(writer.write(info(1), {}, {}, counted(3)), std::invalid_argument);
+  const auto refuses = [&](const Field& field, const std::string& part) {
+    expect_throws<std::invalid_argument>([&] { writer.write(info(1), {field}); },
+                                         "field \"" + field.name + "\": " + part);
+  };
+  refuses({"displacement", "m", FieldLocation::node, 2, counted(25)}, "25 values of 2 components, expected 26");
+  refuses({"stress", "Pa", FieldLocation::gauss, 3, counted(6)}, "6 values of 3 components, expected 24");
+  refuses({"a/b", "m", FieldLocation::element, 1, counted(2)}, "2 values of 1 components");
+  refuses({"none", "m", FieldLocation::element, 0, {}}, "0 values of 0 components");
+  expect_throws<std::invalid_argument>([&] { writer.write(info(1), {}, {}, counted(3)); },
+                                       "1 coordinates for 13 nodes");
   EXPECT_FALSE(fs::exists(increment_path(folder_, 1)));
   writer.write(info(2), {});
-  EXPECT_THROW(writer.write(info(2), {}), std::invalid_argument);
+  expect_throws<std::invalid_argument>([&] { writer.write(info(2), {}); }, "increment 2 does not follow");
 }
 
 TEST_F(ResultFileTest, DamagedFilesAreErrors) {
   ResultWriter::create(folder_, provenance_, mesh()).write(info(1), fields());
   fs::resize_file(increment_path(folder_, 1), 600);
-  EXPECT_THROW(static_cast<void>(read_fields(increment_path(folder_, 1))), std::runtime_error);
-  EXPECT_THROW(static_cast<void>(read_increments(folder_ / "run.h5")), std::runtime_error);
-  EXPECT_THROW(static_cast<void>(read_provenance(folder_ / "none.h5")), std::runtime_error);
+  expect_throws<std::runtime_error>([&] { static_cast<void>(read_fields(increment_path(folder_, 1))); },
+                                    "0001.h5: cannot");
+  expect_throws<std::runtime_error>([&] { static_cast<void>(read_increments(folder_ / "run.h5")); }, "0001.h5: cannot");
+  expect_throws<std::runtime_error>([&] { static_cast<void>(read_provenance(folder_ / "none.h5")); },
+                                    "none.h5: cannot");
 }
 
 }  // namespace

@@ -30,14 +30,14 @@ void compare(const reference::Rve& start, const StrainRequest& request, const En
   const reference::Mat2 sigma = love_weber(expected, contacts(expected));
   const double p = reference::pressure(reference::stress(expected));
   const double stress[4] = {sigma.xx, sigma.xy, sigma.yx, sigma.yy};
-  for (int k = 0; k < 4; ++k) EXPECT_NEAR(report.stress[k], stress[k], tolerance * p) << k;
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(report.stress[k], stress[k], 0.1 * tolerance * p) << k;
   const reference::VoigtMatrix d = tangent(expected);
   const double upper[6] = {d[0][0], d[0][1], d[0][2], d[1][1], d[1][2], d[2][2]};
-  for (int k = 0; k < 6; ++k) EXPECT_NEAR(report.tangent[k], upper[k], tolerance * d[0][0]) << k;
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(report.tangent[k], upper[k], 1e-3 * tolerance * d[0][0]) << k;
   EXPECT_EQ(report.contacts, static_cast<int>(contacts(expected).size()));
   EXPECT_NEAR(report.unbalanced, oracle.unbalanced_ratio, 100 * tolerance * oracle.unbalanced_ratio);
   const std::size_t last = n_clones - 1;
-  EXPECT_NEAR(batch.trial.cell(last, 1), expected.cell.xy, 1e-13);
+  EXPECT_NEAR(batch.trial.cell(last, 1), expected.cell.xy, 1e-16);
   const reference::Mat2 inverse = reference::inverse(expected.cell);
   for (std::size_t i = 0; i < start.radii.size(); ++i) {
     const reference::Vec2 x{batch.trial.position(last, i, 0), batch.trial.position(last, i, 1)};
@@ -58,8 +58,8 @@ void compare(const reference::Rve& start, const StrainRequest& request, const En
 
 const StrainRequest general{.f_rel = {1.0004, 0.0012, -0.0005, 0.9994}, .strain_steps = 300, .hold_cap = 60};
 
-// Rounding differs, and grows with the path: 1e-15 becomes some 1e-11 in these few hundred steps.
-constexpr double rounding = 1e-8;
+// Rounding differs, and grows with the path: 1e-15 becomes some 4e-10 of a contact's force in these few hundred steps.
+constexpr double rounding = 5e-9;
 
 TEST_F(Engine, FollowsTheOracle) { compare(dense_, general, in_double(), 2, rounding); }
 TEST_F(Engine, FollowsTheOracleAlone) { compare(dense_, general, in_double(), 1, rounding); }
@@ -133,9 +133,9 @@ TEST_F(Engine, RigidRotationRotatesStressAndNothingElse) {
                            in_double());
   const double p = reports[1].pressure();
   EXPECT_EQ(reports[0].contacts, reports[1].contacts);
-  EXPECT_NEAR(reports[0].stress[0], reports[1].stress[3], 1e-6 * p);
-  EXPECT_NEAR(reports[0].stress[3], reports[1].stress[0], 1e-6 * p);
-  EXPECT_NEAR(reports[0].stress[1], -reports[1].stress[2], 1e-6 * p);
+  EXPECT_NEAR(reports[0].stress[0], reports[1].stress[3], 1e-11 * p);
+  EXPECT_NEAR(reports[0].stress[3], reports[1].stress[0], 1e-11 * p);
+  EXPECT_NEAR(reports[0].stress[1], -reports[1].stress[2], 1e-11 * p);
 }
 
 TEST_F(Engine, NoContactIsOpenAndNoFailure) {

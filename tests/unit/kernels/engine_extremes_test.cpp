@@ -30,14 +30,14 @@ TEST_F(EngineExtremes, CellVectorsOfTheSameLatticeGiveTheSameStress) {
     RveBatch batch = clones(sheared, 1);
     const RveReport report = run(batch, {still}, in_double()).front();
     EXPECT_EQ(report.contacts, expected.contacts) << k;
-    for (int c = 0; c < 4; ++c) EXPECT_NEAR(report.stress[c], expected.stress[c], 1e-4 * expected.pressure()) << k;
+    for (int c = 0; c < 4; ++c) EXPECT_NEAR(report.stress[c], expected.stress[c], 1e-10 * expected.pressure()) << k;
   }
 }
 
 TEST(ReducedLattice, HasTheSameAreaAndShortVectors) {
   const Mat2 reduced = reduced_lattice({2.0, 9.3, 0.0, 1.5});
-  EXPECT_NEAR(reduced.det(), 3.0, 1e-12);
-  EXPECT_NEAR(reduced.xy, -0.7, 1e-12);  // 9.3 - 5 * 2
+  EXPECT_NEAR(reduced.det(), 3.0, 1e-14);
+  EXPECT_NEAR(reduced.xy, -0.7, 1e-14);  // 9.3 - 5 * 2
   const double aa = reduced.xx * reduced.xx + reduced.yx * reduced.yx,
                bb = reduced.xy * reduced.xy + reduced.yy * reduced.yy;
   EXPECT_LE(std::abs(reduced.xx * reduced.xy + reduced.yx * reduced.yy), 0.5 * std::min(aa, bb) + 1e-12);  // Gauss
@@ -74,6 +74,7 @@ TEST_F(EngineExtremes, ExplodingAndCrushingMotionsEndWithAStatus) {
                            in_double());
   EXPECT_EQ(reports[0].status, RveStatus::open);
   EXPECT_EQ(reports[1].status, RveStatus::overlap_limit);
+  EXPECT_EQ(reports[2].status, RveStatus::overlap_limit);
   EXPECT_LT(reports[1].steps, 20000) << "given up on the way, not at the end";
   EXPECT_GT(reports[1].largest_overlap, 0.3);
   for (const std::size_t k : {std::size_t{3}, std::size_t{4}}) EXPECT_FALSE(is_failure(reports[k].status)) << k;
@@ -93,7 +94,7 @@ TEST_F(EngineExtremes, OpenedContactsCloseAgain) {
   report = run(batch, {{.f_rel = {1 / 1.025, 0, 0, 1 / 1.025}, .strain_steps = 2000, .hold_cap = 4000}}, in_double())
                .front();
   EXPECT_FALSE(is_failure(report.status));
-  EXPECT_GT(report.pressure(), 1e4);
+  EXPECT_GT(report.pressure(), 1e5);
 }
 
 TEST_F(EngineExtremes, ResultsDoNotDependOnWhenListsAreMade) {
@@ -108,7 +109,7 @@ TEST_F(EngineExtremes, ResultsDoNotDependOnWhenListsAreMade) {
       fine = run(often, {{.f_rel = fast.f_rel, .strain_steps = coarse.steps - 200, .hold_cap = 200}}, settings).front();
   EXPECT_EQ(fine.steps, coarse.steps);
   EXPECT_EQ(fine.contacts, coarse.contacts);
-  for (int c = 0; c < 4; ++c) EXPECT_NEAR(fine.stress[c], coarse.stress[c], 1e-3 * std::abs(coarse.stress[0]));
+  for (int c = 0; c < 4; ++c) EXPECT_NEAR(fine.stress[c], coarse.stress[c], 1e-5 * std::abs(coarse.stress[0]));
 }
 
 TEST_F(EngineExtremes, ACellTooNarrowForItsGrainsIsRefused) {

@@ -77,12 +77,12 @@ TEST_F(LoadingTangent, GoesOnAsTheLastMotionDid) {
   commit(batch);
   const Matrix forward = host::whole_tangent_of(at_rest(batch, asking(TangentKind::loading, 1e-5))),
                back = host::whole_tangent_of(at_rest(batch, asking(TangentKind::loading, -1e-5)));
-  EXPECT_LT((going.col(0) - forward.col(0)).norm(), 1e-3 * forward.col(0).norm());
-  EXPECT_LT((going.col(1) - back.col(1)).norm(), 1e-3 * back.col(1).norm());
-  EXPECT_LT((going.col(2) - forward.col(2)).norm(), 1e-3 * forward.col(2).norm());
+  EXPECT_LT((going.col(0) - forward.col(0)).norm(), 6e-4 * forward.col(0).norm());
+  EXPECT_LT((going.col(1) - back.col(1)).norm(), 2e-4 * back.col(1).norm());
+  EXPECT_LT((going.col(2) - forward.col(2)).norm(), 8e-4 * forward.col(2).norm());
   EXPECT_GT((forward.col(0) - back.col(0)).norm(), 0.1 * back.col(0).norm())
       << "no contact slides: the test shows nothing";
-  EXPECT_GT((forward.col(1) - back.col(1)).norm(), 0.01 * back.col(1).norm());
+  EXPECT_GT((forward.col(1) - back.col(1)).norm(), 0.05 * back.col(1).norm());
 }
 
 // Nothing reaches a cap, and no grain moves but with the strain: the elastic tangent, the turn of the forces f carried
@@ -100,7 +100,7 @@ TEST_F(LoadingTangent, OfALatticeIsTheElasticOneAndTheStressOfItsOwn) {
   turn << 1, -1, 0, -1, 1, 0, 0, 0, 1;
   own << 0, -1, 0, -1, 0, 0, 0, 0, 0.5;
   const Matrix expected = host::tangent_of(elastic) + 0.25 * s * turn + s * own;
-  EXPECT_LT((host::whole_tangent_of(r) - expected).cwiseAbs().maxCoeff(), 1e-5 * std::abs(s))
+  EXPECT_LT((host::whole_tangent_of(r) - expected).cwiseAbs().maxCoeff(), 1e-10 * std::abs(s))
       << host::whole_tangent_of(r) << "\n\n"
       << expected;
 }

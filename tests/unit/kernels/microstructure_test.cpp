@@ -44,8 +44,8 @@ std::vector<NetworkContact> distributed(double a, double direction, int count) {
 TEST(Fabric, OfTheDistributionThatDefinesIt) {
   for (const double direction : {0.3, -1.2, 1.5}) {
     const Microstructure m = describe(distributed(0.4, direction, 1000), 2);
-    EXPECT_NEAR(m.fabric_anisotropy, 0.4, 1e-3);  // of the order of 1/count
-    EXPECT_NEAR(m.fabric_direction, direction, 1e-3);
+    EXPECT_NEAR(m.fabric_anisotropy, 0.4, 1e-13);
+    EXPECT_NEAR(m.fabric_direction, direction, 1e-13);
   }
 }
 
@@ -122,7 +122,7 @@ std::vector<Microstructure> of_committed(const RveBatch& batch) {
 TEST(Microstructure, OfAHexagonalLattice) {
   const Microstructure m = of_committed(
       settled(reference::hexagonal_packing(8, 8, 1e-3, 1e-6, reference::Material{}), 1))[0];
-  EXPECT_NEAR(m.fabric_anisotropy, 0.0, 1e-10);
+  EXPECT_NEAR(m.fabric_anisotropy, 0.0, 1e-14);
   EXPECT_DOUBLE_EQ(m.coordination, 6.0);
   EXPECT_DOUBLE_EQ(m.mechanical_coordination, 6.0);
 }
@@ -136,14 +136,14 @@ TEST(Microstructure, OfASquareLatticeAndOfRows) {
   }
   rve.cell = {6 * 1.999e-3, 0, 0, 6 * 1.999e-3};
   const Microstructure square = of_committed(settled(rve, 1))[0];
-  EXPECT_NEAR(square.fabric_anisotropy, 0.0, 1e-12);
+  EXPECT_NEAR(square.fabric_anisotropy, 0.0, 1e-14);
   EXPECT_DOUBLE_EQ(square.mechanical_coordination, 4.0);
   EXPECT_DOUBLE_EQ(square.grain_rotation, 0.375);
   rve.cell.yy *= 1.2;  // rows along x, apart
   for (auto& x : rve.positions) x.y *= 1.2;
   const Microstructure rows = of_committed(settled(rve, 1))[0];
-  EXPECT_NEAR(rows.fabric_anisotropy, 2.0, 1e-12);
-  EXPECT_NEAR(rows.fabric_direction, 0.0, 1e-12);
+  EXPECT_NEAR(rows.fabric_anisotropy, 2.0, 1e-14);
+  EXPECT_NEAR(rows.fabric_direction, 0.0, 1e-14);
   EXPECT_DOUBLE_EQ(rows.mechanical_coordination, 2.0);
 }
 
@@ -167,9 +167,9 @@ TEST_F(OfAPacking, ForcesAreTheOracles) {
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     EXPECT_EQ(contacts[c].i, expected[c].i);
     EXPECT_EQ(contacts[c].j, expected[c].j);
-    EXPECT_NEAR(contacts[c].normal_force, expected[c].normal_force, 1e-10 * largest);
-    EXPECT_NEAR(contacts[c].tangential_force, expected[c].tangential_force, 1e-10 * largest);
-    EXPECT_NEAR(contacts[c].moment, expected[c].moment, 1e-13 * largest);
+    EXPECT_NEAR(contacts[c].normal_force, expected[c].normal_force, 2e-12 * largest);
+    EXPECT_NEAR(contacts[c].tangential_force, expected[c].tangential_force, 2e-12 * largest);
+    EXPECT_NEAR(contacts[c].moment, expected[c].moment, 2e-15 * largest);
     slid = std::max(slid, std::abs(expected[c].tangential_force));
   }
   EXPECT_GT(slid, 0.1 * largest) << "no tangential force: the test shows nothing";
@@ -189,7 +189,7 @@ TEST_F(OfAPacking, ForcesGiveTheReportedStress) {
     stress[2] += c.force_y() * c.branch_x / volume;
     stress[3] += c.force_y() * c.branch_y / volume;
   }
-  for (int k = 0; k < 4; ++k) EXPECT_NEAR(stress[k], report.stress[k], 1e-8 * report.pressure()) << k;
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(stress[k], report.stress[k], 1e-12 * report.pressure()) << k;
 }
 
 TEST_F(OfAPacking, AShearedOneHasMoreContactsAlongTheCompression) {
@@ -247,10 +247,10 @@ TEST_F(OfAPacking, RecordedAlongAPathItIsTheSameAndChangesNothing) {
         EXPECT_EQ(b[s].microstructure.coordination, 0.0);
         EXPECT_GT(a[s].microstructure.coordination, 1.0);
       }
-      const double tolerance = 1e-5;  // the first sample is one step from the start, of 3e-6 strain
-      EXPECT_NEAR(a[0].microstructure.fabric_anisotropy, start.fabric_anisotropy, tolerance);
-      EXPECT_NEAR(a[0].microstructure.mechanical_coordination, start.mechanical_coordination, tolerance);
-      EXPECT_NEAR(a[0].microstructure.strong_coordination[1], start.strong_coordination[1], tolerance);
+      // The first sample is one step from the start, of 3e-6 strain: branches have turned, no contact has changed.
+      EXPECT_NEAR(a[0].microstructure.fabric_anisotropy, start.fabric_anisotropy, 1e-5);
+      EXPECT_EQ(a[0].microstructure.mechanical_coordination, start.mechanical_coordination);
+      EXPECT_EQ(a[0].microstructure.strong_coordination[1], start.strong_coordination[1]);
       EXPECT_EQ(a[0].microstructure.grain_rotation, 0.0);
       // The last sample is at most 50 of some 1000 steps before the end: few contacts have changed.
       EXPECT_NEAR(a.back().microstructure.fabric_anisotropy, end[k].fabric_anisotropy, 0.05);
