@@ -28,11 +28,12 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
 
+from include_graph import included_by
+
 ROOT = Path(__file__).resolve().parent.parent
 CLANG_TIDY = ROOT / ".prefix/venv/bin/clang-tidy"
 CLEAN_REVISION = ROOT / "tools/tidy_clean_revision.txt"
 STAMPS = ROOT / "build/tidy"
-INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 SOURCES = (".cpp", ".hpp")
 
 
@@ -81,8 +82,7 @@ def includes(path: str) -> frozenset[str]:
     found: set[str] = set()
     waiting = [path]
     while waiting:
-        text = (ROOT / waiting.pop()).read_text(encoding="utf-8")
-        new = {name for name in INCLUDE.findall(text) if (ROOT / name).is_file()} - found
+        new = {name for name in included_by(ROOT / waiting.pop()) if (ROOT / name).is_file()} - found
         found |= new
         waiting += new
     return frozenset(found)
