@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Draws docs/architecture.svg from the includes themselves: tools/draw_architecture.py [--check]
+"""Draws docs/architecture.svg from the include table and the includes: tools/draw_architecture.py [--check]
 
-A box is a room, that is a sub-folder of host or kernels, or the whole of fem and io. A room stands one row above the
-highest of those that it includes; an arrow points at what is included. Arrows that follow from others are left out, and
-the arrows between the rooms of two folders are drawn as one. --check only compares the picture with the file, so that a
-test keeps it from going stale. An arrow in red belongs to a circle, which tools/check_includes.py does not allow.
+A box is a room, that is a sub-folder of host or kernels, or the whole of fem and io. The rows are the levels of the
+table ROOMS in tools/check_includes.py; an arrow points from a room to one that its files include. Arrows that follow
+from others are left out, and the arrows between two folders are drawn as one. An arrow in red points upwards or
+sideways, which the table does not allow. --check only compares the picture with the file, so that a test keeps it from
+going stale.
 """
 
 import argparse
@@ -12,11 +13,12 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from include_graph import FOLDERS, cycles, levels, quotient, read_graph, reduced, room_of
+from check_includes import ROOMS
+from include_graph import FOLDERS, quotient, read_graph, reduced, room_of
 
 ROOT = Path(__file__).resolve().parent.parent
 FILE = ROOT / "docs/architecture.svg"
-BOX_WIDTH, BOX_HEIGHT, ROW, GAP, MARGIN = 118, 30, 66, 22, 26
+BOX_WIDTH, BOX_HEIGHT, ROW, GAP, MARGIN = 118, 28, 58, 22, 26
 HEAD = 30  # height of a folder's title
 FILL = {"host": "#fdf3e1", "kernels": "#e4effa", "fem": "#e6f4e6", "io": "#f3e8f6"}
 TOP = {"host": "main", "kernels": "advance_rves", "fem": "one room", "io": "one room"}  # the files at the top
@@ -37,16 +39,16 @@ def rooms_of(folder: str) -> dict[str, set[str]]:
     return quotient(graph, {path: room_of(path) for path in graph})
 
 
-def rows_of(graph: Graph) -> list[list[str]]:
-    """Rooms by level, the ground first; each row ordered by where its rooms' arrows lead."""
-    height = levels(graph)
-    rows = [sorted(room for room in graph if height[room] == k) for k in range(max(height.values()) + 1)]
+def rows_of(folder: str, graph: Graph) -> list[list[str]]:
+    """Rooms by level, the ground first and the folder's own files last; a row is ordered by where its arrows lead."""
+    table = [[f"{folder}/{room}" for room in level] for level in ROOMS.get(folder, ())]
+    rows = [[room for room in level if room in graph] for level in [*table, [folder]]]
+    rows = [row for row in rows if row]
     order = {room: (k + 0.5) / len(row) for row in rows for k, room in enumerate(row)}
-    for _ in range(4):
-        for row in rows[1:]:
-            middle = {room: sum(order[o] for o in graph[room]) / max(1, len(graph[room])) for room in row}
-            row.sort(key=lambda room: (middle[room], room))
-            order |= {room: (k + 0.5) / len(row) for k, room in enumerate(row)}
+    for row in rows[1:]:
+        middle = {room: sum(order[o] for o in graph[room]) / max(1, len(graph[room])) for room in row}
+        row.sort(key=lambda room: (middle[room], room))
+        order |= {room: (k + 0.5) / len(row) for k, room in enumerate(row)}
     return rows
 
 
@@ -80,11 +82,13 @@ def arrow(begin: tuple[float, float], end: tuple[float, float], colour: str, wid
 
 
 def arrows(graph: Graph, places: Places) -> list[str]:
-    circle = cycles(graph)
-    straight = reduced({room: others - circle[room] for room, others in graph.items()})
-    drawn = [arrow(places[a], places[b], "#444") for a, others in straight.items() for b in sorted(others)]
-    bad = [(a, b) for a, others in graph.items() for b in sorted(others & circle[a])]
-    return drawn + [arrow(places[a], places[b], "#c00") for a, b in bad]
+    def is_down(room: str, other: str) -> bool:
+        return places[room][1] < places[other][1]
+
+    down = {room: {other for other in others if is_down(room, other)} for room, others in graph.items()}
+    wrong = [(room, other) for room, others in graph.items() for other in sorted(others) if not is_down(room, other)]
+    drawn = [arrow(places[a], places[b], "#444") for a, others in reduced(down).items() for b in sorted(others)]
+    return drawn + [arrow(places[a], places[b], "#c00") for a, b in wrong]
 
 
 def folder_box(folder: str, left: float, top: float, width: float, height: float) -> list[str]:
@@ -113,7 +117,7 @@ def level_numbers(rows: list[list[str]], left: float, top: float) -> list[str]:
 
 def picture() -> str:
     rooms = {folder: rooms_of(folder) for folder in FOLDERS}
-    rows = {folder: rows_of(graph) for folder, graph in rooms.items()}
+    rows = {folder: rows_of(folder, graph) for folder, graph in rooms.items()}
     sizes = {folder: size_of(r) for folder, r in rows.items()}
     below = ("kernels", "fem", "io")
     width = max(sizes["host"][0], sum(sizes[f][0] for f in below) + 2 * GAP)

@@ -337,7 +337,8 @@ def main() -> int:
     known = {}
     for line in RESULTS.read_text().splitlines() if RESULTS.exists() else ():
         entry = json.loads(line)
-        known[entry.pop("key")] = Verdict(**entry)
+        key = entry.pop("key")
+        known[key] = Verdict(**entry)
     if given.again:
         known = {key: verdict for key, verdict in known.items() if verdict.verdict != "survived"}
     waiting = [mutant for mutant in mutants if mutant.key not in known]

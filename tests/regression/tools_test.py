@@ -2,6 +2,7 @@
 clang-tidy is given the right files, and mutants are put into code alone."""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,15 @@ class Architecture(unittest.TestCase):
         words = [sys.executable, str(ROOT / "tools/draw_architecture.py"), "--check"]
         done = subprocess.run(words, check=False, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_page_names_files_and_functions_that_exist(self):
+        page = (ROOT / "docs/architecture.md").read_text()
+        rows = re.findall(r"^\|.*\| `([\w/.]+)` \| `([\w()]+)` \|$", page, re.MULTILINE)
+        self.assertGreater(len(rows), 20)
+        for path, function in rows:
+            self.assertTrue((ROOT / path).is_file(), f"docs/architecture.md names {path}, which does not exist")
+            found = re.search(rf"\b{re.escape(function)}\s*\(", (ROOT / path).read_text())
+            self.assertTrue(found, f"docs/architecture.md: {path} has no {function}")
 
     def test_levels_and_circles(self):
         graph = {"a": set(), "b": {"a"}, "c": {"a", "b"}, "d": {"c", "e"}, "e": {"d"}}
