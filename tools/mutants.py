@@ -220,13 +220,11 @@ def build(targets: list[str]) -> bool:
     return run(words, "build.log")
 
 
-def libraries() -> str:
-    """What the libraries' machine code adds up to; the text of the build's own provenance is no part of it."""
-    digest = hashlib.sha256()
-    for path in sorted(BUILD.rglob("*.cpp.o")):
-        if "voussoir_" in str(path) and "build_info" not in path.name and "tests" not in path.parts:
-            digest.update(path.read_bytes())
-    return digest.hexdigest()
+def machine_code(path: str) -> bytes | None:
+    """What a .cpp of the libraries was compiled to."""
+    folder, rest = path.split("/", 1)
+    found = [p for p in (BUILD / folder).rglob(f"{Path(path).name}.o") if p.as_posix().endswith(f".dir/{rest}.o")]
+    return found[0].read_bytes() if len(found) == 1 else None
 
 
 def passes(test: str, limit: float) -> bool:
@@ -243,8 +241,8 @@ def unit_tests(pattern: str) -> list[str]:
     return [test for test in re.findall(r"Test +#\d+: (\S+)", shown.stdout) if re.search(pattern, test)]
 
 
-def prepare(pattern: str) -> tuple[dict[str, float], str]:
-    """Builds and runs the tests without a mutant: their times [s] and the libraries' code."""
+def prepare(pattern: str) -> dict[str, float]:
+    """Builds and runs the tests without a mutant: their times [s]."""
     TREE.mkdir(parents=True, exist_ok=True)
     copy_tree()
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
@@ -260,7 +258,7 @@ def prepare(pattern: str) -> tuple[dict[str, float], str]:
             print(f"mutants: {test} fails without any mutant, see build/mutants/test.log", file=sys.stderr)
             sys.exit(2)
         times[test] = time.monotonic() - start
-    return times, libraries()
+    return times
 
 
 def nearness(test: str, path: str) -> tuple[bool, bool, bool]:
@@ -269,7 +267,8 @@ def nearness(test: str, path: str) -> tuple[bool, bool, bool]:
     return parts[-1] not in test, not test.startswith("_".join(parts[:-1])), not test.startswith(parts[0])
 
 
-def judge(mutant: Mutant, times: dict[str, float], original: str) -> Verdict:
+def judge(mutant: Mutant, times: dict[str, float], original: bytes | None) -> Verdict:
+    """Builds and runs the tests with a mutant; `original` is the machine code of its file without it."""
     start = time.monotonic()
 
     def verdict(what: str, by: str = "") -> Verdict:
@@ -279,9 +278,6 @@ def judge(mutant: Mutant, times: dict[str, float], original: str) -> Verdict:
     text = (ROOT / mutant.path).read_text(encoding="utf-8")
     path.write_text(mutant.apply(text), encoding="utf-8")
     try:
-        if not build(["voussoir_host"]):
-            return verdict("does not compile")
-        same = libraries() == original
         tests = sorted(times, key=lambda test: (*nearness(test, mutant.path), times[test]))
         step = os.cpu_count() or 1
         for k in range(0, len(tests), step):
@@ -290,7 +286,7 @@ def judge(mutant: Mutant, times: dict[str, float], original: str) -> Verdict:
             for test in tests[k : k + step]:
                 if not passes(test, 20 + 5 * times[test]):
                     return verdict("killed", test)
-            if same and mutant.path.endswith(".cpp"):
+            if original and machine_code(mutant.path) == original:
                 return verdict("same machine code")
         return verdict("survived")
     finally:
@@ -343,9 +339,10 @@ def main() -> int:
         known = {key: verdict for key, verdict in known.items() if verdict.verdict != "survived"}
     waiting = [mutant for mutant in mutants if mutant.key not in known]
     print(f"mutants: {len(mutants)} with seed {given.seed}, {len(mutants) - len(waiting)} of them judged before")
-    times, original = prepare(given.tests) if waiting else ({}, "")
+    times = prepare(given.tests) if waiting else {}
+    originals = {mutant.path: machine_code(mutant.path) for mutant in waiting}
     for mutant in waiting:
-        known[mutant.key] = verdict = judge(mutant, times, original)
+        known[mutant.key] = verdict = judge(mutant, times, originals[mutant.path])
         with RESULTS.open("a") as file:
             file.write(json.dumps({"key": mutant.key, **dataclasses.asdict(verdict)}) + "\n")
         before, after = mutant.lines((ROOT / mutant.path).read_text())
