@@ -73,10 +73,10 @@ class Mutant:
     before: str
     after: str
 
-    @property
-    def key(self) -> str:
+    def key(self, tests: str) -> str:
+        """Under which its verdict is kept; `tests` is the choice of tests that it rests on."""
         text = (ROOT / self.path).read_bytes()
-        return f"{self.path}:{self.start}:{self.after}:{hashlib.sha256(text).hexdigest()[:12]}"
+        return f"{self.path}:{self.start}:{self.after}:{hashlib.sha256(text).hexdigest()[:12]}:{tests}"
 
     def apply(self, text: str) -> str:
         assert text[self.start :].startswith(self.before)
@@ -337,21 +337,21 @@ def main() -> int:
         known[key] = Verdict(**entry)
     if given.again:
         known = {key: verdict for key, verdict in known.items() if verdict.verdict != "survived"}
-    waiting = [mutant for mutant in mutants if mutant.key not in known]
+    waiting = [mutant for mutant in mutants if mutant.key(given.tests) not in known]
     print(f"mutants: {len(mutants)} with seed {given.seed}, {len(mutants) - len(waiting)} of them judged before")
     times = prepare(given.tests) if waiting else {}
     originals = {mutant.path: machine_code(mutant.path) for mutant in waiting}
     for mutant in waiting:
-        known[mutant.key] = verdict = judge(mutant, times, originals[mutant.path])
+        known[mutant.key(given.tests)] = verdict = judge(mutant, times, originals[mutant.path])
         with RESULTS.open("a") as file:
-            file.write(json.dumps({"key": mutant.key, **dataclasses.asdict(verdict)}) + "\n")
+            file.write(json.dumps({"key": mutant.key(given.tests), **dataclasses.asdict(verdict)}) + "\n")
         before, after = mutant.lines((ROOT / mutant.path).read_text())
         print(f"{mutant.path}:{mutant.line}: {verdict.verdict} {verdict.by} ({verdict.seconds:.0f} s)", flush=True)
         print(f"  - {before}\n  + {after}", flush=True)
-    text = table([(mutant, known[mutant.key]) for mutant in mutants], given.seed)
+    text = table([(mutant, known[mutant.key(given.tests)]) for mutant in mutants], given.seed)
     (WORK / "table.md").write_text(text)
     print(f"\n{text}")
-    return 1 if any(known[mutant.key].verdict == "survived" for mutant in mutants) else 0
+    return 1 if any(known[mutant.key(given.tests)].verdict == "survived" for mutant in mutants) else 0
 
 
 if __name__ == "__main__":
