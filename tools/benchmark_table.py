@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Markdown rows of a benchmark report, for tests/benchmark/README.md: tools/benchmark_table.py REPORT.json ...
 
-Reports are those of --benchmark_out=FILE. One row a benchmark: medians of particle-steps/s in float and double, and in float of
-contact-steps/s and listed-pair-steps/s, all in million; contacts per grain. Several reports (one thread and two, say) make one
-table each, headed by their machine.
+Reports are those of --benchmark_out=FILE. One row a benchmark: medians of particle-steps/s in float and double, and in
+float of contact-steps/s and listed-pair-steps/s, all in million; contacts per grain. Several reports (one thread and
+two, say) make one table each, headed by their machine.
 """
 
 import json
@@ -14,7 +14,7 @@ from pathlib import Path
 def medians(path):
     """(context, {scene: {precision: counters}}) of a report."""
     report = json.loads(Path(path).read_text())
-    scenes = {}
+    scenes: dict[str, dict[str, dict]] = {}
     for run in report["benchmarks"]:
         if run.get("aggregate_name") == "median":
             scene, precision = run["run_name"].split("/")[:2]

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Draws several tunnels beside one another and states the study's trends between them: tools/compare_tunnels.py RUN RUN ... -o DIR."""
+"""Draws several tunnels beside one another and states the study's trends between them: tools/compare_tunnels.py RUN RUN
+... -o DIR."""
 
 import argparse
 import sys

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Draws the figures of a run: tools/figures.py RESULT_DIR [-o DIR] [--only NAME ...] [further options: --help].
 
-What a result does not hold is skipped with a line saying why. Dataset names: io/FORMAT.md; the figures: voussoir_plots/README.md.
+What a result does not hold is skipped with a line saying why. Dataset names: io/FORMAT.md; the figures:
+voussoir_plots/README.md.
 """
 
 import argparse

@@ -125,11 +125,12 @@ for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml"
         str(folder / "case.toml"),
         *(word for setting in settings for word in ("--set", setting)),
     ]
-    checked = subprocess.run(words, capture_output=True, text=True, timeout=60)
+    checked = subprocess.run(words, check=False, capture_output=True, text=True, timeout=60)
     check(checked.returncode == 0, f"check of cases/{case}: {checked.stderr}")
     if case in STUDY_ELEMENTS:
         whole = run([PROGRAM, "check", str(folder / "case.toml")]).stdout
-        points = int(re.search(r"# (\d+) Gauss points", whole)[1])
+        counted = re.search(r"# (\d+) Gauss points", whole)
+        points = int(counted[1]) if counted else 0
         check(
             abs(points / 4 - STUDY_ELEMENTS[case]) <= 5, f"cases/{case}: {points / 4} elements, not those of the study"
         )

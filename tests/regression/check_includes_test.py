@@ -11,7 +11,9 @@ ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 
 
 def check(folder):
-    done = subprocess.run([sys.executable, ROOT / "tools/check_includes.py", folder], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, ROOT / "tools/check_includes.py", folder], check=False, capture_output=True, text=True
+    )
     return done.returncode, done.stdout
 
 

@@ -1,4 +1,5 @@
-"""An increment that finds no equilibrium: exit code 3, what, where and when in the log, nothing recorded as converged."""
+"""An increment that finds no equilibrium: exit code 3, what, where and when in the log, nothing recorded as
+converged."""
 
 from program import check, command, fresh, run, table
 

@@ -1,5 +1,6 @@
-"""kill -9 at random moments, wherever they fall (a packing, a column, half a file, a checkpoint): whenever the run is resumed, it
-gives the bits of one that was left alone. Elastic increments take milliseconds, so that most kills hit a file being written."""
+"""kill -9 at random moments, wherever they fall (a packing, a column, half a file, a checkpoint): whenever the run is
+resumed, it gives the bits of one that was left alone. Elastic increments take milliseconds, so that most kills hit a
+file being written."""
 
 import random
 import subprocess

@@ -7,7 +7,6 @@ import time
 from pathlib import Path
 
 import h5py
-
 from program import PROGRAM, ROOT, check, check_same, command, fresh, run
 
 PACK = ["packing.grains=60", "packing.seeds=[1]", "packing.candidates=1", "packing.folder=packings"]
@@ -24,7 +23,7 @@ check("--replace" in run(probe, code=2).stderr, "a probe's folder does not say w
 run([*probe, "--resume"], code=2)
 run([*probe, "--replace"])
 check(Path("probed/probe.csv").read_bytes() == first, "a probe done again is another one")
-with open("probed/probe.csv", newline="") as opened:
+with Path("probed/probe.csv").open(newline="") as opened:
     probes = {row["probe"]: row for row in csv.DictReader(opened)}
 for name in ("xxxx", "yyyy"):
     before, turned, pushed = (
@@ -38,7 +37,8 @@ for name in ("xxxx", "yyyy"):
     check(abs(turned / before - 1) < 2e-3, f"tangent {name} {before} after a rotation of 1e-4: {turned}")
     check(pushed != before, f"tangent {name} after compression is the one before")
 
-# The loading tangent is that of the probes' own strain, column by column; elsewhere rows have the tangent that was found.
+# The loading tangent is that of the probes' own strain, column by column; elsewhere rows have the tangent that was
+# found.
 words = [
     PROGRAM,
     "run",
@@ -59,7 +59,7 @@ words = [
 for setting in PACK:
     words += ["--set", setting]
 check("tangent (loading)" in run(words).stdout, "the loading tangent is not shown")
-with open("probed_tangent/probe.csv", newline="") as opened:
+with Path("probed_tangent/probe.csv").open(newline="") as opened:
     rows = {row["probe"]: row for row in csv.DictReader(opened)}
 for probed, changed in (("xx", "xx"), ("xx", "yy"), ("yy", "xx"), ("yy", "yy"), ("xy", "xy")):
     tangent, change = float(rows[probed][f"tangent_{changed}{probed}_Pa"]), float(rows[probed][f"change_{changed}_Pa"])
@@ -81,7 +81,7 @@ check("packing read" in said and "grains    60" in said, f"a stored packing is n
 # Finished biaxial tests stay as they are.
 settings = [*PACK, 'biaxial.pressures=["100 kPa"]', "biaxial.strain=3 %", "biaxial.inertial_number=1e-3"]
 tests = fresh("biaxial")
-code = subprocess.run(command("biaxial", tests, settings), capture_output=True).returncode
+code = subprocess.run(command("biaxial", tests, settings), check=False, capture_output=True).returncode
 check(code in (0, 3), f"biaxial tests ended with {code}")
 before = (tests / "run.h5").stat().st_mtime_ns
 check(

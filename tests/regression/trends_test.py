@@ -5,12 +5,13 @@ import sys
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
-import numpy as np  # noqa: E402
-from voussoir_plots import chains, points, q8, settlements, tensors, trends  # noqa: E402
-from voussoir_plots.result import Result  # noqa: E402
+import numpy as np
+from voussoir_plots import chains, points, q8, settlements, tensors, trends
+from voussoir_plots.result import Result
 
 LOSS = np.linspace(0, 0.2, 81)
 
@@ -113,8 +114,7 @@ class Paths(unittest.TestCase):
     @staticmethod
     def path(peak, softens):
         """q/p that falls until 2 %, then rises to 0.7 at the peak."""
-        rise = np.interp(LOSS, [0, 0.02, peak, 0.2], [0.5, 0.1, 0.7, 0.5 if softens else 0.7])
-        return rise
+        return np.interp(LOSS, [0, 0.02, peak, 0.2], [0.5, 0.1, 0.7, 0.5 if softens else 0.7])
 
     def test_linear_fall(self):
         self.assertEqual(trends.falls_linearly(LOSS, {"Aa": self.path(0.06, True)}).verdict, trends.SEEN)
@@ -154,7 +154,9 @@ class Paths(unittest.TestCase):
         )
 
     def test_soil_as_the_case_tells(self):
-        soil_of = lambda **case: Result.soil.fget(SimpleNamespace(case=case))  # noqa: E731
+        def soil_of(**case):
+            return vars(Result)["soil"].fget(SimpleNamespace(case=case))
+
         self.assertEqual(soil_of(), "dense sand")
         self.assertEqual(soil_of(soil={"sizes": ["4 mm", "20 mm"]}), "gravel")
         self.assertEqual(soil_of(soil={"sizes": ["0.4 cm", "2 cm"]}), "gravel")
@@ -180,13 +182,13 @@ class Places(unittest.TestCase):
     """Two elements side by side, 2 m wide and 2 m high."""
 
     def setUp(self):
-        xy = {}
+        xy: dict[tuple, int] = {}
         corners = [[(0, 0), (2, 0), (2, 2), (0, 2)], [(2, 0), (4, 0), (4, 2), (2, 2)]]
         connectivity = []
         for quad in corners:
             middle = [tuple((np.array(a) + b) / 2) for a, b in zip(quad, quad[1:] + quad[:1])]
             connectivity.append([xy.setdefault(tuple(map(float, p)), len(xy)) for p in (*quad, *middle)])
-        self.result = SimpleNamespace(coordinates=np.array(list(xy)), connectivity=np.array(connectivity))
+        self.result: Any = SimpleNamespace(coordinates=np.array(list(xy)), connectivity=np.array(connectivity))
 
     def test_level_line(self):
         line = points.LevelLine(self.result, 1.2)
@@ -202,7 +204,7 @@ class Places(unittest.TestCase):
         self.assertTrue(np.all(where[:, 1] < 1) and np.all(np.diff(where[:, 0]) > 0))
 
     def test_fields_are_held_outside_the_points(self):
-        np.testing.assert_allclose(q8.gauss_weights(np.array([[-1.0, -1], [0, 0]])), [[1, 0, 0, 0], [0.25] * 4])
+        np.testing.assert_allclose(q8.gauss_weights([[-1, -1], [0, 0]]), np.array([[1, 0, 0, 0], [0.25] * 4]))
 
 
 class Chains(unittest.TestCase):

@@ -1,4 +1,5 @@
-"""The figures' own arithmetic: eq. (21) puts the inflection at x = i, the fit finds known troughs, Q8 sampling is exact."""
+"""The figures' own arithmetic: eq. (21) puts the inflection at x = i, the fit finds known troughs, Q8 sampling is
+exact."""
 
 import os
 import sys
@@ -7,8 +8,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
-import numpy as np  # noqa: E402
-from voussoir_plots import q8, trough_fit  # noqa: E402
+import numpy as np
+from voussoir_plots import q8, trough_fit
 
 
 class ModifiedGauss(unittest.TestCase):
@@ -16,7 +17,7 @@ class ModifiedGauss(unittest.TestCase):
         inflection, step = 4.0, 1e-3
         for alpha in (0.1, 0.3, 0.5, 1.0, 2.0, 5.0):
 
-            def curvature(x):
+            def curvature(x, alpha=alpha):
                 s = trough_fit.modified_gauss(x + step * np.array([-1, 0, 1]), 1.0, inflection, alpha)
                 return (s[0] - 2 * s[1] + s[2]) / step**2
 

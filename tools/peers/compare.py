@@ -1,4 +1,5 @@
-"""Runs the peers on the benchmark's packing and sets their rates beside ours: compare.py BENCHMARK.json PACKING_FOLDER."""
+"""Runs the peers on the benchmark's packing and sets their rates beside ours: compare.py BENCHMARK.json
+PACKING_FOLDER."""
 
 import json
 import os
@@ -38,7 +39,8 @@ def read_packing(folder, grains):
         cell = file["cell"][()].ravel()
         if cell[1] != 0 or cell[2] != 0:
             sys.exit(f"{path}: the cell is not rectangular")
-        return Packing(*(file[name][()].tolist() for name in ("radius", "x", "y")), float(cell[0]), float(cell[3]))
+        radius, x, y = (file[name][()].tolist() for name in ("radius", "x", "y"))
+        return Packing(radius, x, y, float(cell[0]), float(cell[3]))
 
 
 def our_rates(path):
@@ -58,6 +60,7 @@ def yade(packing):
         (Path(folder) / "packing.json").write_text(json.dumps(asdict(packing) | settings))
         done = subprocess.run(
             ["yade", "-j1", "-x", "-n", str(Path(__file__).parent / "yade_packing.py"), folder],
+            check=False,
             capture_output=True,
             text=True,
             cwd=folder,

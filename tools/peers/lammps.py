@@ -85,6 +85,7 @@ def run(packing, skin, newton, steps, repetitions):
         done = subprocess.run(
             ["lmp", "-in", script.name, "-log", "none"],
             cwd=folder,
+            check=False,
             capture_output=True,
             text=True,
             env={"OMP_NUM_THREADS": "1", "PATH": "/usr/bin:/bin"},

@@ -1,14 +1,14 @@
-# Run by Yade (yade -j1 -x -n yade_packing.py FOLDER): FOLDER/packing.json in, FOLDER/yade.json out. Names without an import
-# are Yade's.
+# Yade runs this file (yade -j1 -x -n yade_packing.py FOLDER): it reads FOLDER/packing.json and writes FOLDER/yade.json.
+# Names without an import are Yade's.
 import json
 import math
 import statistics
 import sys
 import time
+from pathlib import Path
 
-folder = sys.argv[-1]
-with open(folder + "/packing.json") as file:
-    packing = json.load(file)
+folder = Path(sys.argv[-1])
+packing = json.loads((folder / "packing.json").read_text())
 settle, steps, repetitions = packing["settle"], packing["steps"], packing["repetitions"]
 
 O.periodic = True
@@ -70,5 +70,5 @@ skin = max(tries)[1]
 collider.verletDist = skin * 2 * statistics.fmean(packing["radius"])
 rates = [rate(steps) for _ in range(repetitions)]
 contacts = sum(1 for i in O.interactions if i.isReal)
-with open(folder + "/yade.json", "w") as file:
-    json.dump({"rate": statistics.median(rates), "skin": skin, "coordination": 2.0 * contacts / len(O.bodies)}, file)
+answer = {"rate": statistics.median(rates), "skin": skin, "coordination": 2.0 * contacts / len(O.bodies)}
+(folder / "yade.json").write_text(json.dumps(answer))

@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from trade_study.plan import PRESSURES, Study, settings  # noqa: E402
-from trade_study.report import write  # noqa: E402
+from trade_study.plan import PRESSURES, Study, settings
+from trade_study.report import write
 
 
 def main():

@@ -1,11 +1,12 @@
-"""From the tables of the runs to errors in percent of the pressure: root mean squares, medians and the worst of all samples. They
-differ where a packing snaps: one whose next rearrangement falls before the end with one setting and after it with another one is
-off by more than all others together.
+"""From the tables of the runs to errors in percent of the pressure: root mean squares, medians and the worst of all
+samples. They differ where a packing snaps: one whose next rearrangement falls before the end with one setting and after
+it with another one is off by more than all others together.
 
-Of an evaluation (one increment from a given state): e = |sigma - sigma_ref| / (sqrt(2) P), with |.| the tensor's norm and P the larger
-pressure of before and after, so that an isotropic error of P is 100 %. sigma_ref is the mean of the reference solution's
-replicas, the same seed, state and direction. Of the tangent (eq. (4)) after that evaluation: |D - D_ref| / |D_ref|, with the
-norm of fourth-order tensors (`TANGENT_NORM`). Of a path: e = q/p - (q/p)_ref at the same axial strain, as the mean of replicas.
+Of an evaluation (one increment from a given state): e = |sigma - sigma_ref| / (sqrt(2) P), with |.| the tensor's norm
+and P the larger pressure of before and after, so that an isotropic error of P is 100 %. sigma_ref is the mean of the
+reference solution's replicas, the same seed, state and direction. Of the tangent (eq. (4)) after that evaluation: |D -
+D_ref| / |D_ref|, with the norm of fourth-order tensors (`TANGENT_NORM`). Of a path: e = q/p - (q/p)_ref at the same
+axial strain, as the mean of replicas.
 """
 
 import csv
@@ -25,7 +26,7 @@ def read(file):
     """Columns of a table; a missing one (a run that failed) is empty."""
     if not file.exists():
         return {}
-    with open(file, newline="") as opened:
+    with file.open(newline="") as opened:
         rows = list(csv.DictReader(opened))
     columns = {}
     for name in rows[0] if rows else ():
@@ -50,7 +51,8 @@ def stresses(table):
 
 
 def probes(folders):
-    """{(seed, direction): (stress (replica, 3), change (replica, 3), steps, unbalanced, at rest, tangent (replica, 6))} of runs."""
+    """{(seed, direction): (stress (replica, 3), change (replica, 3), steps, unbalanced, at rest, tangent (replica, 6))}
+    of runs."""
     found = {}
     for folder in folders:
         table = read(folder / "probe.csv")
@@ -78,8 +80,9 @@ def pressure(stress):
 
 
 def evaluation_error(ours, reference):
-    """Errors over all seeds and directions, in percent of P; of those that came to rest. The others say so by their status
-    (`flagged`: their share): a packing that collapses or opens within the increment goes on moving when the hold ends."""
+    """Errors over all seeds and directions, in percent of P; of those that came to rest. The others say so by their
+    status (`flagged`: their share): a packing that collapses or opens within the increment goes on moving when the hold
+    ends."""
     total, bias, along, scatter, tangents, steps, flagged = [], [], [], [], [], [], []
     for key, (stress, _, count, _, at_rest, tangent) in ours.items():
         if key not in reference:
@@ -121,7 +124,8 @@ def tangent_error(tangent, reference):
 
 
 def path(folders):
-    """{seed: q/p and volumetric strain (replica, strain), steps and evaluations, share of increments at the step limit}"""
+    """{seed: q/p and volumetric strain (replica, strain), steps and evaluations, share of increments at the step
+    limit}"""
     found = {}
     for folder in folders:
         table = read(folder / "path.csv")
@@ -176,7 +180,8 @@ def path_error(ours, reference):
 
 
 def path_scatter(curves):
-    """Of one setting: chaos (replicas of a seed) and packings (seeds), percent of p; means over seeds at the path's end."""
+    """Of one setting: chaos (replicas of a seed) and packings (seeds), percent of p; means over seeds at the path's
+    end."""
     chaos = rms([rms(c["ratio"] - c["ratio"].mean(axis=0)) for c in curves.values()])
     means = np.array([c["ratio"].mean(axis=0) for c in curves.values()])
     volumes = np.array([c["volume"].mean(axis=0)[-1] for c in curves.values()])
@@ -191,8 +196,9 @@ def path_scatter(curves):
 
 
 def noise_share(ours, at_rest):
-    """Error of a stress component that an early end of the hold leaves, over unbalanced ratio x pressure: what the pool of RVEs
-    assumes when it tells Newton how noisy its stresses are (host/rve_pool.cpp). `at_rest`: the same evaluations held longer."""
+    """Error of a stress component that an early end of the hold leaves, over unbalanced ratio x pressure: what the pool
+    of RVEs assumes when it tells Newton how noisy its stresses are (host/rve_pool.cpp). `at_rest`: the same evaluations
+    held longer."""
     off, expected = [], []
     for key, (stress, _, _, unbalanced, *_) in ours.items():
         if key in at_rest:

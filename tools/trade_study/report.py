@@ -5,11 +5,12 @@ import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter
 from voussoir_plots.style import save, use_style
 
-from .errors import evaluation_error, noise_share, path, path_error, path_scatter, probes, STRAINS
+from .errors import STRAINS, evaluation_error, noise_share, path, path_error, path_scatter, probes
 from .plan import INCREMENTS, PRESSURES, Setting, settings
 
 STATES = ("isotropic", "sheared")
-# Knobs whose paths have the reference solution's increments: the search for sigma_xx is then the same, and its error cancels.
+# Knobs whose paths have the reference solution's increments: the search for sigma_xx is then the same, and its error
+# cancels.
 LINES = {"inertial_number": ("C0", "o"), "hold_tolerance": ("C1", "s"), "hold_cap": ("C2", "v")}
 PRESETS = {"fast": ("C3", "X"), "standard": ("black", "P"), "reference": ("C5", "D")}
 
@@ -23,18 +24,16 @@ class Findings:
         self.evaluation, self.paths, self.scatter, self.curves = {}, {}, {}, {}
         for kpa in study.pressures:
             reference = study.reference(kpa)
+            every = (reference, *self.chosen)
             for state in STATES:
                 theirs = probes(study.probe_folders(reference, kpa, state).values())
-                self.evaluation[kpa, state] = self._each(
-                    lambda s: evaluation_error(probes(study.probe_folders(s, kpa, state).values()), theirs), reference
-                )
+                self.evaluation[kpa, state] = {
+                    s.name: evaluation_error(probes(study.probe_folders(s, kpa, state).values()), theirs) for s in every
+                }
             theirs = path(study.path_folders(reference, kpa).values())
-            self.curves[kpa] = self._each(lambda s: path(study.path_folders(s, kpa).values()), reference)
+            self.curves[kpa] = {s.name: path(study.path_folders(s, kpa).values()) for s in every}
             self.paths[kpa] = {name: path_error(ours, theirs) for name, ours in self.curves[kpa].items() if ours}
             self.scatter[kpa] = {name: path_scatter(ours) for name, ours in self.curves[kpa].items() if ours}
-
-    def _each(self, measure, reference):
-        return {s.name: measure(s) for s in (reference, *self.chosen)}
 
 
 def figure_of(value, digits=2):
@@ -229,10 +228,20 @@ def points(findings, knob, measure):
     return np.array(found).reshape(-1, 2)
 
 
+def _evaluation(findings, setting, kpa, key):
+    found = findings.evaluation[kpa, "sheared"].get(setting.name, {})
+    return found.get("steps", np.nan), found.get(key, np.nan)
+
+
+def _path(findings, setting, kpa):
+    found = findings.paths[kpa].get(setting.name, {})
+    return found.get("steps", np.nan) / setting.increments, found.get("median", np.nan)
+
+
 ROWS = (
     ("one evaluation, sheared state", "median error of stress, % of p", lambda f, s, k: _evaluation(f, s, k, "median")),
     ("tangent (4) after it", "median error of tangent, %", lambda f, s, k: _evaluation(f, s, k, "tangent_median")),
-    ("path to 5 % shear", "median error of q/p, % of p", lambda f, s, k: _path(f, s, k)),
+    ("path to 5 % shear", "median error of q/p, % of p", _path),
 )
 
 
@@ -278,16 +287,6 @@ def draw_knobs(axis, findings, measure):
             label=f"preset {name}",
             zorder=5,
         )
-
-
-def _evaluation(findings, setting, kpa, key):
-    found = findings.evaluation[kpa, "sheared"].get(setting.name, {})
-    return found.get("steps", np.nan), found.get(key, np.nan)
-
-
-def _path(findings, setting, kpa):
-    found = findings.paths[kpa].get(setting.name, {})
-    return found.get("steps", np.nan) / setting.increments, found.get("median", np.nan)
 
 
 def draw_paths(findings, file):

@@ -1,47 +1,50 @@
 """Force chains of RVEs that were written grain by grain (output.rves): normal forces as bars between grains."""
 
 import re
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 
 from . import points
-from .result import Missing
+from .result import Increment, Missing, Result, Snapshot
 from .style import percent, save
 
 STRONG = 1.0  # a contact is strong from this share of the mean normal force on (C1 of the study's pictures)
 STRONGEST = 2.0  # C2
 
 
-def normal_forces(snapshot):
+def normal_forces(snapshot: Snapshot) -> np.ndarray:
     """Compression at each contact [N]: `force` acts on grain i, the branch points from i to j."""
     branch = snapshot["branch"]
     unit = branch / np.linalg.norm(branch, axis=1, keepdims=True)
     return -np.einsum("ck,ck->c", snapshot["force"], unit)
 
 
-def rows(result, increment):
-    """(label, snapshot) of the RVEs that were written: those within D/4 of a point that is followed, by its name, then the others."""
-    numbers = {name: int(re.search(r"(\d+)$", name)[1]) for name in increment.snapshots if re.search(r"\d+$", name)}
+def rows(result: Result, increment: Increment) -> list[tuple[str, str]]:
+    """(label, snapshot) of the RVEs that were written: those within D/4 of a point that is followed, by its name, then
+    the others."""
+    numbers = {name: int(found[1]) for name in increment.snapshots if (found := re.search(r"(\d+)$", name))}
     if not numbers:
         raise Missing("no RVE was written grain by grain (output.rves)")
     (diameter,) = result.need("diameter")
     where = points.original_points(result)
-    found, rest = [], dict(numbers)
+    near, rest = [], dict(numbers)
     for point in points.all_points(result):
         away = {name: np.linalg.norm(where[number] - point.position) for name, number in numbers.items()}
-        name = min(away, key=away.get)
+        name = min(away, key=away.__getitem__)
         if away[name] < 0.25 * diameter:
-            found.append((point.name + (f"\n(RVE {away[name]:.2f} m away)" if away[name] > 1e-9 else ""), name))
+            near.append((point.name + (f"\n(RVE {away[name]:.2f} m away)" if away[name] > 1e-9 else ""), name))
             rest.pop(name, None)
-    return found + [
+    return near + [
         (f"x = {where[number][0]:.1f} m, {(where[number][1] - result.crown_height) / diameter:+.2f} D", name)
         for name, number in rest.items()
     ]
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     chosen = [
         result.loss_increments[0],
         *(result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]),
@@ -61,7 +64,7 @@ def draw(result, path):
     save(figure, path)
 
 
-def _draw_rve(axis, snapshot):
+def _draw_rve(axis: Axes, snapshot: Snapshot) -> None:
     cell, position = snapshot["cell"], np.column_stack([snapshot["x"], snapshot["y"]])
     # Into the cell: positions are stored anywhere.
     inside = position - (cell @ np.floor(np.linalg.solve(cell, position.T))).T
@@ -87,7 +90,7 @@ def _draw_rve(axis, snapshot):
         order = np.argsort(share)
         colour = np.where(share >= STRONGEST, "darkred", np.where(share >= STRONG, "red", "steelblue"))
         axis.add_collection(
-            LineCollection(bars[order], linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order])
+            LineCollection(list(bars[order]), linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order])
         )
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) @ cell.T
     axis.plot(*corners.T, color="black", linewidth=0.8)

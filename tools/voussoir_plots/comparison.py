@@ -1,26 +1,30 @@
 """Several tunnels beside one another: the study compares covers and soils."""
 
+import itertools
+from collections.abc import Sequence
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 
 from . import paths, points, settlements, trends, troughs, widths
 from .reaction import curve
-from .result import Missing
+from .result import Missing, Result
 from .style import save
 
 
-def name(result):
+def name(result: Result) -> str:
     """ "dense sand, C/D = 3", for legends."""
     (diameter,) = result.need("diameter")
     return f"{result.soil}, $C/D$ = {result.cover / diameter:.3g}"
 
 
-def cover_ratio(result):
+def cover_ratio(result: Result) -> float:
     (diameter,) = result.need("diameter")
     return result.cover / diameter
 
 
-def draw(results, path):
+def draw(results: Sequence[Result], path: Path) -> None:
     figure, axes = plt.subplots(2, 3, figsize=(16.5, 9.2))
     for k, result in enumerate(results):
         style = {"color": f"C{k}", "label": name(result), "linewidth": 1.5}
@@ -35,11 +39,9 @@ def draw(results, path):
             )
         width_loss, width, _ = widths.surface_width(result)
         axes[0, 2].plot(100 * width_loss, width, **style)
-        for axis, point in zip(axes[1], points.above_crown(result)):
+        for axis, point, height in zip(axes[1], points.above_crown(result), result.settings.above_crown):
             axis.plot(loss, paths.stress_ratio(result, point), **style)
-            axis.set_title(
-                f"{point.name}, {result.settings.above_crown[('Aa', 'Ab', 'Ac').index(point.name)]:g} $D$ above the crown"
-            )
+            axis.set_title(f"{point.name}, {height:g} $D$ above the crown")
             axis.set_ylabel("stress ratio  $q/p$  [-]")
             axis.set_ylim(0, 1.05)
     axes[0, 0].set_ylabel(r"$\sigma_v / \sigma_{v,0}$ above the crown  [-]")
@@ -59,19 +61,19 @@ def draw(results, path):
     save(figure, path)
 
 
-def common_loss(results):
+def common_loss(results: Sequence[Result]) -> float:
     """The largest V_l that all runs reached [-]."""
     return min(result.volume_loss[-1] for result in results)
 
 
-def widening(results):
+def widening(results: Sequence[Result]) -> trends.Trend:
     """Troughs widen with C/D: inflection of the surface trough of the dense sands, by cover."""
     chosen = sorted((r for r in results if r.soil == "dense sand"), key=cover_ratio)
     if len({round(cover_ratio(r), 2) for r in chosen}) < 2:
         raise Missing("needs two covers of dense sand")
     loss = common_loss(chosen)
     found = [(cover_ratio(r), np.interp(loss, *_inflection(r))) for r in chosen]
-    holds = all(a[1] < b[1] for a, b in zip(found, found[1:]))
+    holds = all(a[1] < b[1] for a, b in itertools.pairwise(found))
     return trends.Trend(
         "Troughs widen with C/D",
         trends.verdict(holds),
@@ -80,12 +82,12 @@ def widening(results):
     )
 
 
-def _inflection(result):
+def _inflection(result: Result) -> tuple[np.ndarray, np.ndarray]:
     surface = [t for (ratio, _), t in troughs.all_troughs(result).items() if ratio == 0]
     return np.array([t.loss for t in surface]), np.array([t.fit.inflection for t in surface])
 
 
-def depth_dependence(results):
+def depth_dependence(results: Sequence[Result]) -> trends.Trend:
     """K varies less with depth for shallow tunnels: largest less least K from the surface to z/C = 0.75."""
     chosen = sorted((r for r in results if r.soil == "dense sand"), key=cover_ratio)
     if len({round(cover_ratio(r), 2) for r in chosen}) < 2:
@@ -99,7 +101,7 @@ def depth_dependence(results):
             if v == increment["volume_loss"] and ratio < 1
         ]
         found.append((cover_ratio(result), max(width) - min(width)))
-    holds = all(a[1] < b[1] for a, b in zip(found, found[1:]))
+    holds = all(a[1] < b[1] for a, b in itertools.pairwise(found))
     return trends.Trend(
         "K varies less with depth for shallow tunnels",
         trends.verdict(holds),
@@ -108,7 +110,7 @@ def depth_dependence(results):
     )
 
 
-def pair(results, soil):
+def pair(results: Sequence[Result], soil: str) -> tuple[Result, Result]:
     """Dense sand and another soil at the same cover."""
     for other in (r for r in results if r.soil == soil):
         for dense in (r for r in results if r.soil == "dense sand" and abs(cover_ratio(r) - cover_ratio(other)) < 0.01):
@@ -116,7 +118,7 @@ def pair(results, soil):
     raise Missing(f"needs dense sand and {soil} at the same cover")
 
 
-def looser_settles_more(results):
+def looser_settles_more(results: Sequence[Result]) -> trends.Trend:
     """Medium dense sand settles more than dense sand, at the surface and below it at similar rates."""
     dense, loose = pair(results, "medium dense sand")
     loss = common_loss((dense, loose))
@@ -130,12 +132,12 @@ def looser_settles_more(results):
     return trends.Trend(
         "Medium dense sand settles more, surface and subsurface at similar rates",
         trends.verdict(all(b > a for a, b in both.values()) and similar),
-        f"dense and medium dense at V_l = {trends.percent(loss)}: {text}; slopes of surface over subsurface in the second half "
-        f"{late[0.0] / late[0.5]:.2f}",
+        f"dense and medium dense at V_l = {trends.percent(loss)}: {text}; slopes of surface over subsurface in the "
+        f"second half {late[0.0] / late[0.5]:.2f}",
     )
 
 
-def gravel_reacts(results):
+def gravel_reacts(results: Sequence[Result]) -> trends.Trend:
     """The ground reaction curve of gravel is steeper, goes lower and recovers later."""
     dense, gravel = pair(results, "gravel")
     numbers = []
@@ -152,7 +154,7 @@ def gravel_reacts(results):
     )
 
 
-def gravel_is_stronger(results):
+def gravel_is_stronger(results: Sequence[Result]) -> trends.Trend:
     """RVEs of gravel reach a higher q/p than those of dense sand."""
     dense, gravel = pair(results, "gravel")
     most = [
@@ -166,7 +168,7 @@ def gravel_is_stronger(results):
     )
 
 
-def looser_is_less_connected(results):
+def looser_is_less_connected(results: Sequence[Result]) -> trends.Trend:
     """Z_m is lower in medium dense sand early only."""
     dense, loose = pair(results, "medium dense sand")
     loss, field = common_loss((dense, loose)), "gauss/mechanical_coordination"
@@ -184,7 +186,7 @@ def looser_is_less_connected(results):
     )
 
 
-def gravel_is_as_connected(results):
+def gravel_is_as_connected(results: Sequence[Result]) -> trends.Trend:
     """Z_m of gravel is that of dense sand, its strong network is better connected."""
     dense, gravel = pair(results, "gravel")
     means = {}
@@ -214,7 +216,7 @@ TRENDS = (
 )
 
 
-def write(results, path):
+def write(results: Sequence[Result], path: Path) -> None:
     lines = [
         "# Trends between tunnels",
         "",
@@ -231,6 +233,6 @@ def write(results, path):
         try:
             row = judge(results)
         except Missing as reason:
-            row = trends.Trend(judge.__doc__.split(":")[0].rstrip("."), trends.NO_DATA, str(reason))
+            row = trends.Trend((judge.__doc__ or "").split(":")[0].rstrip("."), trends.NO_DATA, str(reason))
         lines.append(f"| {row.statement} | **{row.verdict}** | {row.numbers} |")
     path.write_text("\n".join(lines) + "\n")

@@ -1,13 +1,18 @@
 """How the increments converged, and what they cost."""
 
+from collections.abc import Sequence
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
+from .result import Increment, Result
 from .style import save
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     increments = result.increments
     index = np.array([i["index"] for i in increments])
     column = {
@@ -56,7 +61,7 @@ def draw(result, path):
     save(figure, path)
 
 
-def _draw_times(axis, index, increments, wall):
+def _draw_times(axis: Axes, index: np.ndarray, increments: Sequence[Increment], wall: np.ndarray) -> None:
     """Wall time so far, by part where the run says so; the output of an increment stands with the next one."""
     parts = [
         ("time_grains", "grains and tangents", "C0"),
@@ -65,7 +70,7 @@ def _draw_times(axis, index, increments, wall):
         ("time_output", "output", "C3"),
     ]
     times = {name: np.cumsum([float(i.attributes.get(name, 0.0)) for i in increments]) / 60 for name, _, _ in parts}
-    base = np.zeros(len(index))
+    base: np.ndarray = np.zeros(len(index))
     for name, label, colour in parts:
         if times[name][-1] > 0:
             axis.fill_between(
@@ -83,7 +88,7 @@ def _draw_times(axis, index, increments, wall):
     axis.legend(loc="upper left")
 
 
-def _mark_stages(named, others, increments):
+def _mark_stages(named: Axes, others: Sequence[Axes], increments: Sequence[Increment]) -> None:
     previous = None
     for increment in increments:
         if increment["stage"] != previous:

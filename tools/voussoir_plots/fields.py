@@ -1,28 +1,33 @@
 """Fields over the deformed mesh at the end of the run."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
 
 from . import q8
-from .result import Missing
+from .result import Increment, Missing, Result
 from .style import percent, save
 
 
-def last_increment(result):
+def last_increment(result: Result) -> Increment:
     if not result.has_mesh:
         raise Missing("the run has no mesh")
     return result.increments[-1]
 
 
-def state(increment):
+def state(increment: Increment) -> str:
     """What the picture shows, for its title."""
     if increment["volume_loss"] > 0:
         return f"$V_l$ = {percent(increment['volume_loss'])}"
     return f"stage {increment['stage']}, load parameter {increment['load_parameter']:.3g}"
 
 
-def magnification(result, displacement):
+def magnification(result: Result, displacement: np.ndarray) -> float:
     """1 where the deformation can be seen, else a round factor that brings it to about 2 % of the width."""
     largest, width = np.max(np.linalg.norm(displacement, axis=1)), np.ptp(result.coordinates[:, 0])
     if largest == 0 or largest > 0.005 * width:
@@ -32,7 +37,7 @@ def magnification(result, displacement):
     return float(max(m * power for m in (1, 2, 5) if m * power <= factor))
 
 
-def canvas(result, increment):
+def canvas(result: Result, increment: Increment) -> tuple[Figure, Axes, np.ndarray, str]:
     """Figure with deformed element edges; returns (figure, axis, deformed coordinates, line on magnification).
 
     The line, empty or not, goes below the title's first one, beside the key of the arrows.
@@ -42,7 +47,7 @@ def canvas(result, increment):
     deformed = result.coordinates + factor * displacement
     figure, axis = plt.subplots(figsize=(7.4, 6.6))
     edges = LineCollection(
-        q8.outlines(deformed, result.connectivity), colors="0.5", linewidths=0.35, alpha=0.6, zorder=2
+        list(q8.outlines(deformed, result.connectivity)), colors="0.5", linewidths=0.35, alpha=0.6, zorder=2
     )
     axis.add_collection(edges)
     axis.set_aspect("equal")
@@ -57,21 +62,20 @@ def canvas(result, increment):
     return figure, axis, deformed, note
 
 
-def draw_displacement(result, path):
+def draw_displacement(result: Result, path: Path) -> None:
     increment = last_increment(result)
     figure, axis, deformed, note = canvas(result, increment)
     displacement = increment.field("node/displacement")
     size = np.linalg.norm(displacement, axis=1)
-    filled = axis.tricontourf(
-        deformed[:, 0], deformed[:, 1], q8.triangles(result.connectivity), size, levels=21, cmap="viridis", zorder=1
-    )
+    triangles = Triangulation(deformed[:, 0], deformed[:, 1], q8.triangles(result.connectivity))
+    filled = axis.tricontourf(triangles, size, levels=21, cmap="viridis", zorder=1)
     figure.colorbar(filled, ax=axis, label="displacement  $|u|$  [m]", shrink=0.85)
     _add_arrows(axis, result, deformed, displacement)
     axis.set_title(f"Displacement, {state(increment)}\n{note}", loc="left")
     save(figure, path)
 
 
-def _add_arrows(axis, result, deformed, displacement):
+def _add_arrows(axis: Axes, result: Result, deformed: np.ndarray, displacement: np.ndarray) -> None:
     """Arrows at about one node per square of a coarse grid, so that fine parts of the mesh stay readable."""
     spacing = np.ptp(result.coordinates[:, 0]) / 22
     cells = np.floor(result.coordinates / spacing).astype(int)
@@ -95,7 +99,16 @@ def _add_arrows(axis, result, deformed, displacement):
     axis.quiverkey(arrows, 0.86, 1.03, size.max(), f"{size.max():.2g} m", labelpos="E", color="black")
 
 
-def _draw_points(result, path, name, label, title, colour_map, symmetric=False, factor=1.0):
+def _draw_points(
+    result: Result,
+    path: Path,
+    name: str,
+    label: str,
+    title: str,
+    colour_map: str,
+    symmetric: bool = False,
+    factor: float = 1.0,
+) -> None:
     """A Gauss-point field, one patch per point."""
     increment = last_increment(result)
     values = factor * increment.field(name)
@@ -105,7 +118,12 @@ def _draw_points(result, path, name, label, title, colour_map, symmetric=False, 
     limit = np.max(np.abs(finite)) if finite.size else 1.0
     limits = (-limit, limit) if symmetric else (finite.min(), finite.max()) if finite.size else (0, 1)
     collection = PolyCollection(
-        patches.reshape(-1, 4, 2), array=values.ravel(), cmap=colour_map, edgecolors="face", linewidths=0.6, zorder=1
+        list(patches.reshape(-1, 4, 2)),
+        array=values.ravel(),
+        cmap=colour_map,
+        edgecolors="face",
+        linewidths=0.6,
+        zorder=1,
     )
     collection.set_clim(*limits)
     axis.add_collection(collection)
@@ -114,7 +132,7 @@ def _draw_points(result, path, name, label, title, colour_map, symmetric=False, 
     save(figure, path)
 
 
-def draw_deviatoric_strain(result, path):
+def draw_deviatoric_strain(result: Result, path: Path) -> None:
     _draw_points(
         result,
         path,
@@ -126,11 +144,11 @@ def draw_deviatoric_strain(result, path):
     )
 
 
-def draw_void_ratio(result, path):
+def draw_void_ratio(result: Result, path: Path) -> None:
     _draw_points(result, path, "gauss/void_ratio", "void ratio  $e$  [-]", "Void ratio", "viridis")
 
 
-def draw_grain_rotation(result, path):
+def draw_grain_rotation(result: Result, path: Path) -> None:
     _draw_points(
         result,
         path,

@@ -1,11 +1,13 @@
 """Fields over the deformed mesh at several volume losses: what localises, and whether it does so together."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
 
 from . import q8
-from .result import Missing
+from .result import Increment, Missing, Result
 from .style import percent, save
 
 # Field, factor, label, colour map, symmetric about the value at V_l = 0.
@@ -16,13 +18,13 @@ FIELDS = [
 ]
 
 
-def since_start(result, name, increment):
+def since_start(result: Result, name: str, increment: Increment) -> np.ndarray:
     """A field at an increment; rotations are counted from V_l = 0."""
     values = increment.field(name)
     return values - result.loss_increments[0].field(name) if name == "gauss/grain_rotation" else values
 
 
-def limits(values, symmetric):
+def limits(values: np.ndarray, symmetric: bool) -> tuple[float, float]:
     """Of the colours: all but the most extreme hundredth of a per cent, so that one RVE does not dim the rest."""
     finite = values[np.isfinite(values)]
     low, high = np.quantile(finite, [0.0, 0.999])
@@ -32,7 +34,7 @@ def limits(values, symmetric):
     return (low, high) if high > low else (low, low + 1e-12)
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     chosen = result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]
     fields = [entry for entry in FIELDS if entry[0] in chosen[0].names]
     if not fields:
@@ -53,7 +55,9 @@ def draw(result, path):
         for axis, increment, value in zip(row, chosen, values):
             moved = result.coordinates + increment.field("node/displacement")
             patches = q8.gauss_patches(moved, result.connectivity).reshape(-1, 4, 2)
-            drawn = PolyCollection(patches, array=value.ravel(), cmap=colour_map, edgecolors="face", linewidths=0.3)
+            drawn = PolyCollection(
+                list(patches), array=value.ravel(), cmap=colour_map, edgecolors="face", linewidths=0.3
+            )
             drawn.set_clim(*range_of)
             axis.add_collection(drawn)
             axis.set_aspect("equal")

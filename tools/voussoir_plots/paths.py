@@ -1,10 +1,13 @@
-"""What the RVEs at Aa, Ab, Ac and B go through: stress ratio, volume, void ratio, and the contact network where it was written."""
+"""What the RVEs at Aa, Ab, Ac and B go through: stress ratio, volume, void ratio, and the contact network where it was
+written."""
+
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 from . import points
-from .result import Missing
+from .result import Missing, Result
 from .style import save
 
 COLOURS = {"Aa": "C3", "Ab": "C1", "Ac": "C0", "B": "C2"}
@@ -23,13 +26,13 @@ NETWORK = [
 LEAST_PRESSURE = 500.0  # below it [Pa] an RVE is about to open, and q/p is noise over noise
 
 
-def stress_ratio(result, point):
+def stress_ratio(result: Result, point: points.Point) -> np.ndarray:
     """q/p over the volume loss [-]; NaN where the point is hardly compressed."""
     p, q = (points.history(result, f"gauss/{name}_stress", point) for name in ("mean", "deviatoric"))
     return np.divide(q, p, out=np.full_like(p, np.nan), where=p > LEAST_PRESSURE)
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     loss = 100 * result.volume_loss
     figure, axes = plt.subplots(2, 3, figsize=(15.5, 8.4))
     for point in points.all_points(result):
@@ -74,7 +77,7 @@ def draw(result, path):
     save(figure, path)
 
 
-def draw_network(result, path):
+def draw_network(result: Result, path: Path) -> None:
     first = result.loss_increments[-1]
     present = [(name, label) for name, label in NETWORK if name in first.names]
     if len(present) < 2:  # the plain coordination is always there

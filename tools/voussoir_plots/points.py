@@ -1,11 +1,12 @@
-"""The Gauss points and elements that the study follows: Aa, Ab, Ac above the crown, B in the shear band, lines of points."""
+"""The Gauss points and elements that the study follows: Aa, Ab, Ac above the crown, B in the shear band, lines of
+points."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import q8
-from .result import Missing
+from .result import Missing, Result, remembered
 
 
 @dataclass
@@ -15,26 +16,28 @@ class Point:
     position: np.ndarray  # original coordinates [m]
 
 
-def history(result, name, point):
+def history(result: Result, name: str, point: Point) -> np.ndarray:
     """A Gauss-point field at a point over the volume loss; (increment[, components])."""
     element, corner = divmod(point.index, 4)
     return result.history(name)[:, element, corner]
 
 
-def original_points(result):
+def original_points(result: Result) -> np.ndarray:
     """(point, 2) [m]."""
-    if not hasattr(result, "_original_points"):
-        result._original_points = q8.gauss_coordinates(result.coordinates, result.connectivity).reshape(-1, 2)
-    return result._original_points
+    return remembered(
+        result,
+        "original points",
+        lambda: q8.gauss_coordinates(result.coordinates, result.connectivity).reshape(-1, 2),
+    )
 
 
-def nearest(result, name, x, y):
+def nearest(result: Result, name: str, x: float, y: float) -> Point:
     points = original_points(result)
     index = int(np.argmin(np.hypot(points[:, 0] - x, points[:, 1] - y)))
     return Point(name, index, points[index])
 
 
-def above_crown(result):
+def above_crown(result: Result) -> list[Point]:
     """Aa, Ab, Ac; those that would lie above the surface are left out."""
     (diameter,) = result.need("diameter")
     heights = [k for k in result.settings.above_crown if k * diameter <= result.cover * (1 + 1e-9)]
@@ -43,11 +46,11 @@ def above_crown(result):
     ]
 
 
-def in_the_band(result):
+def in_the_band(result: Result) -> Point:
     """B: the point of the largest deviatoric strain at the end, away from the axis and above the crown.
 
-    The study's words do not exclude the opening's wall, where the strain is largest; but RVEs there come apart, and B is to be in the
-    shear band.
+    The study's words do not exclude the opening's wall, where the strain is largest; but RVEs there come apart, and B
+    is to be in the shear band.
     """
     (diameter,) = result.need("diameter")
     points = original_points(result)
@@ -63,24 +66,24 @@ def in_the_band(result):
     return Point("B", index, points[index])
 
 
-def all_points(result):
+def all_points(result: Result) -> list[Point]:
     return [*above_crown(result), in_the_band(result)]
 
 
-def describe(result, point):
+def describe(result: Result, point: Point) -> str:
     """ "Ab  (0.07 m, 1.02 D above the crown)", for legends."""
     (diameter,) = result.need("diameter")
     return f"{point.name}  ({point.position[0]:.2f} m, {(point.position[1] - result.crown_height) / diameter:+.2f} $D$)"
 
 
-def crown_element(result):
+def crown_element(result: Result) -> int:
     """The element just above the crown: of those that hold the crown's node, the one whose centre lies highest."""
     holders = np.flatnonzero(np.any(result.connectivity == result.crown(), axis=1))
     heights = result.coordinates[result.connectivity[holders]].mean(axis=1)[:, 1]
     return holders[np.argmax(heights)]
 
 
-def on_level(result, y, width=np.inf):
+def on_level(result: Result, y: float, width: float = np.inf) -> np.ndarray:
     """Gauss points of the elements that a level line crosses, one row of them: indices by ascending x."""
     points = original_points(result)
     nodes = result.coordinates[result.connectivity]
@@ -95,10 +98,10 @@ def on_level(result, y, width=np.inf):
 class LevelLine:
     """A level line through the elements, one place in each of them; Gauss-point fields are interpolated there."""
 
-    def __init__(self, result, y, width=np.inf):
+    def __init__(self, result: Result, y: float, width: float = np.inf) -> None:
         nodes = result.coordinates[result.connectivity]
         crossed = np.flatnonzero((nodes[..., 1].min(axis=1) < y) & (nodes[..., 1].max(axis=1) > y))
-        self.x, self.elements, weights = [], [], []
+        places, elements, weights = [], [], []
         for element in crossed:
             low, high = nodes[element, :, 0].min(), nodes[element, :, 0].max()
             inside = [
@@ -108,19 +111,19 @@ class LevelLine:
             ]
             if inside and inside[len(inside) // 2][0] <= width:
                 x, local = inside[len(inside) // 2]
-                self.x.append(x)
-                self.elements.append(element)
+                places.append(x)
+                elements.append(element)
                 weights.append(q8.gauss_weights(local[None])[0])
-        order = np.argsort(self.x)
-        self.x, self.elements = np.array(self.x)[order], np.array(self.elements, dtype=int)[order]
+        order = np.argsort(places)
+        self.x, self.elements = np.array(places)[order], np.array(elements, dtype=int)[order]
         self.weights = np.array(weights).reshape(-1, 4)[order]
 
-    def of(self, values):
+    def of(self, values: np.ndarray) -> np.ndarray:
         """A field (element, 4[, components]) along the line."""
         return np.einsum("eg,eg...->e...", self.weights, values[self.elements])
 
 
-def on_axis(result):
+def on_axis(result: Result) -> np.ndarray:
     """Gauss points next to the axis of symmetry above the crown: indices by ascending height."""
     points = original_points(result)
     on_left = np.abs(result.coordinates[result.connectivity][..., 0]) < 1e-9

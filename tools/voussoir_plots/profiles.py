@@ -1,28 +1,35 @@
 """Horizontal and vertical stress above the crown and beside the tunnel."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
+import numpy as np
 
 from . import points
+from .result import Increment, Result, remembered
 from .style import colours, percent, save
 
 
-def above(result, increment):
+def above(result: Result, increment: Increment) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Height over the crown [m], sigma_xx and sigma_yy [Pa], compression positive, at the points next to the axis."""
     chosen = points.on_axis(result)
     stress = -increment.field("gauss/stress").reshape(-1, 3)[chosen]
     return points.original_points(result)[chosen, 1] - result.crown_height, stress[:, 0], stress[:, 1]
 
 
-def beside(result, increment):
+def beside(result: Result, increment: Increment) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Distance from the axis [m] and the same at the height of the tunnel's axis, out to 4 D."""
     (diameter,) = result.need("diameter")
-    if not hasattr(result, "_springline"):
-        result._springline = points.LevelLine(result, result.crown_height - diameter / 2, 4 * diameter)
-    stress = -result._springline.of(increment.field("gauss/stress"))
-    return result._springline.x, stress[:, 0], stress[:, 1]
+    line = remembered(
+        result,
+        "line at the height of the axis",
+        lambda: points.LevelLine(result, result.crown_height - diameter / 2, 4 * diameter),
+    )
+    stress = -line.of(increment.field("gauss/stress"))
+    return line.x, stress[:, 0], stress[:, 1]
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     (diameter,) = result.need("diameter")
     shown = [result.loss_increments[0], *result.losses]
     figure, axes = plt.subplots(2, 2, figsize=(12.5, 9.6))

@@ -1,6 +1,7 @@
 """The 8-node quadrilateral: shape functions, sampling of nodal fields, patches of Gauss points."""
 
 import numpy as np
+import numpy.typing as npt
 
 GAUSS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) / np.sqrt(3)
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
@@ -9,7 +10,7 @@ MIDSIDES = np.array([[0, -1], [1, 0], [0, 1], [-1, 0]])
 TRIANGLES = np.array([[0, 4, 7], [4, 1, 5], [5, 2, 6], [6, 3, 7], [4, 5, 7], [5, 6, 7]])
 
 
-def shape(xi, eta):
+def shape(xi: npt.ArrayLike, eta: npt.ArrayLike) -> np.ndarray:
     """Serendipity shape functions at points; (..., 8)."""
     xi, eta = np.asarray(xi)[..., None], np.asarray(eta)[..., None]
     a, b = CORNERS[:, 0], CORNERS[:, 1]
@@ -20,21 +21,21 @@ def shape(xi, eta):
     return np.concatenate([corner, sides], axis=-1)
 
 
-def triangles(connectivity):
+def triangles(connectivity: np.ndarray) -> np.ndarray:
     return connectivity[:, TRIANGLES].reshape(-1, 3)
 
 
-def outlines(coordinates, connectivity):
+def outlines(coordinates: np.ndarray, connectivity: np.ndarray) -> np.ndarray:
     """Element edges through their midsides; (element, 9, 2)."""
     return coordinates[connectivity[:, [0, 4, 1, 5, 2, 6, 3, 7, 0]]]
 
 
-def gauss_coordinates(coordinates, connectivity):
+def gauss_coordinates(coordinates: np.ndarray, connectivity: np.ndarray) -> np.ndarray:
     """Gauss points, point p next to corner p; (element, 4, 2)."""
     return np.einsum("gn,enk->egk", shape(GAUSS[:, 0], GAUSS[:, 1]), coordinates[connectivity])
 
 
-def gauss_patches(coordinates, connectivity):
+def gauss_patches(coordinates: np.ndarray, connectivity: np.ndarray) -> np.ndarray:
     """The quarter of an element around each Gauss point, as a polygon; (element, 4, 4, 2).
 
     A quarter is drawn in one colour: each is one RVE, and smoothing would hide how localised a field is.
@@ -46,15 +47,16 @@ def gauss_patches(coordinates, connectivity):
     )
 
 
-def gauss_weights(local):
-    """Weights of an element's four Gauss points (n, 4) at local coordinates (n, 2): bilinear between them, and held beyond,
-    since fields of RVEs do not bear extrapolation."""
+def gauss_weights(local: npt.ArrayLike) -> np.ndarray:
+    """Weights of an element's four Gauss points (n, 4) at local coordinates (n, 2): bilinear between them, and held
+    beyond, since fields of RVEs do not bear extrapolation."""
     a = np.clip(np.asarray(local) * np.sqrt(3), -1, 1)
     return 0.25 * (1 + a[:, :1] * CORNERS[:, 0]) * (1 + a[:, 1:] * CORNERS[:, 1])
 
 
-def locate(coordinates, connectivity, points):
-    """The elements that hold points (n, 2): their nodes (n, 8) and the shape functions there (n, 8), NaN outside the mesh."""
+def locate(coordinates: np.ndarray, connectivity: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The elements that hold points (n, 2): their nodes (n, 8) and the shape functions there (n, 8), NaN outside the
+    mesh."""
     nodes_of, weights = np.zeros((len(points), 8), dtype=int), np.full((len(points), 8), np.nan)
     nodes = coordinates[connectivity]
     slack = 1e-6 * np.ptp(coordinates[:, 0])
@@ -68,15 +70,15 @@ def locate(coordinates, connectivity, points):
     return nodes_of, weights
 
 
-def sample(coordinates, connectivity, values, points):
+def sample(coordinates: np.ndarray, connectivity: np.ndarray, values: np.ndarray, points: np.ndarray) -> np.ndarray:
     """A nodal field (node, components) at points (n, 2); NaN outside the mesh."""
     nodes, weights = locate(coordinates, connectivity, points)
     return np.einsum("pn,pnk->pk", weights, values[nodes])
 
 
-def local_coordinates(nodes, point, tolerance=1e-6):
+def local_coordinates(nodes: np.ndarray, point: np.ndarray, tolerance: float = 1e-6) -> np.ndarray | None:
     """Inverse of an element's map (nodes (8, 2)) by Newton; None outside."""
-    local = np.zeros(2)
+    local: np.ndarray = np.zeros(2)
     for _ in range(20):
         step = 1e-6
         here = shape(*local) @ nodes

@@ -1,16 +1,18 @@
 """Ground reaction curve: vertical stress just above the crown against the volume loss."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 
 from . import points
 from .paths import COLOURS
 from .points import crown_element
-from .result import Missing
+from .result import Missing, Result
 from .style import percent, save
 
 
-def curve(result):
+def curve(result: Result) -> tuple[np.ndarray, np.ndarray, float]:
     """V_l [-], vertical stress of the crown's element over its value before the loss [-], and that value [Pa].
 
     The stress is the mean of the element's four points, compression positive.
@@ -23,7 +25,7 @@ def curve(result):
     return result.volume_loss, stress / stress[0], stress[0]
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     loss, ratio, start = curve(result)
     least = int(np.argmin(ratio))
     figure, axis = plt.subplots(figsize=(6.6, 4.6))

@@ -2,16 +2,20 @@
 
 import re
 import tomllib
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from pathlib import Path
+from typing import Any, TypeVar
 
 import h5py
 import numpy as np
 
 from .settings import Settings
 
-
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1e3, "km": 1e6}
+
+Snapshot = dict[str, np.ndarray]  # arrays of one RVE, by the names of io/FORMAT.md
+T = TypeVar("T")
 
 
 class Missing(Exception):
@@ -21,7 +25,7 @@ class Missing(Exception):
 class Increment:
     """One increment's file, read when asked."""
 
-    def __init__(self, path):
+    def __init__(self, path: Path) -> None:
         self.path = path
         with h5py.File(path, "r") as file:
             self.attributes = {name: _plain(value) for name, value in file.attrs.items()}
@@ -33,18 +37,19 @@ class Increment:
             }
             self.snapshots = sorted(file["snapshots"]) if "snapshots" in file else []
 
-    def __getitem__(self, attribute):
+    def __getitem__(self, attribute: str) -> Any:
         return self.attributes[attribute]
 
-    def field(self, name):
-        """Values of e.g. "gauss/stress" (element, 4, components), without the last axis where there is one component."""
+    def field(self, name: str) -> np.ndarray:
+        """Values of e.g. "gauss/stress" (element, 4, components), without the last axis where there is one
+        component."""
         if name not in self.names:
             raise Missing(f"{self.path.name} has no {name}")
         with h5py.File(self.path, "r") as file:
             values = file[name][()]
         return values[..., 0] if values.shape[-1] == 1 else values
 
-    def snapshot(self, name):
+    def snapshot(self, name: str) -> Snapshot:
         """Arrays of one RVE, by the names of io/FORMAT.md."""
         with h5py.File(self.path, "r") as file:
             return {key: data[()] for key, data in file[f"snapshots/{name}"].items()}
@@ -53,7 +58,7 @@ class Increment:
 class Result:
     """Mesh and increments of a run; `settings` say where and when it is looked at."""
 
-    def __init__(self, folder, settings=None):
+    def __init__(self, folder: Path | str, settings: Settings | None = None) -> None:
         self.folder = Path(folder)
         self.settings = settings or Settings()
         # The folder, not run.h5's links: a killed run may have one increment more than its index.
@@ -78,9 +83,9 @@ class Result:
                 if self.has_mesh
                 else "the run has no mesh: figures are of columns, tunnels and biaxial_bvp"
             )
-        self._histories = {}
+        self._histories: dict[str, np.ndarray] = {}
 
-    def need(self, *names):
+    def need(self, *names: str) -> list[float]:
         """Numbers of the mesh's geometry."""
         if not self.has_mesh:
             raise Missing("the run has no mesh")
@@ -89,7 +94,7 @@ class Result:
                 raise Missing(f"run.h5:/mesh/geometry has no attribute {name}")
         return [self.geometry[name] for name in names]
 
-    def stage(self, *names):
+    def stage(self, *names: str) -> list[Increment]:
         """Increments of the first of these stages that exists."""
         for name in names:
             found = [i for i in self.increments if i["stage"] == name]
@@ -98,7 +103,7 @@ class Result:
         raise Missing(f"there is no stage {' or '.join(names)}")
 
     @cached_property
-    def loss_increments(self):
+    def loss_increments(self) -> list[Increment]:
         """Increments of the volume loss, from V_l = 0 on where that was written; at least one with V_l > 0."""
         found = self.stage("volume_loss")
         if found[-1]["volume_loss"] <= 0:
@@ -106,19 +111,19 @@ class Result:
         return found
 
     @cached_property
-    def volume_loss(self):
+    def volume_loss(self) -> np.ndarray:
         """V_l of `loss_increments` [-]."""
         return np.array([i["volume_loss"] for i in self.loss_increments])
 
-    def history(self, name):
+    def history(self, name: str) -> np.ndarray:
         """A field over `loss_increments`, e.g. "gauss/stress": (increment, element, 4, components)."""
         if name not in self._histories:
             self._histories[name] = np.array([i.field(name) for i in self.loss_increments])
         return self._histories[name]
 
-    def nearest(self, losses):
-        """Increments of the volume loss whose V_l lie nearest to those wanted [-], each once, V_l > 0; none that is farther
-        away than the increments are apart."""
+    def nearest(self, losses: Iterable[float]) -> list[Increment]:
+        """Increments of the volume loss whose V_l lie nearest to those wanted [-], each once, V_l > 0; none that is
+        farther away than the increments are apart."""
         found = [i for i in self.loss_increments if i["volume_loss"] > 0]
         values = np.array([i["volume_loss"] for i in found])
         apart = np.max(np.diff(values, prepend=0))
@@ -126,7 +131,7 @@ class Result:
         return [found[k] for k in sorted(chosen)]
 
     @cached_property
-    def losses(self):
+    def losses(self) -> list[Increment]:
         """Increments to draw troughs and profiles for: four of them unless some were asked for."""
         wanted = self.settings.losses or tuple(self.volume_loss[-1] * np.array([0.25, 0.5, 0.75, 1]))
         found = self.nearest(wanted)
@@ -135,18 +140,18 @@ class Result:
         return found
 
     @property
-    def cover(self):
+    def cover(self) -> float:
         """Depth of the crown below the surface [m]."""
         axis_depth, diameter = self.need("axis_depth", "diameter")
         return axis_depth - diameter / 2
 
     @property
-    def crown_height(self):
+    def crown_height(self) -> float:
         """y of the crown [m]."""
         axis_depth, diameter, surface_y = self.need("axis_depth", "diameter", "surface_y")
         return surface_y - axis_depth + diameter / 2
 
-    def crown(self):
+    def crown(self) -> int:
         """Node of the opening on the axis of symmetry, at the top."""
         self.need("diameter")
         if "tunnel" not in self.boundaries:
@@ -155,9 +160,9 @@ class Result:
         return nodes[np.argmax(self.coordinates[nodes, 1])]
 
     @property
-    def soil(self):
-        """ "gravel", "medium dense sand", "dense sand", or "no grains" (an elastic solid), as the case describes it; the study's trends
-        differ."""
+    def soil(self) -> str:
+        """ "gravel", "medium dense sand", "dense sand", or "no grains" (an elastic solid), as the case describes it;
+        the study's trends differ."""
         if self.case.get("material", "grains") != "grains":
             return "no grains"
         soil, packing = self.case.get("soil", {}), self.case.get("packing", {})
@@ -168,5 +173,13 @@ class Result:
         return "medium dense sand" if loose else "dense sand"
 
 
-def _plain(value):
+def remembered(result: Result, what: str, make: Callable[[], T]) -> T:
+    """What several figures compute from a result: it is made once, then kept with the result by the name `what`."""
+    kept = result.__dict__.setdefault("_remembered", {})
+    if what not in kept:
+        kept[what] = make()
+    return kept[what]
+
+
+def _plain(value: Any) -> Any:
     return value.decode() if isinstance(value, bytes) else value

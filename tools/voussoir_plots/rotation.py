@@ -1,31 +1,35 @@
 """Principal stresses along a line above the crown, beside the direction of the RVEs' fabric."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
 from . import points, tensors
+from .result import Increment, Result
 from .style import colours, percent, save
 
 
-def line(result):
+def line(result: Result) -> np.ndarray:
     """Gauss points of the line, those of the elements that it crosses, out to 3 D."""
     (diameter,) = result.need("diameter")
     return points.on_level(result, result.crown_height + result.settings.line * diameter, 3 * diameter)
 
 
-def stress_angles(result, increment):
+def stress_angles(result: Result, increment: Increment) -> tuple[np.ndarray, np.ndarray]:
     """x [m] and the angle of the compressive major axis from the vertical [rad] at the line's points."""
     chosen = line(result)
     stress = increment.field("gauss/stress").reshape(-1, 3)[chosen]
     return points.original_points(result)[chosen, 0], tensors.major_from_vertical(stress)
 
 
-def fabric_angles(result, increment):
+def fabric_angles(result: Result, increment: Increment) -> np.ndarray:
     """The direction of most contact normals from the vertical [rad]; it is written from the horizontal."""
     return tensors.axis_angle(increment.field("gauss/fabric_direction").ravel()[line(result)] - np.pi / 2)
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     (diameter,) = result.need("diameter")
     has_fabric = "gauss/fabric_direction" in result.losses[0].names
     figure, axes = plt.subplots(
@@ -54,7 +58,7 @@ def draw(result, path):
     save(figure, path)
 
 
-def _add(axis, x, angle, marker, colour, label):
+def _add(axis: Axes, x: np.ndarray, angle: np.ndarray, marker: str, colour: np.ndarray, label: str) -> None:
     """Symbols, joined but where the axis passes through +-90 deg, which is one direction."""
     degrees = np.degrees(angle)
     axis.plot(x, degrees, marker, color=colour, markersize=3.5, label=label)

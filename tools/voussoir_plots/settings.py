@@ -1,5 +1,8 @@
-"""Where and when a run is looked at. The study gives these in figures only; every one is an option of tools/figures.py."""
+"""Where and when a run is looked at. The study gives these in figures only; every one is an option of
+tools/figures.py."""
 
+import argparse
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 
@@ -15,9 +18,12 @@ class Settings:
     range_of_k: tuple = (0.25, 0.45)  # Mair and Taylor's range of K for cohesionless soils
 
 
-def parse(arguments):
+def parse(arguments: argparse.Namespace) -> Settings:
     """Settings from the options that add_options() declares; those not given keep their defaults."""
-    fraction = lambda values: tuple(v / 100 for v in values)
+
+    def fraction(values: Iterable[float]) -> tuple[float, ...]:
+        return tuple(v / 100 for v in values)
+
     given = {
         "losses": arguments.volume_loss and fraction(arguments.volume_loss),
         "field_losses": arguments.field_loss and fraction(arguments.field_loss),
@@ -30,7 +36,7 @@ def parse(arguments):
     return Settings(**{name: value for name, value in given.items() if value is not None})
 
 
-def add_options(parser):
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--volume-loss",
         type=float,

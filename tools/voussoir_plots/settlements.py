@@ -1,19 +1,22 @@
 """Settlement above the crown against the volume loss, at the surface and below it."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 
 from . import troughs
+from .result import Result
 from .style import colours, save
 
 
-def on_axis(result, ratio):
+def on_axis(result: Result, ratio: float) -> np.ndarray:
     """Settlement at x = 0 and z/C = ratio over the volume loss [m]."""
     line = troughs.line_at(result, ratio)
     return np.array([line.settlement(i)[0] for i in result.loss_increments])
 
 
-def growth(loss, settlement, window=0.01):
+def growth(loss: np.ndarray, settlement: np.ndarray, window: float = 0.01) -> np.ndarray:
     """dS/dV_l at each V_l, the slope of a straight line through the points within `window` [-] on either side [m]."""
     slopes = []
     for v in loss:
@@ -22,7 +25,7 @@ def growth(loss, settlement, window=0.01):
     return np.array(slopes)
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     (diameter,) = result.need("diameter")
     loss = result.volume_loss
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.6))

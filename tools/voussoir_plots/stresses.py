@@ -1,18 +1,21 @@
 """Stresses after gravity: against the weight of the ground above, and the ratio of horizontal to vertical stress."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
 from . import q8, tensors
-from .result import Missing
+from .result import Increment, Missing, Result
 from .style import save
 
 
-def after_gravity(result):
+def after_gravity(result: Result) -> Increment:
     return result.stage("gravity", "column")[-1]
 
 
-def far_from_opening(result, points):
+def far_from_opening(result: Result, points: np.ndarray) -> np.ndarray:
     """True farther than D/2 from the opening; everywhere where there is none."""
     if "diameter" not in result.geometry:
         return np.ones(points.shape[:-1], dtype=bool)
@@ -20,7 +23,7 @@ def far_from_opening(result, points):
     return np.hypot(points[..., 0], points[..., 1] - (surface_y - axis_depth)) > diameter
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     unit_weight, surcharge, surface_y = result.need("unit_weight", "surcharge", "surface_y")
     increment = after_gravity(result)
     tensor = increment.field("gauss/stress")
@@ -45,7 +48,7 @@ def draw(result, path):
     save(figure, path)
 
 
-def _draw_vertical(axis, depth, vertical, far, weight):
+def _draw_vertical(axis: Axes, depth: np.ndarray, vertical: np.ndarray, far: np.ndarray, weight: np.ndarray) -> None:
     order = np.argsort(depth, axis=None)
     line_depth, line = depth.ravel()[order], weight.ravel()[order]
     axis.fill_betweenx(line_depth, 0.95 * line - 1, 1.05 * line + 1, color="0.85", label="± (5 % + 1 kPa)")
@@ -60,7 +63,7 @@ def _draw_vertical(axis, depth, vertical, far, weight):
     axis.legend()
 
 
-def _draw_ratio(axis, stress, far):
+def _draw_ratio(axis: Axes, stress: np.ndarray, far: np.ndarray) -> None:
     vertical, horizontal = stress[..., 1], stress[..., 0]
     good = far & (vertical > 0)
     if not good.any():
@@ -76,7 +79,7 @@ def _draw_ratio(axis, stress, far):
     axis.set_title("away from the opening")
 
 
-def _plain_ticks(axis, values):
+def _plain_ticks(axis: Axes, values: np.ndarray) -> None:
     """1, 2, 5, ... on a logarithmic axis of stresses [kPa]."""
     ticks = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000])
     shown = ticks[(ticks >= 0.45 * values.min()) & (ticks <= 2.2 * values.max())]
@@ -86,7 +89,7 @@ def _plain_ticks(axis, values):
     axis.minorticks_off()
 
 
-def _draw_fit(axis, result):
+def _draw_fit(axis: Axes, result: Result) -> None:
     """K0 of the column, with which the opening was held."""
     if "k0" not in result.tables:
         return
@@ -96,7 +99,7 @@ def _draw_fit(axis, result):
     axis.legend()
 
 
-def _draw_rows(axis, result, unit_weight, surcharge):
+def _draw_rows(axis: Axes, result: Result, unit_weight: float, surcharge: float) -> None:
     """Mean errors of level rows with their standard deviation, as the program found them."""
     axis.set_xlabel(r"$\sigma_{yy} - (\gamma z +$ surcharge$)$  [kPa]")
     axis.set_ylabel("depth  $z$  [m]")
@@ -122,7 +125,7 @@ def _draw_rows(axis, result, unit_weight, surcharge):
     axis.legend(loc="upper right")
 
 
-def _draw_deflection(axis, vertical, angle, far):
+def _draw_deflection(axis: Axes, vertical: np.ndarray, angle: np.ndarray, far: np.ndarray) -> None:
     good = far & (vertical > 0)
     axis.semilogx(vertical[good], np.degrees(angle[good]), ".", color="C0", markersize=4)
     axis.plot([100, 100], [-1, 1], color="0.4", linewidth=1)

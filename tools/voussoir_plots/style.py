@@ -1,13 +1,16 @@
 """One look for all figures."""
 
+from pathlib import Path
+
 import matplotlib
 import numpy as np
+from matplotlib.figure import Figure
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
+import matplotlib.pyplot as plt
 
 
-def use_style():
+def use_style() -> None:
     plt.rcParams.update(
         {
             "figure.dpi": 110,
@@ -27,16 +30,16 @@ def use_style():
     )
 
 
-def colours(name, count):
+def colours(name: str, count: int) -> np.ndarray:
     """Colours of a sequence, without a map's palest end."""
     return plt.get_cmap(name)(np.linspace(0.0, 0.87, max(count, 2)))[:count]
 
 
-def percent(fraction):
+def percent(fraction: float) -> str:
     """0.125 -> '12.5 %'"""
     return f"{100 * fraction:.3g} %"
 
 
-def save(figure, path):
+def save(figure: Figure, path: Path) -> None:
     figure.savefig(path)
     plt.close(figure)

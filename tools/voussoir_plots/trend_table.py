@@ -1,23 +1,32 @@
 """The trends of one run, as a table: writes trends.md."""
 
+from collections.abc import Callable
+from pathlib import Path
+
 import numpy as np
 
 from . import paths, points, profiles, rotation, settlements, trends, troughs, widths
 from .reaction import curve
-from .result import Missing
+from .result import Increment, Missing, Result
+
+# Places and two stresses along a line, at an increment.
+Profile = Callable[[Result, Increment], tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 BAND = 0.05  # eps_q from which soil counts as sheared
 
 
-def write(result, path):
+def write(result: Result, path: Path) -> None:
     rows = table(result)
-    axis_depth, diameter = result.need("axis_depth", "diameter")
+    (diameter,) = result.need("diameter")
+    about = (
+        f"C/D = {result.cover / diameter:.3g}, D = {diameter:g} m, {result.soil}, {len(result.connectivity)} "
+        f"elements; V_l to {trends.percent(result.volume_loss[-1])} in {len(result.loss_increments) - 1} increments. "
+        "The trends are those of the study (tools/voussoir_plots/README.md says how each is judged)."
+    )
     lines = [
         f"# Trends: {result.folder.resolve().name}",
         "",
-        f"C/D = {result.cover / diameter:.3g}, D = {diameter:g} m, {result.soil}, {len(result.connectivity)} elements; V_l to "
-        f"{trends.percent(result.volume_loss[-1])} in {len(result.loss_increments) - 1} increments. The trends are those of the study "
-        "(tools/voussoir_plots/README.md says how each is judged).",
+        about,
         "",
         "| trend | verdict | numbers |",
         "|---|---|---|",
@@ -28,41 +37,45 @@ def write(result, path):
     path.write_text("\n".join(lines) + "\n")
 
 
-def _solution(result):
+def _solution(result: Result) -> str:
     """How the increments were found, in a sentence: a trend is worth no more than they are."""
     found = result.increments
-    number = lambda name: np.array([float(i.attributes.get(name, 0)) for i in found])
-    relaxed, losing = number("relaxations") > 0, number("volume_loss") > 0
+
+    def number(name: str) -> np.ndarray:
+        return np.array([float(i.attributes.get(name, 0)) for i in found])
+
+    evaluations = number("evaluations")[number("volume_loss") > 0]
     return (
-        f"Of {len(found)} increments {number('converged').sum():.0f} converged, the largest residual {number('residual').max():.2g} of the "
-        f"reference; {number('cuts').sum():.0f} cuts, {relaxed.sum()} increments relaxed; {np.median(number('evaluations')[losing]):.3g} "
-        f"evaluations (median) and at most {number('evaluations')[losing].max():.0f} an increment of the volume loss."
+        f"Of {len(found)} increments {number('converged').sum():.0f} converged, the largest residual "
+        f"{number('residual').max():.2g} of the reference; {number('cuts').sum():.0f} cuts, "
+        f"{(number('relaxations') > 0).sum()} increments relaxed; {np.median(evaluations):.3g} evaluations (median) "
+        f"and at most {evaluations.max():.0f} an increment of the volume loss."
     )
 
 
-def describe(result, point):
+def describe(result: Result, point: points.Point) -> str:
     (diameter,) = result.need("diameter")
     height = (point.position[1] - result.crown_height) / diameter
     return f"{point.name} = Gauss point {point.index} at x = {point.position[0]:.2f} m, {height:.2f} D above the crown"
 
 
-def table(result):
+def table(result: Result) -> list[trends.Trend]:
     """All trends of a tunnel's run; one that lacks something says so."""
     rows = []
     for make in (_settlements, _bands, _troughs, _stresses, _reaction, _paths, _rotation, _localisation):
         try:
             rows += make(result)
         except Missing as reason:
-            rows.append(trends.Trend(make.__doc__, trends.NO_DATA, str(reason)))
+            rows.append(trends.Trend(make.__doc__ or "", trends.NO_DATA, str(reason)))
     return rows
 
 
-def _cover_ratio(result):
+def _cover_ratio(result: Result) -> float:
     (diameter,) = result.need("diameter")
     return result.cover / diameter
 
 
-def _settlements(result):
+def _settlements(result: Result) -> list[trends.Trend]:
     """Settlement against V_l"""
     (diameter,) = result.need("diameter")
     found = {z: settlements.on_axis(result, z) for z in result.settings.depths}
@@ -76,7 +89,7 @@ def _settlements(result):
     return rows
 
 
-def _bands(result):
+def _bands(result: Result) -> list[trends.Trend]:
     """Shear bands"""
     (diameter,) = result.need("diameter")
     where = points.original_points(result)
@@ -94,7 +107,7 @@ def _bands(result):
     ]
 
 
-def _troughs(result):
+def _troughs(result: Result) -> list[trends.Trend]:
     """Settlement troughs"""
     found = troughs.all_troughs(result)
     by_depth = {z: [t for (ratio, _), t in found.items() if ratio == z] for z in result.settings.depths}
@@ -110,11 +123,11 @@ def _troughs(result):
     ]
 
 
-def _stresses(result):
+def _stresses(result: Result) -> list[trends.Trend]:
     """Stresses above the crown and beside the tunnel"""
     (diameter,) = result.need("diameter")
 
-    def means(profile, near):
+    def means(profile: Profile, near: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         rows = []
         for increment in result.loss_increments:
             place, xx, yy = profile(result, increment)
@@ -130,13 +143,13 @@ def _stresses(result):
     ]
 
 
-def _reaction(result):
+def _reaction(result: Result) -> list[trends.Trend]:
     """Ground reaction curve"""
     loss, ratio, _ = curve(result)
     return [trends.reaction(loss, ratio, result.soil)]
 
 
-def _paths(result):
+def _paths(result: Result) -> list[trends.Trend]:
     """RVEs above the crown"""
     loss, followed = result.volume_loss, points.above_crown(result)
     ratios = {p.name: paths.stress_ratio(result, p) for p in followed}
@@ -155,14 +168,14 @@ def _paths(result):
     return rows
 
 
-def _rotation(result):
+def _rotation(result: Result) -> list[trends.Trend]:
     """Principal stresses above the crown turn with the RVEs' fabric"""
     stress = {i["volume_loss"]: rotation.stress_angles(result, i)[1] for i in result.losses}
     fabric = {i["volume_loss"]: rotation.fabric_angles(result, i) for i in result.losses}
     return [trends.follows_fabric(stress, fabric)]
 
 
-def _localisation(result):
+def _localisation(result: Result) -> list[trends.Trend]:
     """Localisation of strain, rotation and void ratio"""
     first, last = result.loss_increments[0], result.loss_increments[-1]
     rotation_ = (last.field("gauss/grain_rotation") - first.field("gauss/grain_rotation")).ravel()

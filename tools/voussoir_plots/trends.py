@@ -1,9 +1,12 @@
 """The trends that the study reports (method.md, section 5), each computed from a run and stated seen or not.
 
-A trend is judged by a pure function of arrays (tests/regression/trends_test.py has their known answers); `table` takes the arrays
-from a run. "Not applicable" says that the study reports the trend of another soil or cover; its numbers are given all the same.
+A trend is judged by a pure function of arrays (tests/regression/trends_test.py has their known answers); `table` takes
+the arrays from a run. "Not applicable" says that the study reports the trend of another soil or cover; its numbers are
+given all the same.
 """
 
+import itertools
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,45 +21,45 @@ class Trend:
     verdict: str
     numbers: str
 
-    def where(self, applies, reason):
+    def where(self, applies: bool, reason: str) -> "Trend":
         """The same, but not applicable where the study does not report it."""
         return self if applies else Trend(self.statement, NOT_APPLICABLE, f"{reason}; here: {self.numbers}")
 
 
-def verdict(holds):
+def verdict(holds: bool | np.bool) -> str:
     return SEEN if holds else NOT_SEEN
 
 
-def not_reached(statement, wanted, last):
+def not_reached(statement: str, wanted: float, last: float) -> Trend:
     return Trend(statement, NOT_REACHED, f"needs V_l = {percent(wanted)}, the run ends at {percent(last)}")
 
 
-def at_the_end(statement, holds, text, loss):
+def at_the_end(statement: str, holds: bool | np.bool, text: str, loss: np.ndarray) -> Trend:
     """A trend that what follows may still break: where it holds in a run that ends before 20 %, nothing is known."""
     if holds and loss[-1] < 0.199:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
     return Trend(statement, verdict(holds), text)
 
 
-def percent(fraction):
+def percent(fraction: float) -> str:
     return f"{100 * fraction:.3g} %"
 
 
-def numbers(values, form="{:.3g}"):
+def numbers(values: Iterable[float], form: str = "{:.3g}") -> str:
     return ", ".join(form.format(v) for v in values)
 
 
-def slope(x, y, low, high):
+def slope(x: np.ndarray, y: np.ndarray, low: float, high: float) -> float:
     """Of the straight line through the points with low <= x <= high; NaN where there are fewer than two."""
     inside = (x >= low - 1e-9) & (x <= high + 1e-9)
     return np.polyfit(x[inside], y[inside], 1)[0] if inside.sum() > 1 else np.nan
 
 
-def at(x, y, where):
+def at(x: np.ndarray, y: np.ndarray, where: float) -> float:
     return float(np.interp(where, x, y))
 
 
-def settlement_slows(loss, settlements, diameter):
+def settlement_slows(loss: np.ndarray, settlements: Mapping[float, np.ndarray], diameter: float) -> Trend:
     """settlements: {z/C: S [m]}; the crown's own (z/C = 1) is prescribed and does not count."""
     statement = "Settlement above the crown grows more slowly with V_l below 10 %"
     if loss[-1] < 0.0999:
@@ -69,7 +72,7 @@ def settlement_slows(loss, settlements, diameter):
     return Trend(statement, verdict(holds), f"slope dS/dV_l / D at V_l = 0 to 2 % and 8 to 10 %: {text}")
 
 
-def surface_accelerates(loss, settlement, diameter):
+def surface_accelerates(loss: np.ndarray, settlement: np.ndarray, diameter: float) -> Trend:
     statement = "Surface settlement accelerates again near V_l = 15 %"
     if loss[-1] < 0.1749:
         return not_reached(statement, 0.175, loss[-1])
@@ -79,14 +82,17 @@ def surface_accelerates(loss, settlement, diameter):
     return Trend(statement, verdict(after > 1.25 * before), f"slope dS/dV_l / D: {text}")
 
 
-def band_height(height, x, strain, aside, threshold):
-    """How far the band reaches (heights of points above the crown over the cover): off the axis (x > aside) and at it."""
+def band_height(
+    height: np.ndarray, x: np.ndarray, strain: np.ndarray, aside: float, threshold: float
+) -> tuple[float, float]:
+    """How far the band reaches (heights of points above the crown over the cover): off the axis (x > aside) and at
+    it."""
     sheared = (strain >= threshold) & (height > 0)
     off, on = height[sheared & (x > aside)], height[sheared & (x <= aside)]
     return (float(off.max()) if off.size else 0.0), (float(on.max()) if on.size else 0.0)
 
 
-def bands(reach, cover_ratio, threshold):
+def bands(reach: Mapping[float, tuple[float, float]], cover_ratio: float, threshold: float) -> Trend:
     """reach: {V_l: (band beside the axis, sheared soil at the axis), both as heights above the crown over C}."""
     text = "; ".join(f"{percent(v)}: {a:.2f} C beside, {b:.2f} C at the axis" for v, (a, b) in reach.items())
     text = f"soil with eps_q of {percent(threshold)} and more reaches, above the crown, at V_l = {text}"
@@ -105,20 +111,20 @@ def bands(reach, cover_ratio, threshold):
     return Trend(statement, verdict(holds), text)
 
 
-def gauss_fits(misfits, at_bounds):
+def gauss_fits(misfits: Mapping[float, np.ndarray], at_bounds: Mapping[float, np.ndarray]) -> Trend:
     """misfits: {z/C: rms misfit over S_max, over the losses}."""
     worst = max(float(np.max(m)) for m in misfits.values())
     text = "; ".join(f"z/C = {z:g}: {percent(float(np.max(m)))}" for z, m in misfits.items())
-    share = np.mean([float(np.mean(b)) for b in at_bounds.values()])
+    share = float(np.mean([float(np.mean(b)) for b in at_bounds.values()]))
     return Trend(
         "The modified Gauss curve fits the troughs at all depths",
         verdict(worst <= 0.05),
-        f"largest rms misfit over S_max: {text}; alpha at its lower bound in {percent(share)} of the fits (the trough is more "
-        "pointed, with a wider foot, than the family)",
+        f"largest rms misfit over S_max: {text}; alpha at its lower bound in {percent(share)} of the fits (the trough "
+        "is more pointed, with a wider foot, than the family)",
     )
 
 
-def troughs_narrow(loss, inflection):
+def troughs_narrow(loss: np.ndarray, inflection: Mapping[float, np.ndarray]) -> Trend:
     """inflection: {z/C: i [m] over the losses}."""
     if loss[-1] < 0.0299:
         return not_reached("Troughs narrow with V_l", 0.03, loss[-1])
@@ -131,7 +137,7 @@ def troughs_narrow(loss, inflection):
     )
 
 
-def surface_width_in_range(loss, width, low, high):
+def surface_width_in_range(loss: np.ndarray, width: np.ndarray, low: float, high: float) -> Trend:
     statement = f"K_s lies mostly in Mair and Taylor's range ({low:g} to {high:g})"
     if loss[-1] < 0.0499:
         return not_reached(statement, 0.05, loss[-1])
@@ -139,12 +145,12 @@ def surface_width_in_range(loss, width, low, high):
     return Trend(
         statement,
         verdict(inside.mean() > 0.5),
-        f"in it at {percent(inside.mean())} of the increments; K_s = {at(loss, width, loss[0]):.2f} at V_l = {percent(loss[0])}, "
-        f"{at(loss, width, 0.05):.2f} at 5 %, {width[-1]:.2f} at {percent(loss[-1])}",
+        f"in it at {percent(inside.mean())} of the increments; K_s = {at(loss, width, loss[0]):.2f} at V_l = "
+        f"{percent(loss[0])}, {at(loss, width, 0.05):.2f} at 5 %, {width[-1]:.2f} at {percent(loss[-1])}",
     )
 
 
-def stresses_above(loss, horizontal, vertical, until=0.05):
+def stresses_above(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarray, until: float = 0.05) -> Trend:
     """Mean stresses above the crown over their values at V_l = 0."""
     wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if v <= loss[-1] + 1e-9]
     last = min(until, loss[-1])
@@ -157,7 +163,7 @@ def stresses_above(loss, horizontal, vertical, until=0.05):
     )
 
 
-def stresses_beside(loss, horizontal, vertical, until=0.02):
+def stresses_beside(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarray, until: float = 0.02) -> Trend:
     wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if v <= loss[-1] + 1e-9]
     last = min(until, loss[-1])
     holds = at(loss, horizontal, last) < 0.98 and at(loss, vertical, last) > 1.02
@@ -169,13 +175,13 @@ def stresses_beside(loss, horizontal, vertical, until=0.02):
     )
 
 
-def reaction(loss, ratio, soil):
+def reaction(loss: np.ndarray, ratio: np.ndarray, soil: str) -> Trend:
     """The ground reaction curve: a minimum and recovery in dense soils, a monotone fall in medium dense sand."""
     least = int(np.argmin(ratio))
     recovery = ratio[-1] - ratio[least]
     text = (
-        f"minimum {ratio[least]:.3f} at V_l = {percent(loss[least])}, {ratio[-1]:.3f} at the end ({percent(loss[-1])}): "
-        f"recovery {recovery:.3f} of the stress before the loss"
+        f"minimum {ratio[least]:.3f} at V_l = {percent(loss[least])}, {ratio[-1]:.3f} at the end "
+        f"({percent(loss[-1])}): recovery {recovery:.3f} of the stress before the loss"
     )
     if soil == "medium dense sand":
         return at_the_end(
@@ -190,7 +196,7 @@ def reaction(loss, ratio, soil):
     return Trend(statement, verdict(recovery >= 0.02), text)
 
 
-def falls_linearly(loss, ratios, until=0.02):
+def falls_linearly(loss: np.ndarray, ratios: Mapping[str, np.ndarray], until: float = 0.02) -> Trend:
     """ratios: {point: q/p}; a straight line from V_l = 0 on, until 2 %, explains 95 % and descends."""
     statement = "q/p falls linearly for V_l < 2 % (unloading)"
     if loss[-1] < until - 1e-9:
@@ -215,9 +221,10 @@ def falls_linearly(loss, ratios, until=0.02):
     return Trend(statement, verdict(holds), text)
 
 
-def peak_after_unloading(loss, ratio):
-    """V_l and value of the first peak of q/p after its minimum: the first maximum from which it falls by 5 % of itself; the largest
-    value where it never does. With it, whether it did. Where q/p is NaN (hardly compressed) it is passed over."""
+def peak_after_unloading(loss: np.ndarray, ratio: np.ndarray) -> tuple[float, float, bool]:
+    """V_l and value of the first peak of q/p after its minimum: the first maximum from which it falls by 5 % of itself;
+    the largest value where it never does. With it, whether it did. Where q/p is NaN (hardly compressed) it is passed
+    over."""
     loss, ratio = loss[np.isfinite(ratio)], ratio[np.isfinite(ratio)]
     start = int(np.argmin(ratio))
     best = start
@@ -229,21 +236,21 @@ def peak_after_unloading(loss, ratio):
     return loss[best], ratio[best], False
 
 
-def softening_order(loss, ratios):
+def softening_order(loss: np.ndarray, ratios: Mapping[str, np.ndarray]) -> Trend:
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
     text = "; ".join(
         f"{name}: {value:.2f} at V_l = {percent(v)}, {'falls after it' if fell else 'no softening until the end'}"
         for name, (v, value, fell) in peaks.items()
     )
     order = [peaks[name][0] for name in ("Aa", "Ab", "Ac") if name in peaks]
-    holds = all(a <= b for a, b in zip(order, order[1:])) and peaks["Aa"][2]
+    holds = all(a <= b for a, b in itertools.pairwise(order)) and peaks["Aa"][2]
     statement, text = "Aa softens first, then Ab peaks, Ac last", f"peak of q/p after unloading: {text}"
     if loss[-1] < 0.199 and not all(fell for _, _, fell in peaks.values()) and (holds or not peaks["Aa"][2]):
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
     return Trend(statement, verdict(holds), text)
 
 
-def no_softening(loss, ratios, soil):
+def no_softening(loss: np.ndarray, ratios: Mapping[str, np.ndarray], soil: str) -> Trend:
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
     text = "; ".join(
         f"{name}: end over peak {ratio[np.isfinite(ratio)][-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items()
@@ -253,19 +260,19 @@ def no_softening(loss, ratios, soil):
     )
 
 
-def contracts_until(loss, volumetric, wanted=0.15):
+def contracts_until(loss: np.ndarray, volumetric: np.ndarray, wanted: float = 0.15) -> Trend:
     statement = f"Ac contracts until V_l = {percent(wanted)}"
     most = int(np.argmax(volumetric))
     text = (
-        f"largest contraction {percent(volumetric[most])} at V_l = {percent(loss[most])}, {percent(volumetric[-1])} at the end "
-        f"({percent(loss[-1])})"
+        f"largest contraction {percent(volumetric[most])} at V_l = {percent(loss[most])}, {percent(volumetric[-1])} at "
+        f"the end ({percent(loss[-1])})"
     )
     if loss[-1] < wanted - 1e-9 and volumetric[-1] > 0.5 * volumetric[most]:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; {text}")
     return Trend(statement, verdict(loss[most] >= wanted - 0.03), text)
 
 
-def ends_contracted(loss, volumetrics):
+def ends_contracted(loss: np.ndarray, volumetrics: Mapping[str, np.ndarray]) -> Trend:
     text = "; ".join(f"{name}: {percent(v[-1])}" for name, v in volumetrics.items())
     return at_the_end(
         "Ab and Ac contract (medium dense sand)",
@@ -275,7 +282,7 @@ def ends_contracted(loss, volumetrics):
     )
 
 
-def follows_fabric(stress, fabric):
+def follows_fabric(stress: Mapping[float, np.ndarray], fabric: Mapping[float, np.ndarray]) -> Trend:
     """{V_l: angles [rad]} of both along the line; axes have no arrow, so differences are taken modulo 180 deg."""
     away = {v: np.degrees(np.abs((stress[v] - fabric[v] + np.pi / 2) % np.pi - np.pi / 2)) for v in stress}
     together = {v: float(np.abs(np.mean(np.exp(2j * (stress[v] - fabric[v]))))) for v in stress}
@@ -288,13 +295,13 @@ def follows_fabric(stress, fabric):
     )
 
 
-def ranks(values):
+def ranks(values: np.ndarray) -> np.ndarray:
     return np.argsort(np.argsort(values)).astype(float)
 
 
-def localise_together(strain, rotation, dilation, share=0.05):
-    """Rank correlation of eps_q with |grain rotation| and with the change of void ratio, and how many of the most sheared points
-    are also among the most turned and dilated."""
+def localise_together(strain: np.ndarray, rotation: np.ndarray, dilation: np.ndarray, share: float = 0.05) -> Trend:
+    """Rank correlation of eps_q with |grain rotation| and with the change of void ratio, and how many of the most
+    sheared points are also among the most turned and dilated."""
     count = max(1, int(share * len(strain)))
     most = {
         name: set(np.argsort(-values)[:count])
@@ -305,6 +312,7 @@ def localise_together(strain, rotation, dilation, share=0.05):
     return Trend(
         "Deviatoric strain, grain rotation and void ratio localise together",
         verdict(min(overlap) > 0.5),
-        f"of the {percent(share)} most sheared points {percent(overlap[0])} are among the most turned, {percent(overlap[1])} among "
-        f"the most dilated (by chance {percent(share)}); rank correlations {numbers(correlation, '{:.2f}')}",
+        f"of the {percent(share)} most sheared points {percent(overlap[0])} are among the most turned, "
+        f"{percent(overlap[1])} among the most dilated (by chance {percent(share)}); rank correlations "
+        f"{numbers(correlation, '{:.2f}')}",
     )

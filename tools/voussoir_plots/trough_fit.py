@@ -1,21 +1,25 @@
 """The modified Gauss curve of settlement troughs (Vorster et al.), method.md eqs. (20), (21)."""
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
-# alpha = 0.5 is the Gauss curve itself; larger is flatter at the bottom, with steeper flanks. Towards 0 the curve becomes
-# S_max / (1 + (x/i)^2 / 3), the heaviest tails that eq. (20) has: a trough that is more pointed still, with a wider foot, leaves
-# alpha at the lower end, where it means nothing more. i stays the inflection of the best such curve.
+# alpha = 0.5 is the Gauss curve itself; larger is flatter at the bottom, with steeper flanks. Towards 0 the curve
+# becomes S_max / (1 + (x/i)^2 / 3), the heaviest tails that eq. (20) has: a trough that is more pointed still, with a
+# wider foot, leaves alpha at the lower end, where it means nothing more. i stays the inflection of the best such curve.
 ALPHA_RANGE = (0.02, 20.0)
 
+Number = TypeVar("Number", float, np.ndarray)
 
-def shape_number(alpha):
+
+def shape_number(alpha: Number) -> Number:
     """n of eq. (21), chosen so that x = i is the inflection point."""
     return np.exp(alpha) * (2 * alpha - 1) / (2 * alpha + 1) + 1
 
 
-def modified_gauss(x, largest, inflection, alpha):
+def modified_gauss(x: npt.ArrayLike, largest: float, inflection: Number, alpha: Number) -> np.ndarray:
     """Settlement of eq. (20) at distance x from the axis, same unit as `largest`."""
     n = shape_number(alpha)
     exponent = np.minimum(alpha * (np.asarray(x) / inflection) ** 2, 700)
@@ -30,25 +34,25 @@ class TroughFit:
     misfit: float  # rms of the residual relative to S_max [-]
 
     @property
-    def good(self):
-        """The trough has the family's shape: alpha within its range and a misfit below 3 % of S_max. A plug with a wide foot has
-        not: its fit follows the one or the other, and i jumps between them."""
+    def good(self) -> bool:
+        """The trough has the family's shape: alpha within its range and a misfit below 3 % of S_max. A plug with a wide
+        foot has not: its fit follows the one or the other, and i jumps between them."""
         return not self.at_bound and self.misfit < 0.03
 
     @property
-    def at_bound(self):
+    def at_bound(self) -> bool:
         """alpha lies at an end of its range: the trough is not of the family's shape."""
         return not 1.05 * ALPHA_RANGE[0] < self.alpha < 0.95 * ALPHA_RANGE[1]
 
     @property
-    def n(self):
+    def n(self) -> float:
         return shape_number(self.alpha)
 
-    def __call__(self, x):
+    def __call__(self, x: npt.ArrayLike) -> np.ndarray:
         return modified_gauss(x, self.largest, self.inflection, self.alpha)
 
 
-def fit(x, settlement):
+def fit(x: npt.ArrayLike, settlement: npt.ArrayLike) -> TroughFit:
     """Least squares weighted by length, so that a finer mesh at the axis does not count more.
 
     S_max is linear and solved for; (ln i, ln alpha) are found on a grid that is refined around its best point: no start
@@ -60,7 +64,7 @@ def fit(x, settlement):
     low = np.log([0.02 * x[-1], ALPHA_RANGE[0]])
     high = np.log([2.0 * x[-1], ALPHA_RANGE[1]])
     centre, half = (low + high) / 2, (high - low) / 2
-    best = None
+    best = (0.0, 0.0, 0.0, 0.0)
     for _ in range(25):
         axes = [np.clip(np.linspace(c - h, c + h, 15), a, b) for c, h, a, b in zip(centre, half, low, high)]
         inflection, alpha = (np.exp(g).reshape(-1, 1) for g in np.meshgrid(*axes))
@@ -71,4 +75,4 @@ def fit(x, settlement):
         best = largest[k], inflection[k, 0], alpha[k, 0], misfit[k]
         centre, half = np.log(best[1:3]), half * 0.5
     scale = abs(best[0]) if best[0] else 1.0
-    return TroughFit(*best[:3], misfit=float(np.sqrt(best[3] / weight.sum())) / scale)
+    return TroughFit(*best[:3], float(np.sqrt(best[3] / weight.sum())) / scale)

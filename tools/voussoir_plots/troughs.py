@@ -1,12 +1,15 @@
 """Settlement troughs at the surface and below it, with their modified Gauss curves."""
 
 import csv
+from collections.abc import Iterable
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
 from . import q8, trough_fit
-from .result import Missing
+from .result import Increment, Missing, Result, remembered
 from .style import colours, percent, save
 
 COLUMNS = (
@@ -28,10 +31,10 @@ COLUMNS = (
 class Line:
     """A level line of the ground as it was before the loss; where in the elements it runs is found once."""
 
-    def __init__(self, result, depth):
+    def __init__(self, result: Result, depth: float) -> None:
         (surface_y,) = result.need("surface_y")
         x, y = result.coordinates.T
-        on_surface = np.flatnonzero(np.abs(y - surface_y) < 1e-9 * surface_y) if depth == 0 else []
+        on_surface = np.flatnonzero(np.abs(y - surface_y) < 1e-9 * surface_y) if depth == 0 else np.array([], dtype=int)
         # The surface's own nodes; elsewhere points in the elements.
         self.x = np.sort(x[on_surface]) if depth == 0 else np.linspace(0, x.max(), 81)
         line = np.column_stack([self.x, np.full_like(self.x, surface_y - depth)])
@@ -41,7 +44,7 @@ class Line:
         if len(self.x) < 4:
             raise Missing(f"the mesh has too few points at the depth {depth:g} m")
 
-    def settlement(self, increment):
+    def settlement(self, increment: Increment) -> np.ndarray:
         """[m], along `x`."""
         return -np.einsum("pn,pn->p", self.weights, increment.field("node/displacement")[self.nodes, 1])
 
@@ -49,7 +52,7 @@ class Line:
 class Trough:
     """The settlements of a line at one V_l, and their curve."""
 
-    def __init__(self, result, increment, ratio):
+    def __init__(self, result: Result, increment: Increment, ratio: float) -> None:
         axis_depth, diameter = result.need("axis_depth", "diameter")
         line = line_at(result, ratio)
         self.ratio, self.loss = ratio, increment["volume_loss"]
@@ -59,7 +62,7 @@ class Trough:
         self.area_ratio = 2 * np.trapezoid(self.settlement, self.x) / (self.loss * np.pi * diameter**2 / 4)
         self.width = self.fit.inflection / (axis_depth - self.depth)  # K [-]
 
-    def row(self):
+    def row(self) -> tuple[float, ...]:
         fit = self.fit
         return (
             self.ratio,
@@ -77,31 +80,30 @@ class Trough:
         )
 
 
-def line_at(result, ratio):
+def line_at(result: Result, ratio: float) -> Line:
     """The line at z/C = ratio."""
-    lines = result.__dict__.setdefault("_lines", {})
-    if ratio not in lines:
-        lines[ratio] = Line(result, ratio * result.cover)
-    return lines[ratio]
+    return remembered(result, f"line at {ratio}", lambda: Line(result, ratio * result.cover))
 
 
-def all_troughs(result):
+def all_troughs(result: Result) -> dict[tuple[float, float], Trough]:
     """{(z/C, V_l): trough} at all depths of all increments of the volume loss."""
-    if not hasattr(result, "_troughs"):
-        result._troughs = {
+    return remembered(
+        result,
+        "troughs",
+        lambda: {
             (ratio, i["volume_loss"]): Trough(result, i, ratio)
             for ratio in result.settings.depths
             for i in result.loss_increments
             if i["volume_loss"] > 0
-        }
-    return result._troughs
+        },
+    )
 
 
-def mirrored(x, y):
+def mirrored(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate([-x[::-1], x]), np.concatenate([y[::-1], y])
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     """One picture a depth, the chosen volume losses in each; all numbers in a table beside."""
     (diameter,) = result.need("diameter")
     troughs, depths = all_troughs(result), result.settings.depths
@@ -132,7 +134,7 @@ def draw(result, path):
     _write_table(path.with_suffix(".csv"), troughs.values())
 
 
-def _add(axis, trough, colour):
+def _add(axis: Axes, trough: Trough, colour: np.ndarray) -> None:
     fine = np.linspace(-trough.x.max(), trough.x.max(), 400)
     axis.plot(fine, trough.fit(fine), "--" if trough.fit.at_bound else "-", color=colour, label=percent(trough.loss))
     axis.plot(
@@ -145,8 +147,8 @@ def _add(axis, trough, colour):
     )
 
 
-def _write_table(path, troughs):
-    with open(path, "w", newline="") as file:
+def _write_table(path: Path, troughs: Iterable[Trough]) -> None:
+    with path.open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(COLUMNS)
         for trough in troughs:

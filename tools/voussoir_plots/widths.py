@@ -1,13 +1,16 @@
 """Width parameters of the troughs: K against V_l and depth, beside Mair and Taylor's range."""
 
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 
 from . import troughs
+from .result import Result
 from .style import colours, percent, save
 
 
-def surface_width(result):
+def surface_width(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """V_l, K_s and whether the trough has the curve's shape, over the volume loss."""
     found = [t for (ratio, _), t in troughs.all_troughs(result).items() if ratio == 0]
     return (
@@ -17,7 +20,7 @@ def surface_width(result):
     )
 
 
-def draw(result, path):
+def draw(result: Result, path: Path) -> None:
     found = troughs.all_troughs(result)
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4.6))
     depths = result.settings.depths

@@ -1,0 +1,231 @@
+#!/usr/bin/env python3
+"""Runs the pinned clang-tidy on what has changed: tools/tidy.py [--all | --since REVISION] [--seconds N] [FILE ...]
+
+Without files and options, the files that differ from the last release are checked, that is from the latest tag `v*`
+that this checkout knows and that HEAD descends from. Where there is no such tag (a shallow clone, or before the first
+release), tools/tidy_clean_revision.txt names the revision that was clean as a whole; where that is unknown too, all
+files are checked. A changed header is checked through its own .cpp or its own test; where it has none, through the file
+that includes most of the changed headers. A change of .clang-tidy is a change of everything.
+
+A file that was found clean is not checked again until it, a header of ours that it includes, its compile command or the
+configuration changes (stamps in build/tidy). --seconds bounds the time: no further file is begun after it, the files
+left over are counted, and the next call goes on with them. Needs a configured build (--build, default build/openmp).
+
+Exit status: 0 nothing found (though some files may be left over), 1 something found, 2 it cannot run.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import time
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+
+from include_graph import included_by
+
+ROOT = Path(__file__).resolve().parent.parent
+CLANG_TIDY = ROOT / ".prefix/venv/bin/clang-tidy"
+# Named to clang-tidy: where it finds the file by itself, version 20.1.0 keeps silent about headers.
+CONFIGURATION = ROOT / ".clang-tidy"
+CLEAN_REVISION = ROOT / "tools/tidy_clean_revision.txt"
+STAMPS = ROOT / "build/tidy"
+SOURCES = (".cpp", ".hpp")
+
+
+def git(*words: str) -> str | None:
+    """What git prints, or None when it fails."""
+    done = subprocess.run(["git", "-C", str(ROOT), *words], check=False, capture_output=True, text=True)
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def base_revision() -> tuple[str | None, str]:
+    """The revision to compare with, and how it was chosen."""
+    tag = git("describe", "--tags", "--abbrev=0", "--match", "v*")
+    if tag:
+        return tag, f"the last release, {tag}"
+    lines = CLEAN_REVISION.read_text().splitlines() if CLEAN_REVISION.exists() else []
+    recorded = next((line.strip() for line in lines if line.strip() and not line.startswith("#")), "")
+    if recorded and git("cat-file", "-e", recorded + "^{commit}") is not None:
+        return recorded, f"{recorded[:12]}, the last revision known to be clean"
+    return None, "neither a release nor a clean revision is known here"
+
+
+def changed_since(revision: str) -> list[str] | None:
+    """Files that differ from a revision, those that git does not know yet included; None when git cannot tell."""
+    differ = git("diff", "--name-only", "--diff-filter=d", revision, "--")
+    new = git("ls-files", "--others", "--exclude-standard")
+    return None if differ is None or new is None else sorted({*differ.splitlines(), *new.splitlines()})
+
+
+def compile_commands(build: Path) -> dict[str, str]:
+    """{file: its compile command} of our own sources."""
+    try:
+        entries = json.loads((build / "compile_commands.json").read_text())
+    except OSError:
+        sys.exit(f"tidy: {build} is not configured; cmake --preset openmp does it")
+    ours = {}
+    for entry in entries:
+        path = Path(entry["directory"], entry["file"]).resolve()
+        if path.is_relative_to(ROOT) and not path.is_relative_to(build.resolve()):
+            ours[path.relative_to(ROOT).as_posix()] = entry["command"]
+    return ours
+
+
+@cache
+def includes(path: str) -> frozenset[str]:
+    """Our own headers that a file includes directly or through others."""
+    found: set[str] = set()
+    waiting = [path]
+    while waiting:
+        new = {name for name in included_by(ROOT / waiting.pop()) if (ROOT / name).is_file()} - found
+        found |= new
+        waiting += new
+    return frozenset(found)
+
+
+def own_files(header: str, commands: Iterable[str]) -> list[str]:
+    """The .cpp of a header's own name and its own test, as far as they are compiled and include it."""
+    path = Path(header)
+    named = (path.with_suffix(".cpp"), Path("tests/unit") / path.parent / f"{path.stem}_test.cpp")
+    return [p.as_posix() for p in named if p.as_posix() in commands and header in includes(p.as_posix())]
+
+
+def files_for(changed: Iterable[str], commands: dict[str, str]) -> list[str]:
+    """The compiled files through which all changed sources are seen, the changed ones first."""
+    chosen = [path for path in changed if path in commands]
+    headers = {path for path in changed if path.endswith(".hpp") and (ROOT / path).is_file()}
+    for header in sorted(headers):
+        chosen += own_files(header, commands)[:1]
+    headers -= set().union(*(includes(path) for path in chosen))
+    while headers:
+        best = min(
+            commands, key=lambda path: (-len(headers & includes(path)), path.startswith("tests/"), len(includes(path)))
+        )
+        seen = headers & includes(best)
+        if not seen:  # no compiled file includes it, as for CUDA alone
+            print(f"tidy: {', '.join(sorted(headers))}: not part of this build, not checked")
+            break
+        chosen.append(best)
+        headers -= seen
+    return list(dict.fromkeys(chosen))
+
+
+def openmp_header(command: str) -> list[str]:
+    """Arguments that let clang find <omp.h> where the compiler is g++, without seeing g++'s other built-in headers.
+
+    clang gets a copy, in which an attribute lacks the arguments that only g++ knows.
+    """
+    compiler = next(word for word in shlex.split(command) if "ccache" not in word)
+    asked = subprocess.run([compiler, "-print-file-name=include/omp.h"], check=False, capture_output=True, text=True)
+    original = Path(asked.stdout.strip())
+    if asked.returncode != 0 or not original.is_absolute() or not original.exists():
+        return []
+    folder = STAMPS / "include"
+    folder.mkdir(parents=True, exist_ok=True)
+    text = re.sub(r"__malloc__\s*\([^()]*\)", "__malloc__", original.read_text())
+    if not (folder / "omp.h").exists() or (folder / "omp.h").read_text() != text:
+        (folder / "omp.h").write_text(text)
+    return [f"--extra-arg=-isystem{folder}"]
+
+
+def stamp_of(path: str, command: str) -> Path:
+    """The file that exists when `path` has been found clean as it is now."""
+    digest = hashlib.sha256()
+    for name in (".clang-tidy", "tools/requirements-style.txt", path, *sorted(includes(path))):
+        digest.update(name.encode() + b"\0" + (ROOT / name).read_bytes())
+    return STAMPS / f"{Path(path).stem}-{hashlib.sha256(digest.digest() + command.encode()).hexdigest()[:20]}"
+
+
+class Run:
+    """clang-tidy over files, several at a time, until the time is spent."""
+
+    def __init__(self, commands: dict[str, str], build: Path, seconds: float) -> None:
+        self.commands = commands
+        self.build = build
+        self.deadline = time.monotonic() + seconds
+        self.arguments = openmp_header(next(iter(commands.values())))
+        self.clean, self.left = 0, 0
+        self.printed: set[str] = set()
+
+    def check(self, path: str) -> tuple[str, int | None, str]:
+        """Path, exit status (None: not begun) and findings."""
+        if time.monotonic() > self.deadline:
+            return path, None, ""
+        done = subprocess.run(
+            [CLANG_TIDY, "-p", self.build, "--quiet", f"--config-file={CONFIGURATION}", *self.arguments, path],
+            check=False,
+            capture_output=True,
+            text=True,
+            cwd=ROOT,
+        )
+        # Without a word on the standard output, what went wrong stands among the counts on the other one.
+        return path, done.returncode, done.stdout or (done.stderr if done.returncode else "")
+
+    def report(self, path: str, status: int | None, findings: str) -> None:
+        if status is None:
+            self.left += 1
+        elif status == 0:
+            self.clean += 1
+            stamp_of(path, self.commands[path]).touch()
+        for finding in re.split(r"\n(?=\S+:\d+:\d+: (?:warning|error))", findings.strip()):
+            # A header's finding comes once for each file that includes it.
+            if finding and finding not in self.printed:
+                self.printed.add(finding)
+                print(finding.replace(f"{ROOT}/", ""), flush=True)
+
+
+def chosen_files(arguments: argparse.Namespace, commands: dict[str, str]) -> tuple[list[str], str]:
+    """What to check, and why, in words."""
+    if arguments.files:
+        named = [path.resolve().relative_to(ROOT).as_posix() for path in arguments.files]
+        return files_for(named, commands), "the files named"
+    revision, reason = (arguments.since, arguments.since) if arguments.since else base_revision()
+    changed = changed_since(revision) if revision and not arguments.all else None
+    if changed is None:
+        return sorted(commands), "all files" if arguments.all else f"all files, since {reason}"
+    if ".clang-tidy" in changed:
+        return sorted(commands), f"all files, since .clang-tidy has changed since {reason}"
+    return files_for([path for path in changed if path.endswith(SOURCES)], commands), f"files changed since {reason}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("files", type=Path, nargs="*", metavar="FILE")
+    parser.add_argument("--all", action="store_true", help="all files of the build")
+    parser.add_argument("--since", metavar="REVISION", help="files that differ from this revision")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no further file after this time")
+    parser.add_argument("--build", type=Path, default=ROOT / "build/openmp", help="configured build (build/openmp)")
+    parser.add_argument("--list", action="store_true", help="only name the files")
+    parser.add_argument("-j", "--jobs", type=int, default=os.cpu_count() or 1)
+    arguments = parser.parse_args()
+    if not CLANG_TIDY.exists():
+        print("tidy: clang-tidy is missing; tools/setup --test installs it", file=sys.stderr)
+        return 2
+    commands = compile_commands(arguments.build)
+    chosen, reason = chosen_files(arguments, commands)
+    STAMPS.mkdir(parents=True, exist_ok=True)
+    waiting = [path for path in chosen if not stamp_of(path, commands[path]).exists()]
+    print(f"tidy: {len(chosen)} files ({reason}), {len(chosen) - len(waiting)} of them known to be clean", flush=True)
+    if arguments.list:
+        print("\n".join(waiting))
+        return 0
+    run = Run(commands, arguments.build, arguments.seconds)
+    with ThreadPoolExecutor(arguments.jobs) as pool:
+        for result in pool.map(run.check, waiting):
+            run.report(*result)
+    if run.left:
+        print(f"tidy: {run.left} files were not checked for lack of time; tools/tidy.py goes on with them")
+    found = len(waiting) - run.clean - run.left
+    print(f"tidy: something was found in {found} files" if found else f"tidy: {run.clean} files checked, nothing found")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
