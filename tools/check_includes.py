@@ -166,7 +166,7 @@ def findings(root):
             yield f"{folder.relative_to(root)}/: no README.md"
         for name in files:
             path = (folder / name).relative_to(root)
-            if path.suffix in SOURCES or name == "CMakeLists.txt" or path.parts[0] == "tools" and not path.suffix:
+            if path.suffix in SOURCES or name == "CMakeLists.txt" or (path.parts[0] == "tools" and not path.suffix):
                 yield from file_findings(root, path)
 
 

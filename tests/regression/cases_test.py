@@ -61,8 +61,9 @@ RUNS: dict[str, tuple[list[str], list[str]]] = {
     "probe": ([YADE], []),
     "pack": (["packing.grains=100", "packing.seeds=[1, 2, 3, 4, 5, 6, 7, 8]"], []),
 }
-# Calibrations: two sets, one of them confirmed, in one pressure and to 6 %; the wide grading, which so few grains hold badly, to 4 %.
-# Once with packings of the recipe, and the search again on one packing that is always the same, which has no second one to confirm with.
+# Calibrations: two sets, one of them confirmed, in one pressure and to 6 %; the wide grading, which so few grains hold
+# badly, to 4 %. Each runs once with packings of its recipe. Its search runs again on one packing that is always the
+# same; there is no second one to confirm with.
 SEARCHES: dict[str, list[str]] = {}
 for soil, file, grains, seeds, strain in (
     ("cps_d", SAND, 150, 8, 6),
@@ -81,7 +82,8 @@ for soil, file, grains, seeds, strain in (
     confirmed = [f"calibrate.confirm_grains={grains}", "calibrate.confirm_seeds=[1, 2]"]
     RUNS[f"calibrate_{soil}"] = ([*common, *made, *confirmed], [])
     SEARCHES[f"calibrate_{soil}"] = [*common, file, "packing.seeds=[0]"]
-# The study's tunnels: few grains and elements and a first step of the volume loss; their meshes are counted in full size.
+# The study's tunnels: few grains and elements and a first step of the volume loss; their meshes are counted in full
+# size.
 STUDY = [
     "ground.mesh_size_opening=2.5 m",
     "ground.mesh_size_far=17 m",

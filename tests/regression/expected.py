@@ -1,6 +1,7 @@
 """The numbers that a run must give: lines of an expected.csv, and where each is measured.
 
-A line is `stage,stage_index,column,value,tolerance`; the tolerance is absolute, in the value's SI unit. What it speaks of:
+A line is `stage,stage_index,column,value,tolerance`; the tolerance is absolute, in the value's SI unit. What a
+line speaks of:
 
     gravity,-1,residual            run.h5:/table, the increment of that number in its stage; -1: the stage's last
     gravity,-1,mean void_ratio     the mean over all Gauss points of a field (its first component) after that increment
@@ -14,7 +15,6 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-
 from program import check, table
 
 # Contact moduli of the study's Table 1 by the largest diameter of their class [m], [Pa]. They stand here again, so that
@@ -23,7 +23,7 @@ MODULI = ((4.75e-3, 3e9), (19e-3, 4e9), (40e-3, 5e9))
 
 
 def packing_numbers(file):
-    """What a packing is by its grains' places alone: contacts are sought among all pairs, forces follow from overlaps."""
+    """Numbers of a packing from its grains' places alone: all pairs are tried, forces follow from overlaps."""
     with h5py.File(file) as stored:
         x = np.column_stack([stored["x"][()], stored["y"][()]])
         radius, cell, thickness = stored["radius"][()], stored["cell"][()], float(stored.attrs["thickness"])
@@ -64,7 +64,7 @@ def measured(folder, packings, line):
     if where == "packings":
         return of_packings(packings, wanted, column)
     if where.endswith(".csv"):
-        with open(Path(folder) / where, newline="") as opened:
+        with (Path(folder) / where).open(newline="") as opened:
             return float(list(csv.DictReader(opened))[wanted][column])
     if where.startswith("tables/"):
         with h5py.File(Path(folder) / "run.h5", "r") as opened:
@@ -81,7 +81,7 @@ def measured(folder, packings, line):
 
 def check_expected(folder, expected, packings="packings"):
     """Every line of the file holds. All are measured before the first that does not is complained of."""
-    with open(expected, newline="") as opened:
+    with Path(expected).open(newline="") as opened:
         lines = list(csv.DictReader(row for row in opened if not row.startswith("#")))
     check(lines, f"{expected} expects nothing")
     missed = []
