@@ -71,7 +71,7 @@ Stage column_stage(const fem::Mesh& mesh, const ColumnSetup& setup, std::vector<
   stage.on_step = [&rows](const fem::ConvergedStep& step) {
     for (const ColumnRow& row : averaged_rows(step.increment.stress)) rows.push_back(row);
   };
-  stage.on_record = [&rows, n = static_cast<std::size_t>(2 * mesh.n_elements())](IncrementReport& increment) {
+  stage.on_record = [&rows, n = 2 * static_cast<std::size_t>(mesh.n_elements())](IncrementReport& increment) {
     const auto now = std::span(rows).last(n);
     const auto deepest = std::max_element(
         now.begin(), now.end(), [](const ColumnRow& a, const ColumnRow& b) { return a.vertical < b.vertical; });
@@ -109,7 +109,7 @@ ColumnResult measure_k0(const ColumnSetup& setup, const RunOptions& options, con
   }
   const K0Table k0 = fit(rows, setup.soil.surcharge);
   if (!run.finished() || !std::filesystem::exists(options.folder / "k0.csv")) write_k0(options.folder, k0);
-  const std::size_t last_rows = std::min(rows.size(), static_cast<std::size_t>(2 * mesh.n_elements()));
+  const std::size_t last_rows = std::min(rows.size(), 2 * static_cast<std::size_t>(mesh.n_elements()));
   recorder.set_table("k0", k0_columns(k0));
   recorder.set_table("column_rows", table_of(std::span(rows).last(last_rows), column_row_columns));
   log.line(fmt::format("column: K0 falls from 1 at {:.3g} Pa to {:.3f} at {:.3g} Pa", setup.soil.surcharge,
