@@ -84,7 +84,6 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
     const bool relaxed = may_relax && can_be_relaxed(report.last, options.relaxation.far_residual);
     if (relaxed) report.last = relax(solver, state, path, to, report.last, increment, options.relaxation);
     report.work += report.last.work;
-    report.lane_steps += report.last.lane_steps;
     if (report.last.status != NewtonStatus::converged) {
       ++report.cuts;
       if (callbacks.on_failed) callbacks.on_failed({from, to, report.last});

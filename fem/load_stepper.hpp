@@ -48,13 +48,12 @@ struct FailedStep {
 
 struct StepReport {
   StepStatus status = StepStatus::finished;
-  int increments = 0;          ///< increments that converged
-  int cuts = 0;                ///< attempts that did not converge
-  int relaxed = 0;             ///< increments that came to equilibrium by relaxation
-  std::size_t work = 0;        ///< particle-steps of all attempts
-  std::size_t lane_steps = 0;  ///< BatchReport::lane_steps of all attempts
-  NewtonReport last;           ///< the report of the last attempt
-  std::string message;         ///< status, parameter and step where the stepper gave up; empty otherwise
+  int increments = 0;    ///< increments that converged
+  int cuts = 0;          ///< attempts that did not converge
+  int relaxed = 0;       ///< increments that came to equilibrium by relaxation
+  std::size_t work = 0;  ///< particle-steps of all attempts
+  NewtonReport last;     ///< the report of the last attempt
+  std::string message;   ///< status, parameter and step where the stepper gave up; empty otherwise
 };
 
 struct StepCallbacks {
