@@ -100,9 +100,9 @@ struct RveReport {
   int tangent_iterations = 0;   ///< of a static tangent
   bool tangent_capped = false;  ///< the iterations reached their limit: the tangent is too stiff, less so than eq. (4);
                                 ///< of `loading`: `elastic` instead
-  double unbalanced = 0;       ///< rms|f| / (max(p, floor) t d) at the last look [-]
-  double inertial_number = 0;  ///< of the strain phase, at the final pressure [-]
-  double largest_overlap = 0;  ///< overlap / (r_i + r_j) [-]
+  double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
+  double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
+  double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]
 
   /// Compression positive [Pa].
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double pressure() const { return -0.5 * (stress[0] + stress[3]); }

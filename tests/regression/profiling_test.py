@@ -20,7 +20,10 @@ def regions_of(words):
     finally:
         del os.environ["KOKKOS_TOOLS_LIBS"]
     lines = log.read_text().splitlines()
-    check("mixed threads" not in lines, "two threads tell the tool their regions at once, which common tools do not expect")
+    check(
+        "mixed threads" not in lines,
+        "two threads tell the tool their regions at once, which common tools do not expect",
+    )
     check("unbalanced" not in lines, "a region is left open")
     return {path: int(count) for path, count in (line.rsplit(" ", 1) for line in lines)}
 
