@@ -9,6 +9,8 @@
 #include "host/packing/packings.hpp"
 #include "host/stages/ground_loads.hpp"
 #include "host/stages/tunnel.hpp"
+#include "kernels/contact/engine_law.hpp"
+#include "kernels/state/mobility.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -29,12 +31,13 @@ constexpr double hold_steps = 30;
 constexpr double specimen_evaluations = 5.0;  ///< cases/biaxial_bvp: 7, most of them of few steps
 constexpr double specimen_strain = 1.4;       ///< norm of an RVE's strain over the top's, without change of volume
 
-/// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)) with the scaled mass m of
-/// kernels/README.md (one stable step for all sizes), six neighbours.
+/// Steps to a strain at an inertial number, for a grain of the mean radius.
 double inertial_steps(const SoilCase& soil, double strain, double pressure, double inertial_number) {
-  const double k_n = soil.modulus * 0.25 * (soil.size_minimum + soil.size_maximum);
-  const double mass = (6.0 + 12.0 * soil.stiffness_ratio) * k_n / (4.0 * 0.9 * 0.9);
-  return strain / inertial_number * std::sqrt(mass / (pressure * soil.thickness));
+  const kernels::GrainMaterial grain{.modulus = soil.modulus, .stiffness_ratio = soil.stiffness_ratio};
+  const double mean_radius = 0.25 * (soil.size_minimum + soil.size_maximum);
+  const kernels::Mobility mobility = kernels::mobility_of<kernels::PlainEngineLaw>(
+      grain, mean_radius, 0.5 * soil.size_maximum, kernels::EngineSettings{}.overlap_limit);
+  return strain / inertial_number * kernels::inertial_time(mobility.translation, soil.thickness, pressure);
 }
 
 /// Steps of one evaluation of one RVE.
