@@ -43,8 +43,8 @@ struct LookReport {
 /// Partial sums of a look in shared memory.
 template <class Real>
 struct LookSums {
-  Stress<Real>* of_pairs;   ///< (pair_chunks)
-  Real* of_grains;          ///< (grain_chunks)
+  Stress<Real>* of_pairs;  ///< (pair_chunks)
+  Real* of_grains;         ///< (grain_chunks)
   int pair_chunks, grain_chunks;
   LookReport* report;
 };

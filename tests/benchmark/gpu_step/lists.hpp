@@ -59,13 +59,13 @@ struct Grid {
 
 /// An RVE's arrays in shared memory.
 struct ListMemory {
-  double *x, *y, *radius;                ///< (grains) of the members of the bins, bin after bin, inside the cell
-  int* counter;                          ///< (grains + 1) of each bin, later of each row
-  int* incoming_counter;                 ///< (grains + 1)
-  int* warp_sum;                         ///< (32)
-  int* hits;                             ///< 1
-  std::uint32_t *hit, *key;              ///< (capacity) pairs as they were found; sorted
-  std::uint16_t *member, *incoming;      ///< (grains), (capacity)
+  double *x, *y, *radius;            ///< (grains) of the members of the bins, bin after bin, inside the cell
+  int* counter;                      ///< (grains + 1) of each bin, later of each row
+  int* incoming_counter;             ///< (grains + 1)
+  int* warp_sum;                     ///< (32)
+  int* hits;                         ///< 1
+  std::uint32_t *hit, *key;          ///< (capacity) pairs as they were found; sorted
+  std::uint16_t *member, *incoming;  ///< (grains), (capacity)
 };
 
 VOUSSOIR_DEVICE ListMemory carve_lists(Carver& carver, int grains, int capacity) {
@@ -232,8 +232,8 @@ class ListThread {
     sums_before(m_.incoming_counter, a_.grains);
     for (int i = rank_; i <= a_.grains; i += threads) {
       a_.lists.row[row_first_ + static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(m_.counter[i]);
-      a_.lists.incoming_row[row_first_ + static_cast<std::size_t>(i)] =
-          static_cast<std::uint16_t>(m_.incoming_counter[i]);
+      a_.lists.incoming_row[row_first_ + static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(
+          m_.incoming_counter[i]);
     }
     team_.barrier();
     for (int p = rank_; p < pairs; p += threads) m_.key[team_.add(m_.counter[m_.hit[p] >> 16], 1)] = m_.hit[p];

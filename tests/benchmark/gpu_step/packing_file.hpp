@@ -22,8 +22,12 @@ inline Rve read_packing(const std::string& name) {
   std::int64_t size[2];
   read(size, sizeof size);
   const auto n = static_cast<std::size_t>(size[0]), contacts = static_cast<std::size_t>(size[1]);
-  Rve rve{.cell = {}, .skin = 0, .position = std::vector<double>(2 * n), .radius = std::vector<double>(n),
-          .kept = std::vector<std::uint32_t>(contacts), .history = std::vector<Two<double>>(contacts)};
+  Rve rve{.cell = {},
+          .skin = 0,
+          .position = std::vector<double>(2 * n),
+          .radius = std::vector<double>(n),
+          .kept = std::vector<std::uint32_t>(contacts),
+          .history = std::vector<Two<double>>(contacts)};
   read(&rve.cell, sizeof rve.cell);
   read(rve.position.data(), 2 * n * sizeof(double));
   read(rve.radius.data(), n * sizeof(double));

@@ -32,7 +32,7 @@ struct Run {
   int steps = 400;      ///< of a launch
   int look_every = 16;  ///< of the instances that look
   int repeats = 5;
-  bool times = true;    ///< false: one launch of each, for profilers and sanitizers
+  bool times = true;  ///< false: one launch of each, for profilers and sanitizers
 };
 
 /// Copies of a packing on the card, each moved and with a list of its own.
@@ -70,16 +70,29 @@ class Batch {
   [[nodiscard]] int rves() const { return rves_; }
   [[nodiscard]] int grains() const { return grains_; }
   [[nodiscard]] int capacity() const { return capacity_; }
-  [[nodiscard]] ListStore<Real> reference(int rve) const { return reference_list<Real>(moved(packing_, rve), capacity_); }
+  [[nodiscard]] ListStore<Real> reference(int rve) const {
+    return reference_list<Real>(moved(packing_, rve), capacity_);
+  }
   [[nodiscard]] const std::vector<double>& radii() const { return packing_.radius; }
 
   [[nodiscard]] ListArguments<Real> list_arguments() const {
-    return {grains_,      packing_.skin,   position_.data(),   cell_.data(), radius_.data(),
-            kept_.data(), history_.data(), kept_count_.data(), static_cast<int>(packing_.kept.size()), lists()};
+    return {grains_,         packing_.skin,      position_.data(),
+            cell_.data(),    radius_.data(),     kept_.data(),
+            history_.data(), kept_count_.data(), static_cast<int>(packing_.kept.size()),
+            lists()};
   }
   [[nodiscard]] StepArguments<Real> step_arguments(int steps, int look_every) const {
-    return {lists(), real_radius_.data(), growth_.data(), state_.data(), spin_.data(),
-            report_.data(), grains_, steps, look_every, 0.0, literal_sand<Real>()};
+    return {lists(),
+            real_radius_.data(),
+            growth_.data(),
+            state_.data(),
+            spin_.data(),
+            report_.data(),
+            grains_,
+            steps,
+            look_every,
+            0.0,
+            literal_sand<Real>()};
   }
 
   [[nodiscard]] ListStore<Real> download_lists() const {
@@ -107,8 +120,8 @@ class Batch {
 
  private:
   [[nodiscard]] PairLists<Real> lists() const {
-    return {capacity_,        branch_x_.data(), branch_y_.data(), gap_.data(),      tangential_.data(), moment_.data(),
-            keys_.data(), row_.data(), incoming_row_.data(), incoming_.data(), pair_count_.data()};
+    return {capacity_,    branch_x_.data(), branch_y_.data(),     gap_.data(),      tangential_.data(), moment_.data(),
+            keys_.data(), row_.data(),      incoming_row_.data(), incoming_.data(), pair_count_.data()};
   }
   [[nodiscard]] std::size_t all_grains() const {
     return static_cast<std::size_t>(rves_) * static_cast<std::size_t>(grains_);
@@ -191,10 +204,9 @@ int equal_states(const Batch<typename Choice::Real>& batch, const Run& run, cons
   int same = 0;
   for (const int v : compared(batch.rves())) {
     ListStore<Real> list = batch.reference(v);
-    const StepState<Real> got = batch.download_state(v),
-                          want = reference_steps<Choice::rolling>(list, batch.radii(), growth_of(v),
-                                                                  literal_sand<Real>(), steps,
-                                                                  Choice::look == Look::none ? 0 : run.look_every);
+    const StepState<Real> got = batch.download_state(v), want = reference_steps<Choice::rolling>(
+                                                             list, batch.radii(), growth_of(v), literal_sand<Real>(),
+                                                             steps, Choice::look == Look::none ? 0 : run.look_every);
     const bool looked = Choice::look == Look::none || std::memcmp(&got.report, &want.report, sizeof got.report) == 0;
     same += looked && std::memcmp(got.state.data(), want.state.data(), got.state.size() * sizeof(Quad<Real>)) == 0 &&
             std::memcmp(got.spin.data(), want.spin.data(), got.spin.size() * sizeof(Two<Real>)) == 0;
@@ -232,6 +244,29 @@ void step_line(const char* name, const Batch<typename Choice::Real>& batch, cons
                 work * (run.steps - 16) / (all - few), 1e3 * (all - few) / (run.steps - 16));
   }
   std::printf("%d of 3 RVEs have the host's bits\n", same);
+  std::fflush(stdout);
+}
+
+/// What one evaluation costs on the card, once its state is there: lists made anew and `evaluation_steps` steps with
+/// looks. The histories of the packing go with the lists.
+template <class Choice>
+void evaluation_line(const char* name, const Batch<typename Choice::Real>& batch, const Run& run) {
+  using Real = typename Choice::Real;
+  if (std::strstr(name, run.only.c_str()) == nullptr || !run.times) return;
+  constexpr int evaluation_steps = 118;  // the mean of cases/tunnel_quick
+  constexpr int threads = 256, lanes = 4, blocks = 4;
+  const auto lists = list_kernel<Real, threads, lanes, blocks>;
+  const auto steps = step_kernel<Choice>;
+  const std::size_t list_memory = list_bytes(batch.grains(), batch.capacity());
+  const std::size_t step_memory = step_bytes<Choice>(batch.grains(), batch.capacity());
+  prepare(lists, threads, list_memory);
+  print_head(name, batch, Choice::threads, prepare(steps, Choice::threads, step_memory), step_memory);
+  const float ms = shortest_ms(run.repeats, [&] {
+    lists<<<batch.rves(), threads, list_memory>>>(batch.list_arguments());
+    steps<<<batch.rves(), Choice::threads, step_memory>>>(batch.step_arguments(evaluation_steps, run.look_every));
+  });
+  std::printf("%8.3f ms for lists and %d steps, %6.2f G/s\n", ms, evaluation_steps,
+              1e-6 * batch.rves() * batch.grains() * evaluation_steps / ms);
   std::fflush(stdout);
 }
 

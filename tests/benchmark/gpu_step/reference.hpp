@@ -14,12 +14,12 @@ namespace voussoir::gpu_step {
 
 /// An RVE at rest as it comes from a packing file (packing_file.hpp).
 struct Rve {
-  Mat2 cell;                          ///< columns are the periodic vectors [m]
-  double skin;                        ///< [m]
-  std::vector<double> position;       ///< (grain, 2) [m]
-  std::vector<double> radius;         ///< (grain) [m]
-  std::vector<std::uint32_t> kept;    ///< contacts, ascending i << 16 | j
-  std::vector<Two<double>> history;   ///< of the contacts: tangential force [N], rolling moment [N m]
+  Mat2 cell;                         ///< columns are the periodic vectors [m]
+  double skin;                       ///< [m]
+  std::vector<double> position;      ///< (grain, 2) [m]
+  std::vector<double> radius;        ///< (grain) [m]
+  std::vector<std::uint32_t> kept;   ///< contacts, ascending i << 16 | j
+  std::vector<Two<double>> history;  ///< of the contacts: tangential force [N], rolling moment [N m]
 
   [[nodiscard]] int grains() const { return static_cast<int>(radius.size()); }
 };
@@ -45,8 +45,8 @@ struct ListStore {
   }
 
   PairLists<Real> lists() {
-    return {capacity,      branch_x.data(),     branch_y.data(), gap.data(),    tangential.data(), moment.data(),
-            grains.data(), row.data(), incoming_row.data(), incoming.data(), pair_count.data()};
+    return {capacity,      branch_x.data(), branch_y.data(),     gap.data(),      tangential.data(), moment.data(),
+            grains.data(), row.data(),      incoming_row.data(), incoming.data(), pair_count.data()};
   }
 };
 
@@ -170,7 +170,8 @@ StepState<Real> reference_steps(ListStore<Real>& list, const std::vector<double>
   for (int step = 0; step < steps; ++step) {
     move_cell(f, growth, motion);
     for (std::size_t p = 0; p < pairs; ++p) {
-      Pair<Real> pair{list.branch_x[p], list.branch_y[p], list.gap[p], list.tangential[p], list.moment[p], list.grains[p]};
+      Pair<Real> pair{list.branch_x[p],   list.branch_y[p], list.gap[p],
+                      list.tangential[p], list.moment[p],   list.grains[p]};
       const Stress<Real> of = pair_step<rolling, true>(s, pair, static_cast<int>(p), motion, material);
       list.tangential[p] = pair.tangential;
       list.moment[p] = pair.moment;

@@ -83,7 +83,8 @@ class StepThread {
       }
       for (int p = team_.rank(); p < pairs_; p += threads) m_.s.indices[p] = incoming[p];
     } else if constexpr (Instance::gather == Gather::one_list) {
-      for (int i = team_.rank(); i <= a_.grains; i += threads) m_.s.row[i] = static_cast<std::uint16_t>(row[i] + in_row[i]);
+      for (int i = team_.rank(); i <= a_.grains; i += threads)
+        m_.s.row[i] = static_cast<std::uint16_t>(row[i] + in_row[i]);
       for (int i = team_.rank(); i < a_.grains; i += threads) {
         int to = row[i] + in_row[i];
         for (int k = in_row[i]; k < in_row[i + 1]; ++k) {
@@ -99,8 +100,8 @@ class StepThread {
         const int own_first = i < a_.grains ? row[i] : 0, own = i < a_.grains ? row[i + 1] - own_first : 0;
         VOUSSOIR_UNROLL
         for (int k = 0; k < most_in_registers; k += 2) {
-          near_[g * words + k / 2] =
-              near_index(k, in, own, in_first, own_first) | near_index(k + 1, in, own, in_first, own_first) << 16;
+          near_[g * words + k / 2] = near_index(k, in, own, in_first, own_first) |
+                                     near_index(k + 1, in, own, in_first, own_first) << 16;
         }
       }
     }
@@ -159,7 +160,8 @@ class StepThread {
       VOUSSOIR_UNROLL
       for (int h = 0; h < words; ++h) {  // two loads are under way before the sums wait for them
         const std::uint32_t both = near_[g * words + h], x0 = both & 0xffffU, x1 = both >> 16;
-        if (h > 1 && (x0 & static_cast<std::uint32_t>(most_pairs)) == static_cast<std::uint32_t>(a_.lists.capacity)) break;
+        if (h > 1 && (x0 & static_cast<std::uint32_t>(most_pairs)) == static_cast<std::uint32_t>(a_.lists.capacity))
+          break;
         const Quad<Real> y0 = m_.s.action[x0 & static_cast<std::uint32_t>(most_pairs)];
         const Quad<Real> y1 = m_.s.action[x1 & static_cast<std::uint32_t>(most_pairs)];
         load.add(y0, (x0 & is_incoming) != 0);

@@ -22,10 +22,16 @@ double scattered(unsigned k) {
 /// Grains on a disturbed grid in a sheared cell, many of which touch; every seventh is small.
 Rve scattered_grains(int side) {
   const double spacing = 2e-3, length = side * spacing;
-  Rve rve{.cell = {length, 0.3 * length, 0.02 * length, length}, .skin = 2e-4, .position = {}, .radius = {}, .kept = {}, .history = {}};
+  Rve rve{.cell = {length, 0.3 * length, 0.02 * length, length},
+          .skin = 2e-4,
+          .position = {},
+          .radius = {},
+          .kept = {},
+          .history = {}};
   for (int k = 0; k < side * side; ++k) {
     const auto n = static_cast<unsigned>(k);
-    const double u = (k % side + 0.1 * scattered(3 * n)) / side, v = (k / side + 0.1 * scattered(3 * n + 1)) / side + 1.0;
+    const double u = (k % side + 0.1 * scattered(3 * n)) / side,
+                 v = (k / side + 0.1 * scattered(3 * n + 1)) / side + 1.0;
     rve.position.push_back(rve.cell.xx * u + rve.cell.xy * v);
     rve.position.push_back(rve.cell.yx * u + rve.cell.yy * v);
     rve.radius.push_back((k % 7 == 0 ? 0.4 : 1.0 + 0.1 * scattered(3 * n + 2)) * 0.5 * spacing);
@@ -87,9 +93,9 @@ TEST(Lists, find_the_pairs_of_the_engine) {
   for (std::size_t p = 0; p < keys.size(); ++p) {
     EXPECT_EQ(keys[p], list.grains[p]);
     const std::size_t i = keys[p] >> 16, j = keys[p] & 0xffffU;
-    const kernels::PairReference pair =
-        kernels::pair_reference(rve.position[2 * j] - rve.position[2 * i],
-                                rve.position[2 * j + 1] - rve.position[2 * i + 1], rve.radius[i] + rve.radius[j], cell);
+    const kernels::PairReference pair = kernels::pair_reference(rve.position[2 * j] - rve.position[2 * i],
+                                                                rve.position[2 * j + 1] - rve.position[2 * i + 1],
+                                                                rve.radius[i] + rve.radius[j], cell);
     EXPECT_EQ(pair.branch_x, list.branch_x[p]);
     EXPECT_EQ(pair.branch_y, list.branch_y[p]);
     EXPECT_EQ(pair.gap, list.gap[p]);
@@ -115,9 +121,10 @@ TEST(Lists, say_how_much_room_is_needed) {
   EXPECT_EQ((listed_by_threads<float, 64, 1>(many, pairs - 1).pair_count[0]), pairs);
 }
 
-/// Steps of a list that the same threads have made, against one thread.
+/// Steps of a list that the same threads have made, against one thread. @param rest as in StepArguments
+/// @param steps_taken of the RVEs if `rest` ends them
 template <class Choice, int barriers = 1>
-void expect_bits_of_one_thread(int rves, int steps, int look_every) {
+void expect_bits_of_one_thread(int rves, int steps, int look_every, double rest, int steps_taken) {
   using Real = typename Choice::Real;
   using Team = ThreadsTeam<Choice::threads, barriers>;
   constexpr int capacity = 512;
@@ -134,15 +141,16 @@ void expect_bits_of_one_thread(int rves, int steps, int look_every) {
   std::vector<Quad<Real>> state(n * static_cast<std::size_t>(rves));
   std::vector<Two<Real>> spin(state.size());
   std::vector<LookReport> report(static_cast<std::size_t>(rves));
-  const StepArguments<Real> a{store.lists(), radius.data(), growth.data(),  state.data(), spin.data(),
-                              report.data(), grains,        steps,          look_every,   0.0,
+  const StepArguments<Real> a{store.lists(),       radius.data(), growth.data(), state.data(), spin.data(),
+                              report.data(),       grains,        steps,         look_every,   rest,
                               literal_sand<Real>()};
   run_on_threads<Team>(rves, step_bytes<Choice>(grains, capacity),
                        [&](const Team& team) { StepThread<Choice, Team>(team, a).run(); });
   for (int v = 0; v < rves; ++v) {
     ListStore<Real> list = reference_list<Real>(many.rve[static_cast<std::size_t>(v)], capacity);
     const auto want = reference_steps<Choice::rolling>(list, many.rve[0].radius, growth[static_cast<std::size_t>(v)],
-                                                       a.material, steps, Choice::look == Look::none ? 0 : look_every);
+                                                       a.material, steps_taken,
+                                                       Choice::look == Look::none ? 0 : look_every);
     const std::size_t first = n * static_cast<std::size_t>(v);
     EXPECT_EQ(std::memcmp(&state[first], want.state.data(), n * sizeof(state[0])), 0);
     EXPECT_EQ(std::memcmp(&spin[first], want.spin.data(), n * sizeof(spin[0])), 0);
@@ -151,6 +159,11 @@ void expect_bits_of_one_thread(int rves, int steps, int look_every) {
     EXPECT_GT(want.report.force_squared, 0.0);
     EXPECT_EQ(std::memcmp(&report[static_cast<std::size_t>(v)], &want.report, sizeof(LookReport)), 0);
   }
+}
+
+template <class Choice, int barriers = 1>
+void expect_bits_of_one_thread(int rves, int steps, int look_every) {
+  expect_bits_of_one_thread<Choice, barriers>(rves, steps, look_every, 0.0, steps);
 }
 
 TEST(Step, as_designed) { expect_bits_of_one_thread<Instance<float, 64, 5, 2, 1, Gather::two_loops, true>>(2, 40, 1); }
@@ -166,6 +179,16 @@ TEST(Step, with_a_peeled_look) {
 }
 TEST(Step, with_a_called_look) {
   expect_bits_of_one_thread<Instance<float, 64, 5, 2, 1, Gather::one_list, false, true, Look::called>>(1, 21, 8);
+}
+
+constexpr double any_force = 1e30;  // [N^2]
+TEST(Step, ends_at_rest_by_a_peeled_look) {
+  using Choice = Instance<float, 64, 5, 2, 1, Gather::two_loops, true, true, Look::peeled>;
+  expect_bits_of_one_thread<Choice>(1, 21, 8, any_force, 8);
+}
+TEST(Step, ends_at_rest_by_a_called_look) {
+  using Choice = Instance<double, 64, 5, 2, 1, Gather::one_list, true, true, Look::called>;
+  expect_bits_of_one_thread<Choice>(1, 21, 8, any_force, 8);
 }
 
 /// Without barriers. ThreadSanitizer must report this; its own entry of ctest asks for the report.

@@ -2,28 +2,14 @@
 /// Blocks of threads on a host: one block after the other, its threads as threads of the host. ThreadSanitizer then
 /// reports each pair of conflicting accesses that no barrier orders, whatever the timing was.
 
-#include <pthread.h>
-
 #include <array>
+#include <barrier>
 #include <cstddef>
 #include <memory>
 #include <thread>
 #include <vector>
 
 namespace voussoir::gpu_step {
-
-/// A barrier that ThreadSanitizer understands.
-class ThreadBarrier {
- public:
-  explicit ThreadBarrier(unsigned threads) { pthread_barrier_init(&barrier_, nullptr, threads); }
-  ~ThreadBarrier() { pthread_barrier_destroy(&barrier_); }
-  ThreadBarrier(const ThreadBarrier&) = delete;
-  ThreadBarrier& operator=(const ThreadBarrier&) = delete;
-  void wait() { pthread_barrier_wait(&barrier_); }
-
- private:
-  pthread_barrier_t barrier_{};
-};
 
 /// The sum of 32 numbers in the order of CudaTeam::warp_sum.
 template <class T>
@@ -41,15 +27,15 @@ struct BlockOnThreads {
   static constexpr std::size_t warps = threads / 32;
 
   explicit BlockOnThreads(std::size_t shared_bytes) : shared(shared_bytes / sizeof(Line) + 1) {
-    for (auto& one : warp) one = std::make_unique<ThreadBarrier>(32);
+    for (auto& one : warp) one = std::make_unique<std::barrier<>>(32);
   }
 
   struct alignas(32) Line {
     std::array<char, 32> bytes;
   };
   std::vector<Line> shared;
-  ThreadBarrier all{threads};
-  std::array<std::unique_ptr<ThreadBarrier>, warps> warp;
+  std::barrier<> all{threads};
+  std::array<std::unique_ptr<std::barrier<>>, warps> warp;
   std::array<double, threads> slot{};  ///< what threads of a warp tell each other; a float or an int is exact in it
 };
 
@@ -64,7 +50,7 @@ class ThreadsTeam {
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int rve() const { return rve_; }
   void barrier() const {
-    if constexpr (barriers != 0) block_.all.wait();
+    if constexpr (barriers != 0) block_.all.arrive_and_wait();
   }
   [[nodiscard]] char* shared() const { return block_.shared.data()->bytes.data(); }
 
@@ -88,11 +74,11 @@ class ThreadsTeam {
   std::array<T, 32> tell(T own) const {
     auto& barrier = *block_.warp[static_cast<std::size_t>(rank_ / 32)];
     block_.slot[static_cast<std::size_t>(rank_)] = static_cast<double>(own);
-    barrier.wait();
+    barrier.arrive_and_wait();
     std::array<T, 32> all;
     const auto first = static_cast<std::size_t>(rank_ / 32 * 32);
     for (std::size_t k = 0; k < 32; ++k) all[k] = static_cast<T>(block_.slot[first + k]);
-    barrier.wait();
+    barrier.arrive_and_wait();
     return all;
   }
 
