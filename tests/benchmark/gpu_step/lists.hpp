@@ -52,8 +52,10 @@ struct Grid {
     dx -= h.xx * a + h.xy * b;
     dy -= h.yx * a + h.yy * b;
   }
+  /// The place of a point of the cell in bins, from 0 to nx and to ny; 0 for what is no number.
   [[nodiscard]] VOUSSOIR_DEVICE Two<double> slots(double x, double y) const {
-    return {(inverse.xx * x + inverse.xy * y) * nx, (inverse.yx * x + inverse.yy * y) * ny};
+    return {least(most((inverse.xx * x + inverse.xy * y) * nx, 0.0), 1.0 * nx),
+            least(most((inverse.yx * x + inverse.yy * y) * ny, 0.0), 1.0 * ny)};
   }
 };
 
@@ -154,9 +156,7 @@ class ListThread {
 
   [[nodiscard]] VOUSSOIR_DEVICE int bin_of(double x, double y) const {
     const Two<double> s = grid_.slots(x, y);
-    const int column = static_cast<int>(least(most(s.x, 0.0), grid_.nx - 1.0));
-    const int row = static_cast<int>(least(most(s.y, 0.0), grid_.ny - 1.0));
-    return row * grid_.nx + column;
+    return static_cast<int>(least(s.y, grid_.ny - 1.0)) * grid_.nx + static_cast<int>(least(s.x, grid_.nx - 1.0));
   }
 
   VOUSSOIR_DEVICE void fill_bins() {
@@ -189,11 +189,15 @@ class ListThread {
       const double reach = (1.0 + 1e-12) * (2.0 * m_.radius[at] + a_.skin);  // more than all errors of rounding
       const Two<double> s = grid_.slots(m_.x[at], m_.y[at]);
       const double wx = reach / grid_.height_x * grid_.nx, wy = reach / grid_.height_y * grid_.ny;
-      const int left = static_cast<int>(std::floor(s.x - wx)), right = static_cast<int>(std::floor(s.x + wx));
-      const int top = static_cast<int>(std::floor(s.y + wy));
-      for (int row = static_cast<int>(std::floor(s.y - wy)); row <= top; ++row) search_row(at, row, left, right);
+      const int left = slot(s.x - wx, grid_.nx), right = slot(s.x + wx, grid_.nx), top = slot(s.y + wy, grid_.ny);
+      for (int row = slot(s.y - wy, grid_.ny); row <= top; ++row) search_row(at, row, left, right);
     }
     team_.barrier();
+  }
+
+  /// A bin of the cell or of its next images.
+  [[nodiscard]] static VOUSSOIR_DEVICE int slot(double at, int bins) {
+    return static_cast<int>(least(most(std::floor(at), -1.0 * bins), 2.0 * bins - 1.0));
   }
 
   /// Bins left .. right of a row; those beyond the cell are images. As a cell is wider than twice the largest reach,
@@ -212,7 +216,7 @@ class ListThread {
   VOUSSOIR_DEVICE void meet(int at, int k, double x, double y) {
     const double own = m_.radius[at], other = m_.radius[k], reach = own + other + a_.skin;
     const double dx = m_.x[k] - x, dy = m_.y[k] - y;
-    if (dx * dx + dy * dy >= reach * reach || other > own) return;
+    if (!(dx * dx + dy * dy < reach * reach) || other > own) return;  // nor does it meet what is no number
     const std::uint32_t i = m_.member[at], j = m_.member[k];
     if (other == own && j <= i) return;
     const int hit = team_.add(*m_.hits, 1);

@@ -75,7 +75,7 @@ VOUSSOIR_DEVICE Real capped(Real x, Real bound) {
   return most(-bound, least(x, bound));
 }
 
-/// Divides a block of memory into arrays. With a null pointer it only counts the bytes.
+/// Divides a block of memory into arrays. With a null pointer, on the host, it only counts the bytes.
 class Carver {
  public:
   VOUSSOIR_DEVICE explicit Carver(char* memory) : memory_(memory) {}
@@ -83,7 +83,11 @@ class Carver {
   template <class T>
   VOUSSOIR_DEVICE T* take(int count) {
     used_ = (used_ + alignof(T) - 1) / alignof(T) * alignof(T);
+#if defined(__CUDA_ARCH__)  // without a choice of pointers nvcc knows that all of them point to shared memory
     T* const array = reinterpret_cast<T*>(memory_ + used_);
+#else
+    T* const array = memory_ == nullptr ? nullptr : reinterpret_cast<T*>(memory_ + used_);
+#endif
     used_ += sizeof(T) * static_cast<std::size_t>(count);
     return array;
   }

@@ -83,8 +83,9 @@ class StepThread {
       }
       for (int p = team_.rank(); p < pairs_; p += threads) m_.s.indices[p] = incoming[p];
     } else if constexpr (Instance::gather == Gather::one_list) {
-      for (int i = team_.rank(); i <= a_.grains; i += threads)
+      for (int i = team_.rank(); i <= a_.grains; i += threads) {
         m_.s.row[i] = static_cast<std::uint16_t>(row[i] + in_row[i]);
+      }
       for (int i = team_.rank(); i < a_.grains; i += threads) {
         int to = row[i] + in_row[i];
         for (int k = in_row[i]; k < in_row[i + 1]; ++k) {
@@ -154,16 +155,14 @@ class StepThread {
       const int end = m_.s.row[i + 1];
       for (int k = m_.s.row[i]; k < end; ++k) {
         const std::uint32_t x = m_.s.indices[k];
-        load.add(m_.s.action[x & static_cast<std::uint32_t>(most_pairs)], (x & is_incoming) != 0);
+        load.add(m_.s.action[pair_of(x)], (x & is_incoming) != 0);
       }
     } else {
       VOUSSOIR_UNROLL
       for (int h = 0; h < words; ++h) {  // two loads are under way before the sums wait for them
         const std::uint32_t both = near_[g * words + h], x0 = both & 0xffffU, x1 = both >> 16;
-        if (h > 1 && (x0 & static_cast<std::uint32_t>(most_pairs)) == static_cast<std::uint32_t>(a_.lists.capacity))
-          break;
-        const Quad<Real> y0 = m_.s.action[x0 & static_cast<std::uint32_t>(most_pairs)];
-        const Quad<Real> y1 = m_.s.action[x1 & static_cast<std::uint32_t>(most_pairs)];
+        if (h > 1 && pair_of(x0) == a_.lists.capacity) break;
+        const Quad<Real> y0 = m_.s.action[pair_of(x0)], y1 = m_.s.action[pair_of(x1)];
         load.add(y0, (x0 & is_incoming) != 0);
         load.add(y1, (x1 & is_incoming) != 0);
       }
@@ -194,6 +193,9 @@ class StepThread {
   }
 
   static constexpr std::uint32_t is_incoming = 0x8000;
+  [[nodiscard]] static VOUSSOIR_DEVICE int pair_of(std::uint32_t index) {
+    return static_cast<int>(index & static_cast<std::uint32_t>(most_pairs));
+  }
   static constexpr int words = most_in_registers / 2;
 
   const Team& team_;

@@ -30,8 +30,8 @@ Rve scattered_grains(int side) {
           .history = {}};
   for (int k = 0; k < side * side; ++k) {
     const auto n = static_cast<unsigned>(k);
-    const double u = (k % side + 0.1 * scattered(3 * n)) / side,
-                 v = (k / side + 0.1 * scattered(3 * n + 1)) / side + 1.0;
+    const double column = k % side, line = (k - k % side) / side;
+    const double u = (column + 0.1 * scattered(3 * n)) / side, v = (line + 0.1 * scattered(3 * n + 1)) / side + 1.0;
     rve.position.push_back(rve.cell.xx * u + rve.cell.xy * v);
     rve.position.push_back(rve.cell.yx * u + rve.cell.yy * v);
     rve.radius.push_back((k % 7 == 0 ? 0.4 : 1.0 + 0.1 * scattered(3 * n + 2)) * 0.5 * spacing);
@@ -112,6 +112,19 @@ TEST(Lists, of_threads_have_the_bits_of_one_thread) {
     EXPECT_TRUE(same_list(by_one, v, reference_list<float>(rve, 512), rve.grains()));
     EXPECT_TRUE(same_list(by_eight, v, reference_list<float>(rve, 512), rve.grains()));
     EXPECT_TRUE(same_list(in_double, v, reference_list<double>(rve, 512), rve.grains()));
+  }
+}
+
+TEST(Lists, leave_out_what_is_no_number) {
+  Rve rve = scattered_grains(6);
+  rve.position[2 * 8] = std::nan("");
+  const ManyRves many(rve, 1);
+  const auto list = listed_by_threads<float, 64, 4>(many, 256);
+  EXPECT_TRUE(same_list(list, 0, reference_list<float>(many.rve[0], 256), rve.grains()));
+  EXPECT_GT(list.pair_count[0], 20);
+  for (int p = 0; p < list.pair_count[0]; ++p) {
+    const std::uint32_t key = list.grains[static_cast<std::size_t>(p)];
+    EXPECT_TRUE(key >> 16 != 8 && (key & 0xffffU) != 8);
   }
 }
 
