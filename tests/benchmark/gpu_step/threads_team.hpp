@@ -39,8 +39,9 @@ struct BlockOnThreads {
   std::array<double, threads> slot{};  ///< what threads of a warp tell each other; a float or an int is exact in it
 };
 
-/// One thread of such a block. @tparam barriers 1; 0 leaves all barriers of the block out, which a test must find
-template <int team_threads, int barriers = 1>
+/// One thread of such a block. @tparam left_out the number of a barrier of the block, from 1, that all its threads pass
+/// without waiting, which a test must find; 0: none
+template <int team_threads, int left_out = 0>
 class ThreadsTeam {
  public:
   static constexpr int threads = team_threads;
@@ -50,7 +51,7 @@ class ThreadsTeam {
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int rve() const { return rve_; }
   void barrier() const {
-    if constexpr (barriers != 0) block_.all.arrive_and_wait();
+    if (++barriers_ != left_out) block_.all.arrive_and_wait();
   }
   [[nodiscard]] char* shared() const { return block_.shared.data()->bytes.data(); }
 
@@ -84,6 +85,7 @@ class ThreadsTeam {
 
   BlockOnThreads<threads>& block_;
   int rank_, rve_;
+  mutable int barriers_ = 0;  ///< that this thread has come to
 };
 
 /// Runs `body(team)` for `rves` blocks, each of `Team::threads` threads with `shared_bytes` of memory in common.
