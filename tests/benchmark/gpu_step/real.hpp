@@ -8,10 +8,15 @@
 #if defined(__CUDACC__)
 #define VOUSSOIR_DEVICE __host__ __device__ __forceinline__
 #define VOUSSOIR_DEVICE_CALL __device__ __noinline__
-#define VOUSSOIR_UNROLL _Pragma("unroll")
 #else
 #define VOUSSOIR_DEVICE inline
 #define VOUSSOIR_DEVICE_CALL [[gnu::noinline]] inline
+#endif
+
+/// Loops that keep an array in registers. The host's compiler behind nvcc does not know the pragma.
+#if defined(__CUDA_ARCH__)
+#define VOUSSOIR_UNROLL _Pragma("unroll")
+#else
 #define VOUSSOIR_UNROLL
 #endif
 
