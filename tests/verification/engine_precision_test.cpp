@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/element_tests/biaxial.hpp"
+#include "host/packing/recipe.hpp"
 
 namespace voussoir::host {
 namespace {
