@@ -1,5 +1,6 @@
 #pragma once
-/// One group from its committed states to its trial states: restore, time loop with masked retirement, finish.
+/// Brings one group from its committed to its trial states: it is restored, goes through the time loop, in which lanes
+/// that have ended stand still, and is finished.
 
 #include "kernels/lanes/finish.hpp"
 #include "kernels/lanes/rebase.hpp"

@@ -1,9 +1,9 @@
 #pragma once
 /// One step of all grains of a group: contacts, law, forces, integration; kernels/README.md, "One step".
 ///
-/// A half list sorted by i < j: grain i gathers its force in registers, and is integrated right after its last pair,
-/// since every pair (h, i) with h < i stands in an earlier row. The loop contains no wrap into the cell, no square root
-/// and no division.
+/// The list holds every pair once, with i < j, and is sorted. Grain i gathers its force in registers and is integrated
+/// right after its last pair, since every pair (h, i) with h < i stands in an earlier row. The loop contains no wrap
+/// into the cell, no square root and no division.
 
 #include <cstddef>
 
