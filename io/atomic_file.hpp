@@ -17,8 +17,8 @@ void publish(const std::filesystem::path& target);
 /// Writes text through temporary_name and publish.
 void write_text(const std::filesystem::path& target, const std::string& text);
 
-/// Removes what killed writers left in `folder`: files ending in ".tmp", but for those of other processes that still
-/// run.
+/// Removes the files that killed writers left in `folder`: those that end in ".tmp", except files of other processes
+/// that still run.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace voussoir::io

@@ -17,7 +17,7 @@ struct CaseNode {
   std::string name;                   ///< last part of the key; "[2]" in an array
   std::string key;                    ///< full key, e.g. "stage[2].steps"
   std::string place;                  ///< "case.toml:12", "--set", or the place of the table that lacks the key
-  std::filesystem::path folder = {};  ///< where a path written here begins
+  std::filesystem::path folder = {};  ///< folder to which a path written here is relative
   Kind kind = Kind::absent;
   std::variant<std::monostate, bool, std::int64_t, double, std::string> value = {};
   std::vector<std::unique_ptr<CaseNode>> children = {};

@@ -45,10 +45,10 @@ class CheckpointStore {
   struct Loaded {
     int increment = 0;
     Checkpoint checkpoint;
-    std::vector<std::string> skipped = {};  ///< one sentence for each damaged file passed over
+    std::vector<std::string> skipped = {};  ///< one sentence for each damaged file that was passed over
   };
 
-  /// The newest checkpoint that is not damaged; nothing where there are no files. Throws std::runtime_error where that
+  /// The newest checkpoint that is not damaged; no value where there are no files. Throws std::runtime_error where that
   /// checkpoint belongs to another case, or where files exist and all are damaged.
   [[nodiscard]] std::optional<Loaded> load_latest() const;
 

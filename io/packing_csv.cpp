@@ -1,4 +1,4 @@
-/// Packings of other codes: NAME_particles.csv with NAME_meta.json.
+/// Reads packings of other codes from NAME_particles.csv and NAME_meta.json.
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

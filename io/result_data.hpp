@@ -61,8 +61,8 @@ struct Quantity {
 };
 using Quantities = std::map<std::string, Quantity>;  ///< by name
 
-/// Row of the table of increments, and attributes of the increment's own file: what every increment has, whatever made
-/// it.
+/// Row of the table of increments, and attributes of the increment's own file: the numbers that every increment has,
+/// whatever kind of run made it.
 struct IncrementInfo {
   int index = 0;              ///< number of the file, counted through all stages
   std::string stage = {};     ///< "column", "gravity", "volume_loss", ...
