@@ -72,7 +72,7 @@ class GmshSession {
   int threads_before_ = omp_get_max_threads();
 };
 
-/// The outline, counter-clockwise from the origin; a half circle needs two arcs of less than pi.
+/// Adds the outline, counter-clockwise from the origin; a half circle needs two arcs of less than pi.
 void add_geometry(const HalfTunnelOptions& o, const Circle& opening) {
   namespace geo = gmsh::model::geo;
   const double yc = opening.centre.y();
@@ -115,7 +115,8 @@ struct LinearMesh {
   std::vector<Quad> quads;
 };
 
-/// Quadrilaterals and their nodes, renumbered by ascending tag; nodes of no element (the circle's centre) are left out.
+/// Reads quadrilaterals and their nodes from Gmsh, renumbered by ascending tag; nodes of no element (the circle's
+/// centre) are left out.
 LinearMesh extract() {
   std::vector<int> types;
   std::vector<std::vector<std::size_t>> tags, element_nodes;

@@ -189,7 +189,7 @@ void NewtonSolver::Workspace::restore(Trial&& trial) {
   report = std::move(trial.report);
 }
 
-/// Displacement -> F_rel - I -> stress and tangent.
+/// Computes F_rel - I from the displacement, and from it stress and tangent.
 Failure NewtonSolver::Workspace::evaluate() {
   const Mesh& mesh = solver.mesh_;
   if (!increment.displacement.allFinite()) return NewtonStatus::not_finite;

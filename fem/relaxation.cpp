@@ -21,7 +21,7 @@ void append(Increment& whole, Increment&& part) {
   whole.last_part = std::move(part.last_part);
 }
 
-/// The report of the whole increment after one more substep.
+/// Adds one more substep to the report of the whole increment.
 void tally(NewtonReport& whole, NewtonReport&& part) {
   part.iterations += whole.iterations;
   part.evaluations += whole.evaluations;

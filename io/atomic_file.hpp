@@ -6,8 +6,8 @@
 
 namespace voussoir::io {
 
-/// Name beside `target` to write to, TARGET.PID.tmp, so that processes that write the same file do not meet. Leftovers
-/// of a killed writer are ignored by every reader here.
+/// The name beside `target` under which to write, TARGET.PID.tmp, so that processes that write the same file do not
+/// disturb one another. Leftovers of a killed writer are ignored by every reader here.
 [[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& target);
 
 /// Syncs the closed temporary file to the disk, renames it to `target`, syncs the folder.

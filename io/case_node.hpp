@@ -35,7 +35,7 @@ struct CaseState {
   CaseNode root;
 };
 
-/// Reads the file, over those that it extends, and applies the overrides. Throws InputError.
+/// Reads the file over the files that it extends, and applies the overrides. Throws InputError.
 [[nodiscard]] std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path,
                                                     const std::vector<std::string>& overrides);
 

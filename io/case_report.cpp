@@ -41,8 +41,8 @@ void collect_known(const CaseNode& node, std::vector<const CaseNode*>& known) {
   }
 }
 
-/// A known key with nearly this name in the same table, or with this very name in another one; empty when there is
-/// none.
+/// A hint at a known key with nearly this name in the same table, or with this very name in another table; empty when
+/// there is none.
 std::string hint(const CaseNode& root, const CaseNode& parent, const CaseNode& unknown) {
   std::size_t best = unknown.name.size() / 3 + 1;
   std::string name;

@@ -39,7 +39,8 @@ class CheckpointStore {
  public:
   CheckpointStore(std::filesystem::path folder, std::string fingerprint);
 
-  /// Writes a file beside, syncs it and renames it; then removes all but the last two. Throws std::runtime_error.
+  /// Writes a temporary file, syncs it and renames it; then removes all checkpoints but the last two. Throws
+  /// std::runtime_error.
   void save(int increment, const Checkpoint& checkpoint) const;
 
   struct Loaded {

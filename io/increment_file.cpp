@@ -62,7 +62,7 @@ void write_info(Hdf5File& file, const IncrementInfo& info) {
   }
 }
 
-/// One row per element: the mean over its points; `values` is (element, 4, components).
+/// Returns one row per element, the mean over its points; `values` is (element, 4, components).
 std::vector<double> element_means(const Field& field) {
   const auto components = static_cast<std::size_t>(field.components);
   std::vector<double> means(field.values.size() / gauss_points, 0.0);

@@ -12,7 +12,7 @@
 ///   history_names           their names in the order in which packings and checkpoints store them
 ///   for_each_number(h, f)   calls f(k, number k) of a History, in that order
 ///   stable_rows(...)        row sums of a grain's stiffness at the largest overlap allowed; its scaled mass follows
-///   normal_stiffness_of(...) d f_n/d delta of a grain against its like, for the control of stresses
+///   normal_stiffness_of(...) d f_n/d delta of a grain against an equal one, for the control of stresses
 ///   Law(pair)               the law of that pair, with the member functions
 ///     operator()(motion, history)    forces; the history becomes 0 where the grains do not touch
 ///     keep(changed, history)         copies the numbers that operator() can change from `changed` to `history`;

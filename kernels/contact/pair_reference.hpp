@@ -12,7 +12,7 @@ struct PairReference {
   double branch_x, branch_y, gap;
 };
 
-/// @param dx, dy x_j - x_i, any image [m]; @param sum_radii R [m]
+/// The reference of a pair. @param dx, dy x_j - x_i for any image of j [m]; @param sum_radii R [m]
 [[nodiscard]] KOKKOS_INLINE_FUNCTION PairReference pair_reference(double dx, double dy, double sum_radii,
                                                                   const Cell& cell) {
   cell.nearest(dx, dy);

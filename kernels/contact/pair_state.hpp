@@ -1,5 +1,6 @@
 #pragma once
-/// Working state of one group: W RVEs cloned from one packing, one per lane, all lanes of a number side by side.
+/// The working state of one group: W RVEs cloned from one packing, one per lane. The values of a number in all lanes
+/// stand side by side.
 ///
 /// The layout is (grain, quantity, lane) and (pair, quantity, lane), so that all numbers of one grain or pair are a run
 /// of whole cache lines. One thread owns a group for a whole evaluation, so that the group stays in its caches (L1 and
@@ -32,7 +33,7 @@ struct GrainShape {
   real half_mobility, half_rotational_mobility;  ///< half of each
 };
 
-/// A candidate contact, lane by lane.
+/// The numbers of a candidate contact that differ from lane to lane.
 template <class Law>
 struct PairLanes {
   using V = typename Law::Value;
@@ -41,7 +42,8 @@ struct PairLanes {
   typename Law::History history;
 };
 
-/// A candidate contact, the same in all lanes. Rows are grains i, `other` is j > i.
+/// The numbers of a candidate contact that are the same in all lanes. The contact stands in the row of grain i; `other`
+/// is j > i.
 template <class Law>
 struct PairShape {
   using real = real_of<typename Law::Value>;

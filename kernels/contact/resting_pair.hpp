@@ -9,7 +9,7 @@
 
 namespace voussoir::kernels {
 
-/// Sums over all contacts; divide by the volume for stress and tangent. Voigt (xx, yy, xy), upper triangle.
+/// Sums over all contacts. Divided by the volume they are stress and tangent (upper triangle, Voigt order xx, yy, xy).
 template <class V>
 struct Homogenised {
   SweepSums<V> sums;

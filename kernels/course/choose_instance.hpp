@@ -8,7 +8,7 @@
 
 namespace voussoir::kernels {
 
-/// A type as an argument.
+/// Passes a type to a function as an argument.
 template <class Type>
 struct Instance {
   using type = Type;

@@ -30,7 +30,7 @@ enum class Verdict { running, converged, step_limit };
   return largest_rate(scales_of<PlainEngineLaw>(packing, settings), settings);
 }
 
-/// F(t) = exp(t log F_rel / n) for n steps, then rest until the forces balance.
+/// The cell moves by F(t) = exp(t log F_rel / n) for n steps, then rests until the forces balance.
 class StrainDrive {
  public:
   using Request = StrainRequest;

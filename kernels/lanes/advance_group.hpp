@@ -52,7 +52,7 @@ void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums)
   }
 }
 
-/// @param requests, reports by RVE
+/// Advances the group of `members`. @param requests, reports by RVE
 template <class Run>
 void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int>(Run::width)>& members,
                    std::span<const typename Run::Drive::Request> requests, const EngineSettings& settings,

@@ -127,7 +127,7 @@ std::size_t append_keys(unsigned near, int i, const int* members, std::uint32_t*
 #endif
 }
 
-/// A grain that looks for others.
+/// The grain whose neighbours are sought.
 struct Seeker {
   int grain;
   double x, y, reach;  ///< inside the cell; own radius plus skin [m]

@@ -9,7 +9,7 @@
 
 namespace voussoir::kernels::lanes {
 
-/// Largest displacement and velocity of a group's grains, lane by lane.
+/// The largest displacement and velocity of a group's grains, for each lane.
 template <class V>
 struct Motion {
   V largest = V(0), fastest = V(0);  ///< squared [m^2], [m^2/step^2]

@@ -23,7 +23,7 @@ KOKKOS_FORCEINLINE_FUNCTION void fetch_ahead([[maybe_unused]] const GrainLanes<V
 #endif
 }
 
-/// One step of the whole group. Sums are filled for `Sweep::measure` only.
+/// Advances the whole group by one step. Sums are filled for `Sweep::measure` only.
 template <Sweep mode, class Law, class V>
 VOUSSOIR_OWN_SYMBOL void sweep_pairs(GroupState<Law>& group, SweepSums<V>& sums) {
   using real = real_of<V>;

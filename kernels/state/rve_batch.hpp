@@ -138,7 +138,7 @@ void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size
 [[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of,
                                   int history = history_size<PlainEngineLaw>);
 
-/// The trial states become the committed ones; an RVE whose evaluation failed keeps its committed state.
+/// Makes the trial states the committed ones; an RVE whose evaluation failed keeps its committed state.
 void commit(RveBatch& batch);
 
 /// Whether any grain resists rolling; where none does, an engine runs from which that part of the law is compiled out.

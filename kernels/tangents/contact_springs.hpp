@@ -85,7 +85,7 @@ struct SpringStrain {
   V across;  ///< displacement of the far end along t; over |b| it is the contact's rotation
 };
 
-/// @param dx, dy displacement of grain j against i
+/// The changes of length of a contact's springs. @param dx, dy displacement of grain j against i
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION SpringStrain<V> spring_strain(const SpringLanes<V>& s, const V& dx, const V& dy,
                                                           const V& radius_i, const V& spin_i, const V& radius_j,

@@ -24,7 +24,7 @@ struct StepSpring {
   std::array<StepSlope<V>, unit_strains> slope;  ///< at the last take_step
 };
 
-/// Working arrays of one grain in the biconjugate gradients, beside those of SolverGrain.
+/// Working arrays of one grain in the biconjugate gradients, in addition to those of SolverGrain.
 template <class V>
 struct StepGrain {
   StrainDofs<V> shadow, half, half_image;

@@ -134,7 +134,7 @@ template <class V>
   return any;
 }
 
-/// The conjugate gradients. On return system.grains[i].motion holds the grains' motions.
+/// Runs the conjugate gradients. On return system.grains[i].motion holds the motion of grain i.
 template <class V>
 void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent<V>& out,
                    const EngineSettings& settings) {

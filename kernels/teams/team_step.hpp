@@ -1,9 +1,9 @@
 #pragma once
 /// One step of a team's RVE, kernels/README.md "One step": all pairs at once, then all grains at once.
 ///
-/// A pair is computed once, in the lanes' orientation i < j, and keeps what it does to both grains; a grain then
-/// gathers its pairs, those with smaller neighbours first. This is the order of the lanes' sweep, which gives the same
-/// bits and needs no atomics.
+/// A pair is computed once, in the lanes' orientation i < j, and keeps its action on both grains; a grain then gathers
+/// its pairs, first those whose other grain has a smaller number. This is the order of the lanes' sweep, which gives
+/// the same bits and needs no atomics.
 
 #include "kernels/contact/grain_motion.hpp"
 #include "kernels/teams/team_run.hpp"
