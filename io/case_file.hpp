@@ -94,7 +94,7 @@ class CaseFile {
 
   [[nodiscard]] Table root() const;
 
-  /// Throws InputError for the first key that nobody has read, with the nearest known name as a hint.
+  /// Throws InputError for the first key that the program has not read, with the nearest known name as a hint.
   void finish() const;
 
   /// All values read so far, as TOML in the units that a user writes; origins ("default", "--set") as comments.

@@ -23,7 +23,7 @@ struct MeshData {
   [[nodiscard]] std::size_t elements() const { return connectivity.size() / 8; }
 };
 
-/// Where a run comes from. Values that nobody has set stay "unknown".
+/// The origin of a run. Values that are not set stay "unknown".
 struct Provenance {
   std::string case_kind = "unknown";
   std::string input = {};        ///< the resolved case, TOML
