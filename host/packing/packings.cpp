@@ -116,7 +116,7 @@ PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const 
   };
   PackedRve best = *std::min_element(all.begin(), all.end(), less_biased);
   if (note) {
-    note(fmt::format("packing of seed {} is used: largest |tau_xy|/sigma_yy in oedometric compression {:.4f}",
+    note(fmt::format("packing of seed {} is used: its largest |tau_xy|/sigma_yy in oedometric compression is {:.4f}",
                      best.seed, best.bias));
   }
   return best;

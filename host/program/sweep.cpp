@@ -116,7 +116,7 @@ void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  if (process < 0) throw std::system_error(errno, std::generic_category(), "waiting for a run");
+  if (process < 0) throw std::system_error(errno, std::generic_category(), "cannot wait for a run");
   const auto found = running.find(process);
   if (found == running.end()) return;
   SweepRun& run = *found->second;

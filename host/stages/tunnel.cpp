@@ -56,8 +56,8 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
     run.report_finished();
     return RunStatus::finished;
   }
-  log.line(fmt::format("{}: {} elements, {} points of {}", input.name, mesh.n_elements(), mesh.n_points(),
-                       to_string(input.material)));
+  log.line(fmt::format("{}: the mesh has {} elements and {} points of the material {}", input.name, mesh.n_elements(),
+                       mesh.n_points(), to_string(input.material)));
   if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
 
   const ColumnResult column = run_own_column(input, options, log);
