@@ -35,8 +35,7 @@ enum class GradingMeasure { number, area };
 struct SoilCase {
   double size_minimum = 2.0e-3;   ///< smallest grain diameter [m]
   double size_maximum = 4.75e-3;  ///< largest grain diameter [m]
-  std::vector<double> sizes;      ///< grading curve: diameters, ascending [m]; empty: uniform by number between the two
-                                  ///< sizes
+  std::vector<double> sizes;      ///< grading curve: diameters, ascending [m]; empty: uniform by number in between
   std::vector<double> passing;    ///< share of grains below each size, ascending from 0 to 1 [-]
   GradingMeasure passing_by = GradingMeasure::area;  ///< shares of the grains' area (the mass in 2D) or of their number
   std::vector<GrainClassCase> classes;               ///< by ascending size; empty: all grains are of one class
@@ -62,8 +61,7 @@ struct PackingCase {
                                ///< are not used then
   std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
   double consolidation_friction = 0.0;            ///< friction coefficient mu_t during consolidation [-]
-  double void_ratio = 0.0;  ///< wanted void ratio at `pressure` [-], for which mu_t is searched; 0:
-                            ///< consolidation_friction is mu_t
+  double void_ratio = 0.0;  ///< wanted at `pressure` [-]; mu_t is searched for it; 0: consolidation_friction is mu_t
   double pressure = 1.0e3;  ///< isotropic pressure of the finished packing [Pa]
 };
 
@@ -131,8 +129,7 @@ struct NewtonCase {
   TangentChoice tangent = {};              ///< tangent of the RVEs, computed once an increment
   double tangent_strain = 1.0e-6;          ///< the strain whose secants make a loading tangent [-]
   double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
-  double relax_below = 1.0;  ///< a failed step of at most this share of a planned one is relaxed, a larger one is cut
-                             ///< [-]
+  double relax_below = 1.0;  ///< a failed step up to this share of a planned one is relaxed, a larger one cut [-]
   int relax_attempts = 3;    ///< iterates from the committed state before an increment is relaxed
   double relax_near = 0.4;   ///< these iterates end at once below this residual, relative as `tolerance` [-]
   int relax_substeps = 100;  ///< most substeps of a relaxation; 0: no increment is relaxed
@@ -196,8 +193,7 @@ struct BiaxialBvpCase {
   [[nodiscard]] int increments() const { return static_cast<int>(strain / strain_step + 0.5); }
 };
 
-/// A target of a calibration: the wanted value, and the difference from this value that adds 1 to the misfit [rad, or
-/// -].
+/// A target of a calibration: the wanted value, and the difference from it that adds 1 to the misfit [rad, or -].
 struct CalibrationTarget {
   double value = 0, tolerance = 0;
 };

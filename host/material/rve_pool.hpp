@@ -38,8 +38,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
   [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
-  [[nodiscard]] PackedRve packed(std::size_t rve) const;  ///< grains after their last run, from which another pool may
-                                                          ///< start
+  [[nodiscard]] PackedRve packed(std::size_t rve) const;  ///< grains after their last run; another pool may start so
 
   /// The functions from here on are for a pool that is one rank's part of a larger pool, which needs the engine's own
   /// reports and the states of single RVEs. `advance` evaluates as `evaluate` does and leaves the answers in

@@ -32,8 +32,7 @@ struct GeostaticCheck {
   double k0_maximum = 0;   ///< largest horizontal over vertical stress [-]
   double deflection_mean = 0;  ///< angle of the principal axis from the vertical, mean [rad]
   double deflection_max = 0;   ///< the largest angle [rad]
-  double deflection_deep = 0;  ///< largest angle where the vertical stress is 100 kPa or more [rad]; should be below 1
-                               ///< deg
+  double deflection_deep = 0;  ///< largest angle from a vertical stress of 100 kPa on [rad]; should be at most 1 deg
   std::vector<GeostaticRow> rows;  ///< from the surface down; rows without points are left out
 };
 [[nodiscard]] GeostaticCheck check_geostatic(const Ground& ground, const GroundCase& soil);

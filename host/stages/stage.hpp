@@ -27,8 +27,7 @@ struct Stage {
   std::function<void(const fem::ConvergedStep&)> on_step;  ///< receives every converged step, also parts of a cut one;
                                                            ///< may be empty
   std::function<void(IncrementReport&)> on_record;         ///< adds the reports of the stage itself; may be empty
-  std::function<void(io::Checkpoint&)> on_checkpoint;      ///< adds the data that the stage itself has to keep; may be
-                                                           ///< empty
+  std::function<void(io::Checkpoint&)> on_checkpoint;      ///< adds the data that the stage itself keeps; may be empty
 };
 
 }  // namespace voussoir::host
