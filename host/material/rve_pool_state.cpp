@@ -12,7 +12,8 @@ namespace voussoir::host {
 
 namespace {
 
-/// Field by field: the padding of a struct is no state.
+/// Field by field: the padding of a struct is no state. A number that is missing here is 0 after a run has been
+/// resumed, as those of a report's tangent beyond `tangent` are: a field of the results must not be made of one.
 template <class Transfer, class Report>
 void transfer_report(Transfer& transfer, Report& r) {
   transfer(&r.status, 1);
@@ -70,7 +71,7 @@ std::uint64_t RvePool::identity() const {
     add(p.class_of);
     add(std::array{p.thickness, p.local_damping});
     for (const kernels::GrainMaterial& m : p.materials) {
-      add(std::array{m.modulus, m.stiffness_ratio, m.friction, m.rolling_stiffness, m.rolling_limit});
+      for (const kernels::MaterialNumber& n : kernels::material_numbers) add(std::array{m.*n.number});
     }
   }
   if (deferral_.on()) add(std::array{deferral_.bound()});
