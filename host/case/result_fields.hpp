@@ -1,7 +1,9 @@
 #pragma once
 /// The fields of result files (io/FORMAT.md): one table, from which the record, the pool of RVEs, the mirrored batch,
 /// the estimate of storage and the check of `output.fields` all read. A new field is a row here and the line that
-/// computes its values, which finds the row by its name.
+/// computes its values, which finds the row by its name. A value that has a sign or a direction needs its `Mirror`
+/// here, or half of the points tell it the wrong way round. A value made of a number of kernels::RveReport must use one
+/// that `transfer_report` (material/rve_pool_state.cpp) stores, or it is 0 after a run has been resumed.
 
 #include <array>
 #include <stdexcept>
