@@ -7,8 +7,9 @@ namespace voussoir::fem {
 
 namespace {
 
-/// argmin |f - D gamma| by QR on unit columns, newest first; cut at the first column whose share not yet spanned by
-/// newer ones is below 1 / condition_limit. Returns one gamma for each column, zero for the dropped.
+/// Minimises |f - D gamma| by QR of the columns of D, scaled to unit length, the newest first. From the first column on
+/// whose part that newer columns do not span is below 1 / condition_limit, columns are dropped. Returns one gamma for
+/// each column, zero for those dropped.
 Eigen::VectorXd guarded_least_squares(const Eigen::MatrixXd& d, const Eigen::VectorXd& f, double condition_limit) {
   const Eigen::VectorXd lengths = d.colwise().norm();
   Eigen::VectorXd gamma = Eigen::VectorXd::Zero(d.cols());

@@ -53,8 +53,8 @@ int entry_of(const SparsePattern& pattern, int row, int column) {
   return static_cast<int>(std::lower_bound(first, last, row) - pattern.row.begin());
 }
 
-/// Rows and columns of constrained dofs become the identity times the mean diagonal (the scale keeps the factor's
-/// condition; the value itself cancels since their right-hand side is zero).
+/// Replaces rows and columns of constrained dofs by the identity times the mean diagonal. This scale keeps the
+/// condition of the matrix; its value has no effect, since the right-hand side is zero at these dofs.
 void apply_constraints(const SparsePattern& pattern, const std::vector<char>& constrained,
                        std::vector<double>& values) {
   double trace = 0;

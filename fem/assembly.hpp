@@ -1,6 +1,6 @@
 #pragma once
-/// Stiffness and internal force of a mesh. The pattern of the matrix holds every degree of freedom. Constrained ones
-/// keep their rows as a scaled identity, so that one symbolic factorisation serves every stage of a mesh.
+/// Stiffness and internal force of a mesh. The pattern of the matrix holds every degree of freedom. Constrained degrees
+/// of freedom keep their rows as a scaled identity, so that one symbolic factorisation serves every stage of a mesh.
 
 #include "fem/gauss_points.hpp"
 #include "fem/sparse_solver.hpp"

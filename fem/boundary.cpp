@@ -9,8 +9,9 @@ namespace voussoir::fem {
 
 namespace {
 
-/// Consistent forces of a traction: at each edge point `force(x, n)` gives the traction times ds from the position and
-/// the outward normal times ds (the tangent turned clockwise: the soil is on the left).
+/// Consistent nodal forces of a traction. At each point of an edge `force(x, n)` returns the traction times ds; its
+/// arguments are the position and the outward normal times ds, which is the tangent turned clockwise, since the soil is
+/// on the left.
 template <class Force>
 Eigen::VectorXd integrate_edges(const Coordinates& coordinates, const std::vector<Edge>& edges, const Force& force) {
   Eigen::VectorXd f = Eigen::VectorXd::Zero(2 * coordinates.cols());

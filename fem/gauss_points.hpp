@@ -18,7 +18,7 @@ struct GaussPoints {
 
 [[nodiscard]] GaussPoints gauss_points(const Mesh& mesh, const Coordinates& coordinates);
 
-/// Gradient H_ij = d u_i / d x_j of a nodal vector field u (size n_dofs) at every Gauss point [-].
+/// Computes the gradient H_ij = d u_i / d x_j of a nodal vector field u (size n_dofs) at every Gauss point [-].
 void displacement_gradients(const Mesh& mesh, const GaussPoints& points, const Eigen::VectorXd& u,
                             std::vector<Gradient>& gradients);
 

@@ -17,9 +17,9 @@ struct IncrementLoad {
   double predictor_ratio = 0;
   double reference_force = 0;       ///< for the tolerance (newton.hpp), e.g. the norm of a stage's final load [N/m]
   Eigen::VectorXd first_step = {};  ///< the first iterate, n_dofs [m]; where it is empty, predictor_ratio decides
-  double moved = 0;                 ///< norm of the displacement of which Du is a further part (relaxation.hpp) [m]
-  int max_iterations = 0;           ///< 0 stands for NewtonOptions::max_iterations
-  bool keep_matrix = false;         ///< K stays that of the last call, and no tangents are asked for
+  double moved = 0;  ///< norm of the displacement that Du continues, for substeps of a relaxation (relaxation.hpp) [m]
+  int max_iterations = 0;    ///< 0 stands for NewtonOptions::max_iterations
+  bool keep_matrix = false;  ///< K stays that of the last call, and no tangents are asked for
   /// Residual, over the reference of the tolerance, at which the iterates end with the status `near`; 0: never [-].
   double near_residual = 0;
   /// The increment has converged only if NewtonReport::unsettled_force is within the tolerance as well, so that points
@@ -39,7 +39,8 @@ struct Increment {
   Eigen::VectorXd reactions;  ///< f_int - f_ext at constrained dofs, zero elsewhere; of the support on the soil [N/m]
   Eigen::VectorXd residual;   ///< f_ext - f_int at free dofs, zero elsewhere, n_dofs [N/m]
   GaussPoints points;         ///< the geometry of the integration
-  Eigen::VectorXd last_part;  ///< displacement since that geometry: Du, or that of the last substep of a relaxation [m]
+  Eigen::VectorXd last_part;  ///< displacement since that geometry: Du, or the displacement of a relaxation's last
+                              ///< substep [m]
 };
 
 }  // namespace voussoir::fem

@@ -1,5 +1,5 @@
 #pragma once
-/// Invariants of plane stress and strain tensors (xx, yy, xy), tension positive, as reports give them (method.md, 2).
+/// Invariants of plane stress and strain tensors (xx, yy, xy), tension positive, as reports give them.
 
 #include <Eigen/Dense>
 #include <cmath>

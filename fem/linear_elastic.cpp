@@ -77,7 +77,7 @@ std::vector<std::byte> LinearElastic::state() const {
 }
 
 void LinearElastic::set_state(std::span<const std::byte> bytes) {
-  if (bytes.size() != size() * sizeof(Stress)) throw std::runtime_error("elastic: this state is of another batch");
+  if (bytes.size() != size() * sizeof(Stress)) throw std::runtime_error("elastic: this state belongs to another batch");
   std::memcpy(static_cast<void*>(committed_.data()), bytes.data(), bytes.size());
   trial_ = committed_;
 }

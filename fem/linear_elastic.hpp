@@ -23,7 +23,7 @@ struct ElasticOptions {
 
 class LinearElastic final : public MaterialBatch {
  public:
-  /// `n_points` points under `options.initial_stress`. Throws std::invalid_argument on impossible constants.
+  /// Makes `n_points` points under `options.initial_stress`. Throws std::invalid_argument on impossible constants.
   LinearElastic(std::size_t n_points, const ElasticOptions& options);
 
   [[nodiscard]] std::size_t size() const override { return committed_.size(); }

@@ -1,5 +1,5 @@
 #pragma once
-/// The load of a stage as a function of its load parameter: what the load stepper and a relaxation walk along.
+/// The load of a stage as a function of its load parameter, along which the load stepper and a relaxation walk.
 
 #include <functional>
 

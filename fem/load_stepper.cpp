@@ -27,8 +27,9 @@ void check(const MeshState& state, const LoadPath& path, const std::vector<doubl
   }
 }
 
-/// Where the next attempt ends: the target, or as far as the limit lets; a rest shorter than a quarter of a step is
-/// shared evenly over two, as a sliver would spoil the predictor after it.
+/// The end of the next attempt: the target, or the largest step away if that is nearer. Where less than a quarter of a
+/// step would be left after that, the rest of the way is halved, because a very short step would spoil the predictor of
+/// the next one.
 double attempt_end(const MeshState& state, double target) {
   const double rest = target - state.parameter;
   if (state.step_limit == 0 || rest <= state.step_limit) return target;
@@ -58,13 +59,13 @@ std::string describe(const NewtonReport& newton, double from, double to) {
   return text.str();
 }
 
-/// An attempt that has an iterate to go on from.
+/// Whether an attempt has an iterate from which a relaxation can start.
 bool can_be_relaxed(const NewtonReport& attempt, double far_residual) {
   const bool usable = attempt.material.usable && attempt.residual <= far_residual * attempt.reference();
   return usable && (attempt.status == NewtonStatus::max_iterations || attempt.status == NewtonStatus::near);
 }
 
-/// Walks to one target; `nominal` is the distance from the target before it. True: reached, go on.
+/// Walks to one target; `nominal` is the distance from the target before it. Returns true where the target was reached.
 bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& state, const LoadPath& path,
              const StepOptions& options, const StepCallbacks& callbacks, StepReport& report) {
   while (state.parameter < target) {
@@ -88,7 +89,7 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
       ++report.cuts;
       if (callbacks.on_failed) callbacks.on_failed({from, to, report.last});
       const double next = (to - from) * options.cut;
-      const bool shorter = from + next > from && from + next < to;  // else rounding makes it no step, or the same one
+      const bool shorter = from + next > from && from + next < to;  // false where rounding leaves no step or the same
       if (next < options.smallest * nominal || !shorter) {
         report.status = StepStatus::gave_up;
         report.message = describe(report.last, from, to);
@@ -98,7 +99,7 @@ bool walk_to(double target, double nominal, NewtonSolver& solver, MeshState& sta
       continue;
     }
     if (relaxed) ++report.relaxed;
-    if (!relaxed) solver.commit(state, increment);  // a relaxed one is
+    if (!relaxed) solver.commit(state, increment);  // a relaxation has committed
     ++report.increments;
     state.parameter = to;
     state.last_step = to - from;

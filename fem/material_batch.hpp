@@ -1,5 +1,5 @@
 #pragma once
-/// The one door between the mesh and its material: all Gauss points at once.
+/// The interface between the mesh and its material. It treats all Gauss points at once.
 ///
 /// `evaluate` always starts from the committed state, so a Newton iterate or a cut step needs no rollback.
 /// Voigt order is (xx, yy, xy); tension is positive; strains in tangents are engineering shears (gamma_xy).
@@ -50,21 +50,21 @@ class MaterialBatch {
 
   [[nodiscard]] virtual std::size_t size() const = 0;
 
-  /// A new increment begins. The step counts of RVEs follow the first `evaluate` after this call and stay frozen until
+  /// Begins a new increment. The step counts of RVEs follow the first `evaluate` after this call and stay frozen until
   /// the next call, so that the stress is a fixed function of the gradient within an increment. Only a gradient that
   /// asks for more than twice the frozen steps gets more.
   virtual void begin_increment() = 0;
 
-  /// Stress and tangent after the gradients, counted from the committed state. All spans have `size()` entries; with an
-  /// empty `tangent` no tangents are computed, which saves their cost.
+  /// Computes stress and tangent after the gradients, which count from the committed state. All spans have `size()`
+  /// entries; with an empty `tangent` no tangents are computed, which saves their cost.
   virtual BatchReport evaluate(std::span<const Gradient> gradients, std::span<Stress> stress,
                                std::span<Tangent> tangent) = 0;
 
-  /// The state of the last `evaluate` becomes the committed one.
+  /// Makes the state of the last `evaluate` the committed one.
   virtual void commit() = 0;
 
-  /// Stress of the committed state, and the tangent that its evaluation computed or would have had at no further cost;
-  /// with an empty `tangent` the stress alone.
+  /// Gives the stress of the committed state, and the tangent that its evaluation computed or would have had at no
+  /// further cost; with an empty `tangent` the stress alone.
   virtual void committed(std::span<Stress> stress, std::span<Tangent> tangent) const = 0;
 
   /// Further quantities of the committed state (void ratio, coordination, status, ...). They are computed in this call

@@ -35,13 +35,13 @@ struct Mesh {
   [[nodiscard]] int n_dofs() const { return 2 * n_nodes(); }
   [[nodiscard]] int n_points() const { return 4 * n_elements(); }
 
-  /// The named boundary; throws std::out_of_range with the names there are.
+  /// The named boundary; throws std::out_of_range, whose message lists the names that exist.
   [[nodiscard]] const std::vector<Edge>& edge_set(const std::string& name) const;
   [[nodiscard]] const std::vector<int>& node_set(const std::string& name) const;
 };
 
 /// Area between a boundary chain and the line x = 0, or within a closed chain, integrated along the curved edges [m2].
-/// It is positive where the soil is inside, so that the opening's is minus the area of its (half) hole.
+/// It is positive where the soil is inside, so that the chain of the opening has minus the area of the (half) hole.
 [[nodiscard]] double area_left_of(const Coordinates& coordinates, const std::vector<Edge>& chain);
 
 }  // namespace voussoir::fem

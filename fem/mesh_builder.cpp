@@ -55,7 +55,7 @@ Mesh complete_q8(const Coordinates& corners, const std::vector<Quad>& quads, con
     mesh.coordinates.col(side.mid) = 0.5 * (a + b);
     if (side.elements == 2) continue;
     const BoundaryPlace place = classify(a, b);
-    if (place.name.empty()) throw std::runtime_error("mesh: a boundary edge lies on no boundary");
+    if (place.name.empty()) throw std::runtime_error("mesh: an outer edge is on no named boundary");
     boundaries[place.name].push_back({place.order, side.edge});
   }
   for (auto& [name, placed] : boundaries) add_chain(mesh, name, placed);

@@ -9,8 +9,8 @@ namespace voussoir::fem {
 
 using Quad = std::array<int, 4>;  ///< corners, counter-clockwise
 
-/// Where a boundary edge from a to b (soil on the left) belongs: the name of its boundary, and its place in the chain
-/// (any number that grows along it).
+/// The place of a boundary edge from a to b (soil on the left): the name of its boundary, and its place in the chain
+/// (any number that grows along the chain).
 struct BoundaryPlace {
   std::string name;
   double order;

@@ -1,6 +1,6 @@
 #pragma once
-/// What the finite-element side remembers between increments. A checkpoint needs all of these plain data, and with
-/// `MaterialBatch::state()` they are enough to resume with the same bits.
+/// The data that the finite-element side remembers between increments. A checkpoint needs all of these plain data, and
+/// with `MaterialBatch::state()` they are enough to resume with the same bits.
 
 #include <vector>
 

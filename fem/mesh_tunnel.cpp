@@ -15,7 +15,7 @@ namespace voussoir::fem {
 
 namespace {
 
-constexpr double max_elements = 2e6;  ///< beyond it an element size is taken for a slip of the pen
+constexpr double max_elements = 2e6;  ///< more elements than this show that an element size is mistyped
 
 struct Circle {
   Point centre;
@@ -40,8 +40,8 @@ void check(const HalfTunnelOptions& o) {
           "the element sizes would make more than two million elements");
 }
 
-/// Fine at the opening, half as fine again in the column of soil between crown and surface (there the ground slides),
-/// growing away from both.
+/// The wanted edge length: smallest at the opening, 1.5 times as long in the column of soil between crown and surface
+/// (there the ground slides), and growing away from both.
 double target_size(const HalfTunnelOptions& o, const Circle& opening, double x, double y) {
   constexpr double growth = 0.085;  // edge length gained per metre of distance: 800 to 890 elements with the defaults
   const double from_opening = std::max(0.0, (Point(x, y) - opening.centre).norm() - opening.radius);
@@ -51,8 +51,8 @@ double target_size(const HalfTunnelOptions& o, const Circle& opening, double x, 
   return std::min({o.size_near + growth * from_opening, 1.5 * o.size_near + growth * from_column, o.size_far});
 }
 
-/// Owns the library's global state for one mesh. Gmsh sets the process's OpenMP thread number to its own; that is
-/// undone, or everything after a mesh would run on one thread.
+/// Owns Gmsh's global state while one mesh is made. Gmsh sets the process's OpenMP thread number to its own; the
+/// destructor restores the number, because otherwise everything after a mesh would run on one thread.
 class GmshSession {
  public:
   GmshSession() {
@@ -72,7 +72,7 @@ class GmshSession {
   int threads_before_ = omp_get_max_threads();
 };
 
-/// The outline, counter-clockwise from the origin; a half circle needs two arcs of less than pi.
+/// Adds the outline, counter-clockwise from the origin; a half circle needs two arcs of less than pi.
 void add_geometry(const HalfTunnelOptions& o, const Circle& opening) {
   namespace geo = gmsh::model::geo;
   const double yc = opening.centre.y();
@@ -102,8 +102,8 @@ void generate(const HalfTunnelOptions& o, const Circle& opening) {
   setNumber("Mesh.MeshSizeFromPoints", 0);
   setNumber("Mesh.Algorithm", 6);  // frontal Delaunay
   setNumber("Mesh.RecombineAll", 1);
-  setNumber("Mesh.RecombinationAlgorithm",
-            2);  // recombine a mesh twice as coarse, then split: nothing but quadrilaterals
+  // Algorithm 2 recombines a mesh twice as coarse and then splits it, which leaves nothing but quadrilaterals.
+  setNumber("Mesh.RecombinationAlgorithm", 2);
   setNumber("Mesh.RandomSeed", 1);
   gmsh::model::mesh::setSizeCallback(
       [&](int, int, double x, double y, double) { return target_size(o, opening, x, y); });
@@ -115,7 +115,8 @@ struct LinearMesh {
   std::vector<Quad> quads;
 };
 
-/// Quadrilaterals and their nodes, renumbered by ascending tag; nodes of no element (the circle's centre) are left out.
+/// Reads quadrilaterals and their nodes from Gmsh, renumbered by ascending tag; nodes of no element (the circle's
+/// centre) are left out.
 LinearMesh extract() {
   std::vector<int> types;
   std::vector<std::vector<std::size_t>> tags, element_nodes;
@@ -140,7 +141,7 @@ LinearMesh extract() {
     }
     const Point a = mesh.corners.col(quad[2]) - mesh.corners.col(quad[0]);
     const Point b = mesh.corners.col(quad[3]) - mesh.corners.col(quad[1]);
-    if (a.x() * b.y() < a.y() * b.x()) std::swap(quad[1], quad[3]);  // was clockwise
+    if (a.x() * b.y() < a.y() * b.x()) std::swap(quad[1], quad[3]);  // the nodes were clockwise
     mesh.quads.push_back(quad);
   }
   return mesh;
@@ -171,7 +172,7 @@ Mesh make_half_tunnel(const HalfTunnelOptions& options) {
     add_geometry(options, opening);
     generate(options, opening);
     linear = extract();
-  } catch (const std::string& message) {  // what Gmsh 4.8 throws
+  } catch (const std::string& message) {  // Gmsh 4.8 throws texts
     throw std::runtime_error("tunnel mesh: Gmsh failed: " + message);
   }
   snap(linear.corners, options, opening);
@@ -182,7 +183,8 @@ Mesh make_half_tunnel(const HalfTunnelOptions& options) {
     if (on_circle(a) && on_circle(b)) return {"opening", -a.y()};
     return place_on_block(a, b, options.width, options.height);
   });
-  // Midsides placed here rather than by Gmsh: exactly on the circle, and numbered as in every other mesh.
+  // Midside nodes are placed here and not by Gmsh, so that they lie exactly on the circle and have the numbers that
+  // they have in every other mesh.
   for (const Edge& edge : mesh.edge_set("opening"))
     mesh.coordinates.col(edge[1]) = opening.project(mesh.coordinates.col(edge[1]));
   mesh.nodes["crown"] = {mesh.node_set("opening").front()};

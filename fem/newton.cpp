@@ -14,7 +14,7 @@ namespace voussoir::fem {
 
 namespace {
 
-using Failure = std::optional<NewtonStatus>;  ///< empty: all is well
+using Failure = std::optional<NewtonStatus>;  ///< empty where nothing has failed
 
 void check(const NewtonOptions& o) {
   const auto require = [](bool holds, const char* sentence) {
@@ -95,10 +95,11 @@ NewtonReport NewtonSolver::solve_increment(const MeshState& state, const Increme
 
 Failure NewtonSolver::Workspace::prepare() {
   const Mesh& mesh = solver.mesh_;
-  if (load.external_force.size() != mesh.n_dofs()) throw std::invalid_argument("newton: external force of wrong size");
+  if (load.external_force.size() != mesh.n_dofs())
+    throw std::invalid_argument("newton: the external force has the wrong size");
   constrained.assign(mesh.n_dofs(), 0);
   for (const auto& [dof, value] : load.prescribed) {
-    if (dof < 0 || dof >= mesh.n_dofs()) throw std::invalid_argument("newton: a constraint on no degree of freedom");
+    if (dof < 0 || dof >= mesh.n_dofs()) throw std::invalid_argument("newton: a constraint is on no degree of freedom");
     constrained[dof] = 1;
   }
   increment.stress.resize(mesh.n_points());
@@ -112,9 +113,9 @@ Failure NewtonSolver::Workspace::prepare() {
   return {};
 }
 
-/// The first step: the last increment scaled, or (ratio 0) the elastic answer to the load not yet carried; either is
-/// completed by the elastic answer to what its constrained dofs lack of their prescribed values, so that no element
-/// takes the boundary's motion alone.
+/// Finds the first step: the last increment, scaled, or with ratio 0 the elastic answer to the load that is not carried
+/// yet. Where constrained dofs then differ from their prescribed values, the elastic answer to the difference is added,
+/// so that no element takes the motion of the boundary alone.
 Failure NewtonSolver::Workspace::predict() {
   const Mesh& mesh = solver.mesh_;
   if (load.first_step.size() > 0) {
@@ -144,14 +145,15 @@ Failure NewtonSolver::Workspace::predict() {
   return step.allFinite() ? Failure{} : Failure{NewtonStatus::not_finite};
 }
 
-/// Moves by `step` and evaluates there. A step that fails or makes the residual grow strongly is halved: what grew is
-/// still a valid iterate, and the best of them is kept if no shorter step stays below the limit; what failed is not.
+/// Moves by `step` and evaluates there. A step that fails, or that makes the residual grow strongly, is halved. If no
+/// shorter step stays below the limit, the best of those that made the residual grow is kept, since it is a valid
+/// iterate; a step that failed is never kept.
 Failure NewtonSolver::Workspace::take_step() {
   const Eigen::VectorXd base = increment.displacement;
-  const bool first = report.iterations == 1;  // its base lacks the prescribed values: no shorter step is meaningful
+  const bool first = report.iterations == 1;  // its base lacks the prescribed values, so no shorter step has a meaning
   const double before = report.residual;
   Failure failure;
-  std::optional<Trial> kept;  // the best of those that grew
+  std::optional<Trial> kept;  // the best of those whose residual grew
   for (int halving = 0; halving <= (first ? 0 : solver.options_.max_halvings); ++halving) {
     if (halving > 0) history.restart();
     increment.displacement = base + std::ldexp(1.0, -halving) * step;
@@ -177,7 +179,7 @@ Failure NewtonSolver::Workspace::take_step() {
   return {};
 }
 
-/// Back to a trial step, all but what it cost since.
+/// Goes back to a trial step, but keeps the counts of all work done since.
 void NewtonSolver::Workspace::restore(Trial&& trial) {
   increment = std::move(trial.increment);
   trial.report.evaluations = report.evaluations;
@@ -187,7 +189,7 @@ void NewtonSolver::Workspace::restore(Trial&& trial) {
   report = std::move(trial.report);
 }
 
-/// Displacement -> F_rel - I -> stress and tangent.
+/// Computes F_rel - I from the displacement, and from it stress and tangent.
 Failure NewtonSolver::Workspace::evaluate() {
   const Mesh& mesh = solver.mesh_;
   if (!increment.displacement.allFinite()) return NewtonStatus::not_finite;
@@ -241,7 +243,8 @@ void NewtonSolver::Workspace::form_residual() {
   }
 }
 
-/// Entries of K from the present tangents plus a share of the initial ones, which steers the iteration, not the answer.
+/// Entries of K from the present tangents plus a share of the initial ones. This share changes the iterates, not the
+/// answer.
 std::vector<double> NewtonSolver::Workspace::stiffness(double share) {
   const PartTimer timer(report.times, Part::assembly);
   std::vector<Tangent> tangents = increment.tangent;
@@ -294,8 +297,8 @@ bool NewtonSolver::Workspace::converged() const {
 
 bool NewtonSolver::Workspace::near() const { return report.residual <= load.near_residual * report.reference(); }
 
-/// Where the iterates ended without converging: back to the best, so that the material's last evaluation is the one
-/// there.
+/// Goes back to the best of the iterates that ended without converging, so that the material's last evaluation is the
+/// one there.
 void NewtonSolver::Workspace::return_to_best() {
   if (best.size() == 0 || increment.displacement == best) return;
   increment.displacement = best;
@@ -304,7 +307,7 @@ void NewtonSolver::Workspace::return_to_best() {
 
 NewtonReport NewtonSolver::Workspace::stop(NewtonStatus status) {
   const bool ended = status == NewtonStatus::max_iterations || status == NewtonStatus::near;
-  if (ended && load.leave_best) return_to_best();  // what failed keeps the report that says why
+  if (ended && load.leave_best) return_to_best();  // a failure keeps the report that says why
   report.status = status;
   return std::move(report);
 }
@@ -319,8 +322,8 @@ NewtonSolver::NewtonSolver(const Mesh& mesh, MaterialBatch& material, Kinematics
       solver_(assembler_.pattern()) {
   check(options);
   if (material.size() != static_cast<std::size_t>(mesh.n_points()))
-    throw std::invalid_argument("newton: the material has " + std::to_string(material.size()) + " points, the mesh " +
-                                std::to_string(mesh.n_points()));
+    throw std::invalid_argument("newton: the material has " + std::to_string(material.size()) +
+                                " points, but the mesh has " + std::to_string(mesh.n_points()));
 }
 
 void NewtonSolver::commit(MeshState& state, Increment& increment) {

@@ -28,7 +28,8 @@ struct NewtonOptions {
   /// Share of the stage's initial tangent that is added to the tangent; it must be positive where tangents may vanish
   /// [-].
   double initial_tangent_share = 0.02;
-  /// Iterates between two matrices. The first iterate has a new matrix unless the load keeps the old one.
+  /// Number of iterates for which a matrix is used. The first iterate has a new matrix unless the load keeps the old
+  /// one.
   int refactor_every = 1;
   int anderson_depth = 5;           ///< 0: plain Newton
   double anderson_condition = 1e6;  ///< largest condition of the least squares; older pairs are dropped to keep to it

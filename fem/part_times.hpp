@@ -40,7 +40,7 @@ struct PartTimes {
   }
 };
 
-/// Both functions or neither; parts begin and end in pairs on the thread that solves.
+/// Either both functions are set or neither; parts begin and end in pairs on the thread that solves.
 struct PartListener {
   void (*begin)(const char* name) = nullptr;
   void (*end)() = nullptr;

@@ -21,7 +21,7 @@ void append(Increment& whole, Increment&& part) {
   whole.last_part = std::move(part.last_part);
 }
 
-/// The report of the whole increment after one more substep.
+/// Adds one more substep to the report of the whole increment.
 void tally(NewtonReport& whole, NewtonReport&& part) {
   part.iterations += whole.iterations;
   part.evaluations += whole.evaluations;
@@ -39,8 +39,8 @@ void tally(NewtonReport& whole, NewtonReport&& part) {
   whole = std::move(part);
 }
 
-/// The factor with which a linear response would have left no work: `driving` and `left` are those of R along the last
-/// substep, at its start and at its end [J/m].
+/// The factor with which a linear response would have left no work. `driving` and `left` are the work along the last
+/// substep of R at the substep's start and of R at its end [J/m].
 double next_factor(double factor, double driving, double left, const RelaxationOptions& options) {
   const double spent = driving > 0 ? 1 - left / driving : 0;
   const double wanted = spent > 0 ? factor / spent : options.largest_factor;

@@ -19,7 +19,7 @@ namespace {
 
 void sync(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  // EINVAL: a file system that cannot sync (some network and FUSE mounts); the rename alone must do there.
+  // EINVAL: a file system that cannot sync (some network and FUSE mounts); there the rename alone must suffice.
   const bool good = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);
   const int reason = errno;
   if (file >= 0) {

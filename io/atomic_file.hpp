@@ -6,8 +6,8 @@
 
 namespace voussoir::io {
 
-/// Name beside `target` to write to, TARGET.PID.tmp, so that processes that write the same file do not meet. Leftovers
-/// of a killed writer are ignored by every reader here.
+/// The name beside `target` under which to write, TARGET.PID.tmp, so that processes that write the same file do not
+/// disturb one another. Leftovers of a killed writer are ignored by every reader here.
 [[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& target);
 
 /// Syncs the closed temporary file to the disk, renames it to `target`, syncs the folder.
@@ -17,8 +17,8 @@ void publish(const std::filesystem::path& target);
 /// Writes text through temporary_name and publish.
 void write_text(const std::filesystem::path& target, const std::string& text);
 
-/// Removes what killed writers left in `folder`: files ending in ".tmp", but for those of other processes that still
-/// run.
+/// Removes the files that killed writers left in `folder`: those that end in ".tmp", except files of other processes
+/// that still run.
 void remove_leftovers(const std::filesystem::path& folder);
 
 }  // namespace voussoir::io

@@ -63,9 +63,10 @@ double checked_quantity(const CaseNode& node, const std::string& written, Dimens
   return value;
 }
 
-/// Twelve digits: "500 cm" and "5 m" differ in the last bit of a double, and no input is known better.
+/// Twelve digits, because equal quantities in two units may differ in the last bit of a double, and no input is known
+/// more exactly.
 std::string significant(double in_si) {
-  return fmt::format("{:.12g}", in_si == 0 ? 0.0 : in_si);  // no "-0"
+  return fmt::format("{:.12g}", in_si == 0 ? 0.0 : in_si);  // so that -0 is written as "0"
 }
 
 /// Reads one quantity and notes it as TOML; `fallback` stands in for a node that the user did not write.

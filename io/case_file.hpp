@@ -57,7 +57,7 @@ class Table {
   /// case file.
   [[nodiscard]] std::filesystem::path path(std::string_view key) const;
 
-  /// Arrays. The limits of the rule hold for each entry; its fallback is not used.
+  /// Reads arrays. The limits of the rule hold for each entry; the rule's fallback is not used.
   [[nodiscard]] std::vector<double> quantities(std::string_view key, Dimension dimension, const QuantityRule& rule = {},
                                                std::optional<std::vector<std::string>> fallback = {}) const;
   [[nodiscard]] std::vector<std::int64_t> integers(std::string_view key, const IntegerRule& rule = {},
@@ -94,7 +94,7 @@ class CaseFile {
 
   [[nodiscard]] Table root() const;
 
-  /// Throws InputError for the first key that nobody has read, with the nearest known name as a hint.
+  /// Throws InputError for the first key that the program has not read, with the nearest known name as a hint.
   void finish() const;
 
   /// All values read so far, as TOML in the units that a user writes; origins ("default", "--set") as comments.

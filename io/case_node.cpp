@@ -17,14 +17,14 @@ namespace {
 
 struct Origin {
   std::string file;              ///< empty for an override
-  std::filesystem::path folder;  ///< where the paths written there begin
+  std::filesystem::path folder;  ///< folder to which paths written there are relative
 
   [[nodiscard]] std::string place(const toml::node& node) const {
     return file.empty() ? "--set" : fmt::format("{}:{}", file, node.source().begin.line);
   }
 };
 
-/// toml++ keeps tables sorted by name; people expect their own order back.
+/// toml++ keeps tables sorted by name; users expect the order of their file.
 std::vector<std::pair<std::string, const toml::node*>> in_file_order(const toml::table& table) {
   std::vector<std::pair<std::string, const toml::node*>> entries;
   for (const auto& [key, value] : table) {
@@ -37,8 +37,8 @@ std::vector<std::pair<std::string, const toml::node*>> in_file_order(const toml:
   return entries;
 }
 
-/// Copies a TOML value into a node. What the node held before is replaced, but for tables of a file: there the keys
-/// that the new one has not stay, as those of the files that it extends.
+/// Copies a TOML value into a node, in place of the value that the node had. Only a table of a file is joined with the
+/// table of the files that it extends: keys that stand there alone stay.
 void fill(CaseNode& node, const toml::node& from, const Origin& origin) {
   const bool joins = node.kind == CaseNode::Kind::table && from.is_table() && !origin.file.empty();
   node.written = true;
@@ -105,7 +105,7 @@ std::vector<std::string> split_key(std::string_view key) {
   return end_part() ? parts : std::vector<std::string>{};
 }
 
-/// Values are TOML, or else text without quotes.
+/// Reads the value as TOML, or as text where it is none, so that quotes may be left out.
 void fill_override(CaseNode& node, std::string_view value) {
   std::optional<toml::table> parsed;
   try {
@@ -113,7 +113,7 @@ void fill_override(CaseNode& node, std::string_view value) {
   } catch (const toml::parse_error&) {
     parsed = toml::table{{"value", std::string(value)}};
   }
-  // A line break would smuggle further keys into the parsed line.
+  // A line break in the value would make further keys of the text behind it.
   if (parsed->size() != 1) {
     throw InputError("--set", node.key, fmt::format("\"{}\" is more than one value", value));
   }
@@ -148,7 +148,7 @@ std::string read_whole(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (std::filesystem::is_directory(path) || !file || !(text << file.rdbuf())) {
-    throw InputError(path.string(), "", "cannot be read: no such file, empty, or no permission");
+    throw InputError(path.string(), "", "cannot be read: it does not exist, is empty, or may not be opened");
   }
   return text.str();
 }
@@ -172,9 +172,9 @@ std::vector<std::string> extended_names(const toml::node& written, const std::st
   return names;
 }
 
-/// The files that this one extends, in their order, then this one over them.
+/// Reads the files that this file extends, in their order, then this file over them.
 void fill_from_file(CaseNode& root, const std::filesystem::path& path, int depth) {
-  constexpr int most_files = 8;  // deep: a circle
+  constexpr int most_files = 8;  // deeper chains are taken for circles
   const auto folder = path.parent_path();
   auto parsed = parse_toml(read_whole(path), path.string());
   const Origin origin{path.string(), folder};
@@ -186,7 +186,7 @@ void fill_from_file(CaseNode& root, const std::filesystem::path& path, int depth
         throw InputError(place, "extends", fmt::format("{} does not exist", (folder / name).string()));
       }
       if (depth == most_files) {
-        throw InputError(place, "extends", "goes in a circle, or deeper than eight files");
+        throw InputError(place, "extends", "the files extend one another in a circle, or more than eight deep");
       }
       fill_from_file(root, folder / name, depth + 1);
     }

@@ -17,7 +17,7 @@ struct CaseNode {
   std::string name;                   ///< last part of the key; "[2]" in an array
   std::string key;                    ///< full key, e.g. "stage[2].steps"
   std::string place;                  ///< "case.toml:12", "--set", or the place of the table that lacks the key
-  std::filesystem::path folder = {};  ///< where a path written here begins
+  std::filesystem::path folder = {};  ///< folder to which a path written here is relative
   Kind kind = Kind::absent;
   std::variant<std::monostate, bool, std::int64_t, double, std::string> value = {};
   std::vector<std::unique_ptr<CaseNode>> children = {};
@@ -35,7 +35,7 @@ struct CaseState {
   CaseNode root;
 };
 
-/// Reads the file, over those that it extends, and applies the overrides. Throws InputError.
+/// Reads the file over the files that it extends, and applies the overrides. Throws InputError.
 [[nodiscard]] std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path,
                                                     const std::vector<std::string>& overrides);
 

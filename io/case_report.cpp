@@ -1,4 +1,4 @@
-/// What a case file says after it was read: unknown keys, the resolved case, its fingerprint.
+/// The answers of a case file that has been read: unknown keys, the resolved case, its fingerprint.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using Kind = CaseNode::Kind;
 
-/// Levenshtein distance.
+/// The Levenshtein distance of two names.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -41,8 +41,8 @@ void collect_known(const CaseNode& node, std::vector<const CaseNode*>& known) {
   }
 }
 
-/// A known key with nearly this name in the same table, or with this very name in another one; empty when there is
-/// none.
+/// A hint at a known key with nearly this name in the same table, or with this very name in another table; empty when
+/// there is none.
 std::string hint(const CaseNode& root, const CaseNode& parent, const CaseNode& unknown) {
   std::size_t best = unknown.name.size() / 3 + 1;
   std::string name;
@@ -85,7 +85,7 @@ std::string_view origin_comment(const CaseNode& node) {
   return node.place == "--set" ? "  # --set" : "";
 }
 
-/// Bare where TOML allows it.
+/// The key, without quotes where TOML allows that.
 std::string toml_key(const std::string& name) {
   const bool bare = std::all_of(name.begin(), name.end(),
                                 [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });

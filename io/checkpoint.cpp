@@ -27,7 +27,7 @@ template <class T>
 std::vector<T> values_of(const std::string& name, const std::vector<std::byte>& bytes) {
   if (bytes.size() % sizeof(T) != 0) {
     throw std::runtime_error(
-        fmt::format("checkpoint: \"{}\" has {} bytes, no multiple of {}", name, bytes.size(), sizeof(T)));
+        fmt::format("checkpoint: \"{}\" has {} bytes, which is no multiple of {}", name, bytes.size(), sizeof(T)));
   }
   std::vector<T> values(bytes.size() / sizeof(T));
   if (!bytes.empty()) {
@@ -62,7 +62,7 @@ class HashedWriter {
   Checksum sum_;
 };
 
-/// Takes pieces from bytes whose checksum was right; a length beyond the end still throws.
+/// Takes pieces from bytes whose checksum is right. A length that goes beyond their end throws nevertheless.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -110,11 +110,11 @@ Content read(const fs::path& path) {
   Checksum sum;
   sum.add(body);
   if (Reader(std::span<const std::byte>(all).last(sizeof(std::uint64_t))).integer() != sum.value()) {
-    throw std::runtime_error("is damaged (checksum)");
+    throw std::runtime_error("is damaged: its checksum is wrong");
   }
   Reader reader(body);
   if (reader.text() != magic) {
-    throw std::runtime_error("is no checkpoint of this version");
+    throw std::runtime_error("is not a checkpoint of this version");
   }
   Content content{.fingerprint = reader.text(), .checkpoint = {}};
   for (std::uint64_t left = reader.integer(); left > 0; --left) {
@@ -163,7 +163,7 @@ void Checkpoint::put_text(const std::string& name, const std::string& text) {
 const std::vector<std::byte>& Checkpoint::get(const std::string& name) const {
   const auto found = blobs_.find(name);
   if (found == blobs_.end()) {
-    throw std::runtime_error(fmt::format("checkpoint: has no \"{}\"", name));
+    throw std::runtime_error(fmt::format("checkpoint: it has no \"{}\"", name));
   }
   return found->second;
 }
@@ -203,7 +203,8 @@ void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
   publish(target);
 
   auto present = list(folder_);
-  // Checkpoints after this one are of a run that was resumed from an earlier state: they are no longer ahead of it.
+  // Checkpoints with a higher number were written before the run was resumed from an earlier state, and are not part of
+  // its history any more.
   present.erase(present.find(increment));
   const auto previous = present.lower_bound(increment);
   for (auto it = present.begin(); it != present.end(); ++it) {

@@ -39,16 +39,17 @@ class CheckpointStore {
  public:
   CheckpointStore(std::filesystem::path folder, std::string fingerprint);
 
-  /// Writes a file beside, syncs it and renames it; then removes all but the last two. Throws std::runtime_error.
+  /// Writes a temporary file, syncs it and renames it; then removes all checkpoints but the last two. Throws
+  /// std::runtime_error.
   void save(int increment, const Checkpoint& checkpoint) const;
 
   struct Loaded {
     int increment = 0;
     Checkpoint checkpoint;
-    std::vector<std::string> skipped = {};  ///< one sentence for each damaged file passed over
+    std::vector<std::string> skipped = {};  ///< one sentence for each damaged file that was passed over
   };
 
-  /// The newest checkpoint that is not damaged; nothing where there are no files. Throws std::runtime_error where that
+  /// The newest checkpoint that is not damaged; no value where there are no files. Throws std::runtime_error where that
   /// checkpoint belongs to another case, or where files exist and all are damaged.
   [[nodiscard]] std::optional<Loaded> load_latest() const;
 

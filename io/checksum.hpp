@@ -1,7 +1,7 @@
 #pragma once
-/// Checksum of a checkpoint: FNV-1a's recurrence on words of eight bytes instead of bytes, with the upper half folded
-/// into the lower one, whose bits a product alone would never reach. Eight times as fast as by bytes: hundreds of
-/// megabytes an increment.
+/// Checksum of a checkpoint: FNV-1a's recurrence on words of eight bytes instead of single bytes. After each product
+/// the upper half of the sum is folded into the lower half, since a product alone never carries bits downwards. A
+/// checkpoint may have hundreds of megabytes an increment, and words are eight times as fast as bytes.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace voussoir::io {
 
-/// Bytes may come in pieces; the sum is that of their sequence.
+/// Bytes may be added in pieces; the checksum depends only on their whole sequence.
 class Checksum {
  public:
   void add(std::span<const std::byte> bytes) {

@@ -1,5 +1,5 @@
 #pragma once
-/// FNV-1a, 64 bit (Fowler, Noll, Vo): fingerprints of cases and recipes. Not for security.
+/// FNV-1a, 64 bit (Fowler, Noll, Vo): fingerprints of cases and recipes. It offers no security.
 
 #include <cstddef>
 #include <cstdint>

@@ -110,7 +110,7 @@ void Hdf5File::write_array(const std::string& name, const void* values, std::siz
     extents.push_back(n);
   }
   if (count != expected) {
-    throw std::invalid_argument(fmt::format("{}: {} values for {} places", name, count, expected));
+    throw std::invalid_argument(fmt::format("{}: there are {} values for {} places", name, count, expected));
   }
   const std::string what = fmt::format("write {}", name);
   const Handle space(checked(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), what),
@@ -192,7 +192,7 @@ void Hdf5File::set_attribute(const std::string& object, const std::string& name,
 }
 
 bool Hdf5File::has(const std::string& name) const {
-  // H5Lexists wants every group on the way to exist.
+  // H5Lexists fails unless every group on the way exists.
   for (std::size_t slash = name.find('/', 1); slash != std::string::npos; slash = name.find('/', slash + 1)) {
     if (H5Lexists(file_, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) {
       H5Eclear2(H5E_DEFAULT);
@@ -266,7 +266,7 @@ std::vector<std::string> Hdf5File::read_texts(const std::string& name) const {
   const Handle stored(checked(H5Dget_type(set), what), H5Tclose);
   const Handle space(checked(H5Dget_space(set), what), H5Sclose);
   if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0) {
-    throw std::runtime_error(fmt::format("{}: {} is no fixed-length text", path_.string(), name));
+    throw std::runtime_error(fmt::format("{}: {} is not a fixed-length text", path_.string(), name));
   }
   const std::size_t size = H5Tget_size(stored);
   const auto count = static_cast<std::size_t>(checked(H5Sget_simple_extent_npoints(space), what));
@@ -296,7 +296,7 @@ std::string Hdf5File::text_attribute(const std::string& object, const std::strin
   const Handle stored(checked(H5Aget_type(attribute), what), H5Tclose);
   if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) != 0) {
     throw std::runtime_error(
-        fmt::format("{}: attribute {} of {} is no fixed-length text", path_.string(), name, object));
+        fmt::format("{}: attribute {} of {} is not a fixed-length text", path_.string(), name, object));
   }
   std::string text(H5Tget_size(stored), '\0');
   checked(H5Aread(attribute, stored, text.data()), what);
@@ -309,7 +309,7 @@ void Hdf5File::get_scalar(const std::string& object, const std::string& name, Id
                          H5Aclose);
   const Handle space(checked(H5Aget_space(attribute), what), H5Sclose);
   if (H5Sget_simple_extent_npoints(space) != 1) {
-    throw std::runtime_error(fmt::format("{}: attribute {} of {} is no single value", path_.string(), name, object));
+    throw std::runtime_error(fmt::format("{}: attribute {} of {} is not a single value", path_.string(), name, object));
   }
   checked(H5Aread(attribute, type, value), what);
 }

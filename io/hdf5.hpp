@@ -27,7 +27,7 @@ class Hdf5File {
   Hdf5File& operator=(Hdf5File&&) = delete;
   ~Hdf5File();
 
-  /// Flushes and closes; unlike the destructor it reports what goes wrong.
+  /// Flushes and closes the file. Unlike the destructor it reports failures.
   void close();
 
   void write(const std::string& name, std::span<const double> values, const std::vector<std::size_t>& shape,
@@ -68,7 +68,7 @@ class Hdf5File {
   [[nodiscard]] Array<T> read_array(const std::string& name, Id type) const;
   void set_scalar(const std::string& object, const std::string& name, Id type, const void* value);
   void get_scalar(const std::string& object, const std::string& name, Id type, void* value) const;
-  /// `id` when it is valid, else throws with what was tried and HDF5's reason.
+  /// Returns `id` when it is valid; otherwise throws, with the action that was tried and HDF5's reason.
   Id checked(Id id, const std::string& what) const;
 
   Id file_;

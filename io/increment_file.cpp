@@ -62,7 +62,7 @@ void write_info(Hdf5File& file, const IncrementInfo& info) {
   }
 }
 
-/// One row per element: the mean over its points; `values` is (element, 4, components).
+/// Returns one row per element, the mean over its points; `values` is (element, 4, components).
 std::vector<double> element_means(const Field& field) {
   const auto components = static_cast<std::size_t>(field.components);
   std::vector<double> means(field.values.size() / gauss_points, 0.0);
@@ -73,7 +73,7 @@ std::vector<double> element_means(const Field& field) {
   return means;
 }
 
-/// VTK's XDMF reader knows scalars and vectors with three components only.
+/// Writes copies for VTK's XDMF reader, which knows only scalars, and vectors with three components.
 void write_xdmf_copies(Hdf5File& file, const Field& field) {
   const auto components = static_cast<std::size_t>(field.components);
   const bool nodal = field.location == FieldLocation::node;
@@ -158,7 +158,7 @@ void write_increment_file(const std::filesystem::path& path, const MeshData& mes
 IncrementInfo read_increment_info(const std::filesystem::path& path) {
   const Hdf5File file = Hdf5File::open(path);
   if (file.text_attribute("/", "format") != format_name) {
-    throw std::runtime_error(fmt::format("{}: is no increment of a result", path.string()));
+    throw std::runtime_error(fmt::format("{}: it is not an increment of a result", path.string()));
   }
   IncrementInfo info;
   info.stage = file.text_attribute("/", "stage");

@@ -8,7 +8,8 @@ namespace voussoir::io {
 
 class Hdf5File;
 
-/// Calls visit(name, unit, member) for the numbers that every increment has: the one list of attributes and columns.
+/// Calls visit(name, unit, member) for the numbers that every increment has. Attributes and columns are made from this
+/// list alone.
 template <class Info, class Visit>
 void for_each_number(Info& info, Visit&& visit) {
   visit("index", "-", info.index);

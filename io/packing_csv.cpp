@@ -1,4 +1,4 @@
-/// Packings of other codes: NAME_particles.csv with NAME_meta.json.
+/// Reads packings of other codes from NAME_particles.csv and NAME_meta.json.
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,7 +30,7 @@ std::ifstream opened(const std::filesystem::path& path) {
   return file;
 }
 
-/// Five finite numbers separated by commas.
+/// Reads five finite numbers that are separated by commas.
 std::array<double, 5> parse_row(const std::string& line, const std::filesystem::path& path, int number) {
   std::array<double, 5> row{};
   const char* at = line.data();

@@ -16,14 +16,14 @@ namespace {
 
 constexpr const char* format_name = "voussoir packing";
 
-/// Empty when the arrays agree with one another, else a sentence.
+/// A sentence that says where the arrays disagree; empty when they agree.
 std::string disagreement(const Packing& packing) {
   const std::size_t n = packing.grains();
   if (n == 0) {
     return "has no grains";
   }
   if (packing.x.size() != n || packing.y.size() != n || packing.rotation.size() != n) {
-    return fmt::format("{} radii, but {} x, {} y, {} rotations", n, packing.x.size(), packing.y.size(),
+    return fmt::format("has {} radii, but {} x, {} y, {} rotations", n, packing.x.size(), packing.y.size(),
                        packing.rotation.size());
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -34,14 +34,14 @@ std::string disagreement(const Packing& packing) {
   }
   if (packing.contact_j.size() != packing.contacts() ||
       packing.history.size() != packing.contacts() * packing.history_names.size()) {
-    return "contact arrays differ in length";
+    return "its contact arrays differ in length";
   }
   for (std::size_t c = 0; c < packing.contacts(); ++c) {
     const auto count = static_cast<std::int64_t>(n);
     const auto i = packing.contact_i[c];
     const auto j = packing.contact_j[c];
     if (i < 0 || j < 0 || i >= count || j >= count) {
-      return fmt::format("contact {} joins grains {} and {} of {}", c, i, j, n);
+      return fmt::format("contact {} joins grains {} and {}, but there are {} grains", c, i, j, n);
     }
   }
   return "";
@@ -101,7 +101,7 @@ void save_packing(const std::filesystem::path& path, const Packing& packing) {
 Packing load_packing(const std::filesystem::path& path) {
   const Hdf5File file = Hdf5File::open(path);
   if (file.text_attribute("/", "format") != format_name) {
-    throw std::runtime_error(fmt::format("{}: is no packing", path.string()));
+    throw std::runtime_error(fmt::format("{}: it is not a packing", path.string()));
   }
   Packing packing;
   packing.thickness = file.number_attribute("/", "thickness");
@@ -111,7 +111,7 @@ Packing load_packing(const std::filesystem::path& path) {
   packing.rotation = file.read_doubles("/rotation").values;
   const auto cell = file.read_doubles("/cell").values;
   if (cell.size() != packing.cell.size()) {
-    throw std::runtime_error(fmt::format("{}: cell has {} numbers, not 4", path.string(), cell.size()));
+    throw std::runtime_error(fmt::format("{}: the cell has {} numbers instead of 4", path.string(), cell.size()));
   }
   std::copy(cell.begin(), cell.end(), packing.cell.begin());
   packing.contact_i = file.read_integers("/contact_i").values;

@@ -32,19 +32,20 @@ struct Packing {
 /// std::runtime_error when the file cannot be written.
 void save_packing(const std::filesystem::path& path, const Packing& packing);
 
-/// Reads a file of save_packing. Throws std::runtime_error: missing, damaged, no packing, sizes disagree.
+/// Reads a file of save_packing. Throws std::runtime_error where the file is missing, damaged or no packing, or where
+/// sizes disagree.
 [[nodiscard]] Packing load_packing(const std::filesystem::path& path);
 
 /// Reads NAME_particles.csv (id,x_m,y_m,r_m,theta_z_rad) and NAME_meta.json beside it (hSize: cell vectors as columns,
 /// Lz or hSize[2][2]: thickness); `path` is either file. Other numbers of the JSON file go to `numbers`, texts to
-/// `labels`. No contact histories. Throws std::runtime_error naming file and line.
+/// `labels`. The packing has no contact histories. Throws std::runtime_error naming file and line.
 [[nodiscard]] Packing load_packing_csv(const std::filesystem::path& path);
 
 /// Name of the cached packing of a recipe: FOLDER/packing_FINGERPRINT.h5.
 [[nodiscard]] std::filesystem::path packing_path(const std::filesystem::path& folder,
                                                  const std::string& recipe_fingerprint);
 
-/// The cached packing; nothing when it is missing, damaged, or its label "recipe_fingerprint" is another one.
+/// The cached packing; no value when it is missing or damaged, or when its label "recipe_fingerprint" differs.
 [[nodiscard]] std::optional<Packing> find_packing(const std::filesystem::path& folder,
                                                   const std::string& recipe_fingerprint);
 

@@ -23,7 +23,7 @@ struct MeshData {
   [[nodiscard]] std::size_t elements() const { return connectivity.size() / 8; }
 };
 
-/// Where a run comes from. Values that nobody has set stay "unknown".
+/// The origin of a run. Values that are not set stay "unknown".
 struct Provenance {
   std::string case_kind = "unknown";
   std::string input = {};        ///< the resolved case, TOML
@@ -61,8 +61,8 @@ struct Quantity {
 };
 using Quantities = std::map<std::string, Quantity>;  ///< by name
 
-/// Row of the table of increments, and attributes of the increment's own file: what every increment has, whatever made
-/// it.
+/// Row of the table of increments, and attributes of the increment's own file: the numbers that every increment has,
+/// whatever kind of run made it.
 struct IncrementInfo {
   int index = 0;              ///< number of the file, counted through all stages
   std::string stage = {};     ///< "column", "gravity", "volume_loss", ...

@@ -19,7 +19,8 @@ namespace {
 constexpr const char* format_name = "voussoir run";
 namespace fs = std::filesystem;
 
-/// Calls visit(name, member) for the texts that every provenance has. With the texts below these are its attributes.
+/// Calls visit(name, member) for the texts that every provenance has. These and the texts of for_each_later_text are
+/// its attributes.
 template <class Source, class Visit>
 void for_each_text(Source& source, Visit&& visit) {
   visit("case_kind", source.case_kind);
@@ -72,7 +73,7 @@ void write_tables(Hdf5File& file, const Tables& tables) {
   }
 }
 
-/// Columns for all increments; one that has no value of an extra column gets NaN.
+/// Writes the columns of all increments. An increment that has no value for an extra column gets NaN.
 void write_increment_table(Hdf5File& file, const std::vector<IncrementInfo>& increments) {
   const std::vector<std::size_t> rows{increments.size()};
   file.make_group("/table");
@@ -173,7 +174,7 @@ void ResultWriter::check(const Field& field) const {
                                          : rows[static_cast<std::size_t>(field.location)] * components;
   if (field.name.empty() || field.name.find('/') != std::string::npos || field.components < 1 ||
       field.values.size() != expected) {
-    throw std::invalid_argument(fmt::format("field \"{}\": {} values of {} components, expected {}", field.name,
+    throw std::invalid_argument(fmt::format("field \"{}\" has {} values of {} components, expected {}", field.name,
                                             field.values.size(), field.components, expected));
   }
 }
@@ -181,10 +182,12 @@ void ResultWriter::check(const Field& field) const {
 void ResultWriter::write(const IncrementInfo& info, const std::vector<Field>& fields,
                          const std::vector<RveSnapshot>& snapshots, const std::vector<double>& coordinates) {
   if (info.index < 0 || (!increments_.empty() && info.index <= increments_.back().index)) {
-    throw std::invalid_argument(fmt::format("increment {} does not follow those written", info.index));
+    throw std::invalid_argument(
+        fmt::format("increment {} does not follow the increments that are written", info.index));
   }
   if (!coordinates.empty() && coordinates.size() != mesh_.coordinates.size()) {
-    throw std::invalid_argument(fmt::format("{} coordinates for {} nodes", coordinates.size() / 2, mesh_.nodes()));
+    throw std::invalid_argument(
+        fmt::format("there are {} coordinates for {} nodes", coordinates.size() / 2, mesh_.nodes()));
   }
   for (const Field& field : fields) {
     check(field);
@@ -202,7 +205,8 @@ void ResultWriter::set_table(const std::string& name, std::vector<TableColumn> c
     return usable(column.name) && column.values.size() == columns.front().values.size();
   });
   if (!usable(name) || !fits) {
-    throw std::invalid_argument(fmt::format("table \"{}\": names, or lengths of its columns, cannot be used", name));
+    throw std::invalid_argument(
+        fmt::format("table \"{}\": its names or the lengths of its columns cannot be used", name));
   }
   tables_[name] = std::move(columns);
   write_index();
@@ -232,7 +236,7 @@ void ResultWriter::write_index() const {
 Provenance read_provenance(const std::filesystem::path& run_file) {
   const Hdf5File file = Hdf5File::open(run_file);
   if (file.text_attribute("/", "format") != format_name) {
-    throw std::runtime_error(fmt::format("{}: is no result of a run", run_file.string()));
+    throw std::runtime_error(fmt::format("{}: it is not the result of a run", run_file.string()));
   }
   Provenance provenance;
   provenance.input = file.read_text("/input");
@@ -244,7 +248,7 @@ Provenance read_provenance(const std::filesystem::path& run_file) {
     if (has(name)) read(name, text);
   });
   provenance.threads = static_cast<int>(file.integer_attribute("/provenance", "threads"));
-  if (has("ranks")) {  // as the texts above
+  if (has("ranks")) {  // files of the first versions lack this number too
     provenance.ranks = static_cast<int>(file.integer_attribute("/provenance", "ranks"));
   }
   return provenance;
@@ -280,7 +284,8 @@ Tables read_tables(const std::filesystem::path& run_file) {
 }
 
 std::vector<IncrementInfo> read_increments(const std::filesystem::path& run_file) {
-  // The folder, not the table of run.h5: a kill between the two renames leaves an increment that the table lacks.
+  // The folder is read and not the table of run.h5, because a kill between the two renames leaves an increment that the
+  // table lacks.
   const auto folder = run_file.parent_path();
   std::vector<IncrementInfo> increments;
   for (const int index : list_increments(folder)) {

@@ -23,8 +23,8 @@ class ResultWriter {
                                            int last);
 
   /// Writes increment `info.index` (greater than all before), then run.h5 and result.xdmf anew. `coordinates` (node, 2)
-  /// [m]: of an updated-Lagrangian mesh, when they differ from the mesh's own. Throws std::invalid_argument for a field
-  /// whose size does not fit its location.
+  /// [m] are given for an updated-Lagrangian mesh, when they differ from the mesh's own. Throws std::invalid_argument
+  /// for a field whose size does not fit its location.
   void write(const IncrementInfo& info, const std::vector<Field>& fields,
              const std::vector<RveSnapshot>& snapshots = {}, const std::vector<double>& coordinates = {});
 

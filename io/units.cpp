@@ -36,7 +36,7 @@ constexpr std::array table{
     Unit{"deg", Dimension::angle, degree},
 };
 
-/// "a pressure such as Pa, kPa, MPa"
+/// For messages: "pressure in Pa, kPa, MPa".
 std::string expectation(Dimension dimension) {
   if (dimension == Dimension::none) {
     return "a plain number or \"%\"";
@@ -132,7 +132,7 @@ std::string format_quantity(double in_si, Dimension dimension) {
   std::string best;
   for (const Unit& unit : table) {
     const double written = in_si / unit.factor;
-    // A division may lose the last bit; such a unit is passed over, factor 1 never fails.
+    // A division may lose the last bit; a unit for which it does is passed over. The unit of factor 1 loses nothing.
     if (unit.dimension == dimension && written * unit.factor == in_si) {
       const std::string candidate = joined(shortest(written), unit.symbol);
       if (best.empty() || candidate.size() < best.size()) {

@@ -29,7 +29,7 @@ struct UnitError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// All units known; the SI unit comes first in each dimension.
+/// All units that a user may write; the SI unit comes first in each dimension.
 [[nodiscard]] std::span<const Unit> units();
 
 /// "length", "pressure", ... as used in messages.

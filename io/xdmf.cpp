@@ -1,4 +1,4 @@
-/// XDMF 2 text: what ParaView needs to find the datasets of an increment. Only text; the numbers stay in HDF5.
+/// XDMF 2: the text that tells ParaView where the datasets of an increment are. The numbers stay in HDF5.
 
 #include <fmt/format.h>
 

@@ -1,8 +1,9 @@
 #pragma once
-/// The engine's verbs: all RVEs of a batch, each by its own request, from committed to trial state.
+/// The functions by which the engine advances RVEs: each RVE of a batch goes, by its own request, from its committed to
+/// its trial state.
 ///
-/// RVEs are sorted into groups of one packing and similar predicted work; a group costs its slowest lane. Every RVE's
-/// answer is bit-identical whatever its group, lane or thread (same build, same precision).
+/// RVEs are sorted into groups of one packing and similar predicted work, because a group takes as long as its slowest
+/// lane. With one build and one precision, the answer of an RVE has the same bits in every group, lane and thread.
 
 #include <span>
 
@@ -16,7 +17,8 @@ namespace voussoir::kernels {
 [[nodiscard]] bool takes_teams(Backend backend);
 
 /// Advances every RVE by a given motion. `requests` and `reports` have batch.size() entries.
-/// Writes batch.trial; never throws for a numerical reason: each RVE's status says how it ended.
+/// Writes batch.trial. The call never throws for a numerical reason: the status of each RVE says how its evaluation
+/// ended.
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports);
 

@@ -14,7 +14,7 @@ struct Cell {
 
   KOKKOS_INLINE_FUNCTION explicit Cell(const Mat2& cell) : h(cell), inverse(cell.inverse()) {}
 
-  /// The point's image inside the cell.
+  /// Moves a point to its image inside the cell.
   KOKKOS_INLINE_FUNCTION void wrap(double& x, double& y) const {
     const double a = std::floor(inverse.xx * x + inverse.xy * y);
     const double b = std::floor(inverse.yx * x + inverse.yy * y);
@@ -22,8 +22,8 @@ struct Cell {
     y -= h.yx * a + h.yy * b;
   }
 
-  /// The nearest image of a difference vector, in the cell's own (sheared) metric: exact for lengths below half a
-  /// height.
+  /// Replaces a difference vector by its nearest image. The image is chosen in the cell's own (sheared) coordinates,
+  /// which is exact for vectors shorter than half a height.
   KOKKOS_INLINE_FUNCTION void nearest(double& dx, double& dy) const {
     const double a = std::nearbyint(inverse.xx * dx + inverse.xy * dy);
     const double b = std::nearbyint(inverse.yx * dx + inverse.yy * dy);
@@ -31,7 +31,7 @@ struct Cell {
     dy -= h.yx * a + h.yy * b;
   }
 
-  /// Distance between opposite sides: along fractional axis 0 and 1.
+  /// Distance between the two opposite sides that bound the cell along fractional axis 0 or 1.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double height(int axis) const {
     const double row = axis == 0 ? std::hypot(inverse.xx, inverse.xy) : std::hypot(inverse.yx, inverse.yy);
     return 1.0 / row;
@@ -44,10 +44,11 @@ struct Cell {
   return dx * dx + dy * dy < reach * reach;
 }
 
-/// The same lattice with its shortest vectors (Gauss' reduction): a cell never gets thin by shear alone, so shear is
-/// unlimited.
+/// The same lattice, described by its shortest vectors (Gauss' reduction). Shear alone then never makes a cell thin, so
+/// that shear is unlimited.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 reduced_lattice(Mat2 cell) {
-  constexpr int most_swaps = 1000;  // every swap but the last shortens a vector; the bound is for cells with a NaN
+  constexpr int most_swaps = 1000;  // every swap but the last shortens a vector; the bound stops the loop for a cell
+                                    // that holds a NaN
   for (int k = 0; k < most_swaps; ++k) {
     const double aa = cell.xx * cell.xx + cell.yx * cell.yx;
     const double bb = cell.xy * cell.xy + cell.yy * cell.yy;

@@ -1,26 +1,25 @@
 #pragma once
 /// The questions that the engine asks a contact law, and the form of the answers. A law itself is a value: the
-/// constants of one contact and pure functions of its motion (method.md §3), without views and without indices, so that
-/// it can be tested alone along a path. The engine runs the law of `linear_law.hpp`; `engine_law.hpp` makes that
-/// choice.
+/// constants of one contact and pure functions of its motion, without views and without indices, so that it can be
+/// tested alone along a path. The engine runs the law of `linear_law.hpp`; `engine_law.hpp` makes that choice.
 ///
 /// A law is a struct `Law` over a value type V (lane.hpp) with
 ///
-///   Value, has_rolling      V, and whether contacts transmit moments: the sweep leaves their part out if not
+///   Value, has_rolling      V, and whether contacts transmit moments; if not, the sweep leaves moments out
 ///   Pair                    the law's constants for two given grains, in V's real type and the same in all lanes
 ///   combine(m1, r1, m2, r2) the Pair of two grains (materials, radii [m]), computed in double and rounded once
 ///   History                 the memory of a contact: at most four numbers of type V, 0 before the first touch
 ///   history_names           their names in the order in which packings and checkpoints store them
 ///   for_each_number(h, f)   calls f(k, number k) of a History, in that order
-///   stable_rows(...)        the stiffness of a grain at the largest overlap allowed, which its scaled mass must stand
-///   normal_stiffness_of(...) d f_n/d delta of a grain against its like, for the control of stresses
+///   stable_rows(...)        row sums of a grain's stiffness at the largest overlap allowed; its scaled mass follows
+///   normal_stiffness_of(...) d f_n/d delta of a grain against an equal one, for the control of stresses
 ///   Law(pair)               the law of that pair, with the member functions
 ///     operator()(motion, history)    forces; the history becomes 0 where the grains do not touch
-///     keep(changed, history)         takes over those numbers of a history that operator() can have changed: the sweep
-///                                    works on a copy in registers and does not write the others back
+///     keep(changed, history)         copies the numbers that operator() can change from `changed` to `history`;
+///                                    the sweep works on a copy in registers and writes no other numbers back
 ///     secant(overlap)                f_n/delta
 ///     springs(overlap)               derivatives of the forces as if there were no caps
-///     stiffness(overlap, history, elastic_share)   the same without the springs that have yielded
+///     stiffness(overlap, history, elastic_share)   these derivatives without the springs that have yielded
 ///     step(overlap, history, closing, sliding, rolling)   the changes of the forces by a small motion
 ///
 /// The engine relies on two properties that no compiler checks. The normal force is a function of the overlap alone:
@@ -63,9 +62,10 @@ inline constexpr std::array<MaterialNumber, 5> material_numbers{{{"E", &GrainMat
 static_assert(sizeof(GrainMaterial) == material_numbers.size() * sizeof(double),
               "material_numbers must hold every member of GrainMaterial, once");
 
-/// Relative motion at a contact during one step. The overlap comes over two lengths, R = r_i + r_j and the distance |b|
-/// of the centres: f_n/|b| is the secant stiffness times the second, caps follow the first. The sweep has both
-/// at hand; with one of them only it would need two products more, and every contact would wait for them.
+/// Relative motion at a contact during one step. The overlap is given as a ratio to each of two lengths, R = r_i + r_j
+/// and the distance |b| of the centres: caps follow the first ratio, and f_n/|b| is the secant stiffness times the
+/// second. The sweep knows both ratios; a law that received only one would need two more products, for which every
+/// contact would wait.
 template <class V>
 struct ContactMotion {
   V overlap;            ///< delta/R >= 0 [-]; 0 means no contact
@@ -81,7 +81,7 @@ struct ContactForce {
   V moment;            ///< m on i [N m]
 };
 
-/// The law's springs at its state.
+/// The stiffnesses of a contact's springs at its present state.
 template <class V>
 struct ContactStiffness {
   V normal, tangential, rolling;  ///< [N/m], [N/m], [N m/rad]
@@ -95,8 +95,8 @@ struct LimitedForce {
   V by_closing;  ///< derivative of `change` by the contact's closing: 0 except at the cap
 };
 
-/// The changes of a contact's forces by a small motion, and the slopes of these changes. Closing is the increase of the
-/// overlap over R. A contact that opens loses its forces and is followed no further.
+/// The changes of a contact's forces by a small motion, and the slopes of these changes. Closing is the increase of
+/// overlap/R. A contact that opens loses its forces and is followed no further.
 template <class V>
 struct ContactStep {
   V normal_change;                     ///< of f_n, over R [N/m]
@@ -111,8 +111,8 @@ struct StableRows {
   double rotation;     ///< [N m/rad]
 };
 
-/// @param stiffness 0 where the contact opens; @param motion of the spring; @param held its force before, within its
-/// cap
+/// The change of a spring's force by its motion, limited so that the force stays between -cap and cap.
+/// @param stiffness of the spring, 0 where the contact opens; @param held force before the motion, within its cap
 /// @param cap after the motion; @param cap_slope derivative of the cap by closing
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION LimitedForce<V> limited_force(const V& stiffness, const V& motion, const V& held,
@@ -127,14 +127,14 @@ KOKKOS_FORCEINLINE_FUNCTION LimitedForce<V> limited_force(const V& stiffness, co
 
 inline constexpr std::size_t most_history_numbers = 4;
 
-/// The number of numbers in a law's History.
+/// How many numbers a law's History has.
 template <class Law>
 inline constexpr int history_size = [] {
   static_assert(Law::history_names.size() <= most_history_numbers);
   return static_cast<int>(Law::history_names.size());
 }();
 
-/// Numbers of a history as one lane has them, in the order in which states store them.
+/// The history of one lane as plain numbers, in the order in which states store them.
 template <class Law, class Number>
 using HistoryNumbers = std::array<Number, static_cast<std::size_t>(history_size<Law>)>;
 
@@ -146,20 +146,21 @@ template <class Law>
   return history;
 }
 
-/// Writes numbers(k), rounded, into lane `l` of a history; below, calls write(k, number) with the numbers of that lane.
+/// Sets lane `l` of a history to the numbers numbers(k), rounded.
 template <class Law, class Numbers>
 KOKKOS_FORCEINLINE_FUNCTION void read_history(typename Law::History& history, std::size_t l, const Numbers& numbers) {
   Law::for_each_number(history, [&](int k, typename Law::Value& number) {
     number[l] = static_cast<real_of<typename Law::Value>>(numbers(k));
   });
 }
+/// Calls write(k, number) for the numbers that lane `l` of a history holds.
 template <class Law, class Write>
 KOKKOS_FORCEINLINE_FUNCTION void write_history(const typename Law::History& history, std::size_t l,
                                                const Write& write) {
   Law::for_each_number(history, [&](int k, const typename Law::Value& number) { write(k, number[l]); });
 }
 
-/// Whether lane `l` of a history holds anything that a new list must take over.
+/// Whether lane `l` of a history holds a number other than 0, which a new list must take over.
 template <class Law>
 [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION bool remembers(const typename Law::History& history, std::size_t l) {
   bool any = false;

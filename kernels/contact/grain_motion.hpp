@@ -5,8 +5,8 @@
 
 namespace voussoir::kernels {
 
-/// A velocity component after the kick of one step. Local damping (Cundall): a force that works on the mid-step
-/// velocity is cut by lambda, the other raised.
+/// A velocity component after the forces of one step have acted. Local damping (Cundall) reduces a force along the
+/// mid-step velocity by the share lambda, and raises a force against that velocity by the same share.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V kicked(const V& velocity, const V& force, const V& mobility, const V& half_mobility,
                                      const V& damping) {
@@ -24,8 +24,8 @@ KOKKOS_FORCEINLINE_FUNCTION void integrate(GrainLanes<V>& grain, const GrainShap
   const V a(shape.mobility), half_a(shape.half_mobility);
   const V wx = grain.w_x;
   const V wy = grain.w_y;
-  const V kept = choose_if_zero(fx, fy, torque, V(real(0.9)) * cell.alive, cell.alive);  // a rattler loses a tenth of
-                                                                                         // its velocity
+  // A rattler (a grain without force and torque) loses a tenth of its velocity.
+  const V kept = choose_if_zero(fx, fy, torque, V(real(0.9)) * cell.alive, cell.alive);
   const V new_x = kept * fused(-cell.rotation, wy, kicked(wx, fx, a, half_a, damping));
   const V new_y = kept * fused(cell.rotation, wx, kicked(wy, fy, a, half_a, damping));
   const V spin = kept *

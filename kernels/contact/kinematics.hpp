@@ -1,6 +1,6 @@
 #pragma once
-/// 2x2 matrix exponential and logarithm, closed form, so that F(t) = exp(t log F) ends exactly at F and a rotation is
-/// rigid all the way (method.md §4).
+/// Exponential and logarithm of 2x2 matrices in closed form. With them F(t) = exp(t log F) ends exactly at F, and the
+/// path to a rotation consists of rigid rotations.
 
 #include <Kokkos_Macros.hpp>
 #include <cmath>
@@ -37,7 +37,7 @@ struct Mat2 {
 
 inline constexpr Mat2 identity2{1, 0, 0, 1};
 
-/// I + A; device code may not refer to `identity2`.
+/// I + A, written out because device code may not refer to `identity2`.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 plus_identity(const Mat2& a) { return {1.0 + a.xx, a.xy, a.yx, 1.0 + a.yy}; }
 
 /// exp(A) - I without cancellation for small A: A = s I + B with tr B = 0, B^2 = q I, q = -det B.

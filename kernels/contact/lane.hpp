@@ -1,9 +1,9 @@
 #pragma once
 /// The value type of the engine. A value holds one number for each RVE of a group, one RVE per SIMD lane.
 ///
-/// `WideLane<real>` is as wide as the build's instruction set allows, `SingleLane<real>` holds one RVE (unlike
-/// packings, and the GPU's threads). Every kernel is a template over this type and uses the operations of this file
-/// only. Lanes are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
+/// `WideLane<real>` is as wide as the build's instruction set allows, `SingleLane<real>` holds one RVE; it serves
+/// unlike packings and the threads of a GPU. Every kernel is a template over this type and uses the operations of this
+/// file only. Lanes are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
 
 #include <Kokkos_Core.hpp>
 #include <Kokkos_SIMD.hpp>

@@ -1,6 +1,6 @@
 #pragma once
-/// The linear law: normal spring, tangential spring with Coulomb cap, rolling spring with plastic cap (Iwashita and Oda
-/// 1998). Its rules are Yade's, so that the two codes can be compared grain by grain (method.md §3).
+/// The linear law: a normal spring, a tangential spring with Coulomb's cap, and a rolling spring with a plastic cap
+/// (Iwashita and Oda 1998). Its rules are Yade's, so that the two codes can be compared grain by grain.
 
 #include "kernels/contact/contact_law.hpp"
 
@@ -15,7 +15,7 @@ struct PairConstants {
   double rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
 };
 
-/// Caps of the springs per overlap over R.
+/// Caps of the springs, divided by overlap/R.
 struct PairCaps {
   double tangential;  ///< mu k_n R [N]
   double moment;      ///< [N m]
@@ -29,7 +29,7 @@ struct PairCaps {
 /// Harmonic mean 2 a b / (a + b), of two springs in series; 0 if either is 0.
 KOKKOS_INLINE_FUNCTION double harmonic_mean(double a, double b) { return a + b > 0 ? 2.0 * a * b / (a + b) : 0.0; }
 
-/// Combination rules of method.md §3 for grains of radii r1, r2 [m].
+/// Constants of a contact of two grains of radii r1, r2 [m]; kernels/README.md, "One step", 3.
 KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2, double r2) {
   const double kt = harmonic_mean(m1.modulus * m1.stiffness_ratio * r1, m2.modulus * m2.stiffness_ratio * r2);
   const double beta = harmonic_mean(m1.rolling_stiffness, m2.rolling_stiffness);
@@ -84,15 +84,15 @@ struct LinearContactLaw {
             .moment_cap = rounded(caps.moment)};
   }
 
-  /// @param overlap largest, over R; these stiffnesses do not depend on it
+  /// @param overlap largest, divided by R; the stiffness of the linear law does not depend on it
   [[nodiscard]] static double normal_stiffness_of(const GrainMaterial& m, double radius,
                                                   [[maybe_unused]] double overlap) {
     return m.modulus * radius;
   }
 
-  /// Rows of a grain with `contacts` contacts. For displacements the contacts are those with its like, for rotations it
-  /// rolls on the packing's largest grain, which is the stiffest rotation of a small grain.
-  /// @param radius, largest_radius [m]; @param overlap largest, over R
+  /// Row sums of a grain with `contacts` contacts. For displacements its neighbours are taken to be equal to it; for
+  /// rotations it rolls on the packing's largest grains, which is the stiffest rotation of a small grain.
+  /// @param radius, largest_radius [m]; @param overlap largest, divided by R
   [[nodiscard]] static StableRows stable_rows(const GrainMaterial& m, double radius, double largest_radius,
                                               double contacts, double overlap) {
     const double kn = normal_stiffness_of(m, radius, overlap);
@@ -127,16 +127,17 @@ struct LinearContactLaw {
     }
   }
 
-  /// f_n/delta [N/m]: f_n over any length is this number times the overlap over that length.
+  /// f_n/delta [N/m]. This number times overlap/length is f_n/length, for any length.
   KOKKOS_FORCEINLINE_FUNCTION const V& secant([[maybe_unused]] const V& overlap) const { return normal_stiffness; }
 
-  /// Derivatives of the forces by the motion at an overlap, whatever the caps.
+  /// Derivatives of the forces by the motion at an overlap, as if there were no caps.
   KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> springs([[maybe_unused]] const V& overlap) const {
     return {normal_stiffness, tangential_stiffness, rolling_stiffness};
   }
 
-  /// Derivatives with the springs left out that have yielded (their force follows f_n only, which has no potential and
-  /// is neglected). @param overlap over R [-]; @param history within the caps, as operator() leaves it
+  /// Derivatives of the forces without the springs that have yielded. The force of a yielded spring follows f_n alone;
+  /// this dependence has no potential and is neglected.
+  /// @param overlap divided by R [-]; @param history within the caps, as operator() leaves it
   /// @param elastic_share share of its cap below which a spring holds; above 1, every spring with a cap holds
   KOKKOS_FORCEINLINE_FUNCTION ContactStiffness<V> stiffness(const V& overlap, const History& history,
                                                             const V& elastic_share) const {
@@ -153,9 +154,10 @@ struct LinearContactLaw {
     return k;
   }
 
-  /// The change of the forces that operator() would give, computed without the cancellation of a difference. A contact
-  /// that does not touch stays apart.
-  /// @param overlap over R, and history, at rest, within the caps; @param closing increase of the overlap over R
+  /// The change of the forces that operator() would give, computed without the cancellation of a difference. A pair
+  /// that does not touch is taken to stay apart.
+  /// @param overlap divided by R, at rest; @param history at rest, within the caps; @param closing increase of
+  /// overlap/R
   /// @param sliding, rolling as in ContactMotion
   KOKKOS_FORCEINLINE_FUNCTION ContactStep<V> step(const V& overlap, const History& history, const V& closing,
                                                   const V& sliding, const V& rolling) const {

@@ -6,7 +6,7 @@
 
 namespace voussoir::kernels {
 
-/// Distances of a pair, with y = R/|b|; 0, 0 and 1/R in lanes that do not touch.
+/// Distances of a pair, with y = R/|b|. In lanes where the pair does not touch they are 0, 0 and 1/R.
 template <class V>
 struct PairDistance {
   V overlap;         ///< q = delta/R = 1 - 1/y [-]
@@ -14,9 +14,10 @@ struct PairDistance {
   V inverse_length;  ///< y/R = 1/|b| [1/m]
 };
 
-/// z/e as a polynomial in e, z = (1 - e)^(-1/2) - 1: the leading terms exact, the others fitted over 0 .. 0.51 to
-/// relative errors that grow with e. Up to 1, 10, 20 and 30 % overlap, where an RVE is given up: in float 3e-10, 9e-7,
-/// 5e-6 and 1.2e-5, in double 5e-15, 5e-9, 2e-7 and 1.4e-6; those of q, y and 1/|b| are smaller.
+/// z/e as a polynomial in e, where z = (1 - e)^(-1/2) - 1. The leading terms are exact, the others are fitted over 0 ..
+/// 0.51. The relative error grows with e: up to an overlap of 1, 10, 20 and 30 % it is 3e-10, 9e-7, 5e-6 and 1.2e-5 in
+/// float, 5e-15, 5e-9, 2e-7 and 1.4e-6 in double. Beyond 30 % an RVE is given up. The errors of q, y and 1/|b| are
+/// smaller.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V excess_over(const V& e, const V& e2) {
   using real = real_of<V>;
@@ -37,7 +38,8 @@ KOKKOS_FORCEINLINE_FUNCTION V excess_over(const V& e, const V& e2) {
   }
 }
 
-/// e = -g/R^2, then z, then q = z/y = e - (1 - e) z: the subtraction halves e and loses nothing.
+/// Computes e = -g/R^2, then z, then q = z/y = e - (1 - e) z. About half of e is left after this subtraction, so it
+/// loses no digits.
 template <class Law, class V>
 KOKKOS_FORCEINLINE_FUNCTION PairDistance<V> distance_of(const V& gap, const PairShape<Law>& shape) {
   const auto touches = gap < V(0);
@@ -47,7 +49,7 @@ KOKKOS_FORCEINLINE_FUNCTION PairDistance<V> distance_of(const V& gap, const Pair
   return {q, z, fused(z, V(shape.inverse_sum), V(shape.inverse_sum))};
 }
 
-/// Force on i, and torques on both, of one pair.
+/// The force of one pair on grain i, and its torques on both grains.
 template <class V>
 struct PairAction {
   V force_x, force_y, torque_i, torque_j;
@@ -69,7 +71,7 @@ KOKKOS_FORCEINLINE_FUNCTION PairGeometry<V> geometry_of(const PairLanes<Law>& pa
           fused(dx, fused(two, pair.branch_x, dx), fused(dy, fused(two, pair.branch_y, dy), pair.gap))};
 }
 
-/// e = -g/R^2 of a pair; 0 in lanes that do not touch: no overlap, no force, no history.
+/// e = -g/R^2 of a pair; 0 in lanes where the pair does not touch.
 template <class Law, class V>
 KOKKOS_FORCEINLINE_FUNCTION V overlap_measure(const PairGeometry<V>& at, const PairShape<Law>& shape) {
   return Kokkos::Experimental::condition(at.gap < V(0), at.gap * V(shape.minus_inverse_sum_squared), V(0));
@@ -88,9 +90,9 @@ KOKKOS_FORCEINLINE_FUNCTION GrainRim<V> rim_of(const V& radius, const V& spin) {
   return {radius, spin, radius * spin};
 }
 
-/// Law and forces of a pair that touches in at least one lane. (dw_x, dw_y) is w_j - w_i. The branch is not made a unit
-/// vector, because n and t are needed only in products that can be divided by |b| afterwards. D_xx b is subtracted from
-/// D b, since it has no part along t.
+/// Applies the law to a pair that touches in at least one lane, and returns what the pair does to its grains. (dw_x,
+/// dw_y) is w_j - w_i. The branch is not made a unit vector, because n and t are needed only in products that can be
+/// divided by |b| afterwards. D_xx b is subtracted from D b, which changes nothing, since b has no part along t.
 template <class Law, class V>
 KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<Law>& pair, const PairShape<Law>& shape,
                                               const PairGeometry<V>& at, const CellMotion<V>& cell, const V& dw_x,

@@ -1,18 +1,18 @@
 #pragma once
-/// A listed pair where its RVE's positions are known in double: the displacement form's reference, and the pair's
-/// constants.
+/// The numbers of a listed pair that are computed from positions in double: the reference of its displacement form, and
+/// its constants.
 
 #include "kernels/contact/cell.hpp"
 #include "kernels/contact/pair_state.hpp"
 
 namespace voussoir::kernels {
 
-/// Branch b0 and gap g0 = |b0|^2 - R^2 at a rebase; to be rounded once.
+/// Branch b0 and gap g0 = |b0|^2 - R^2 at a rebase, in double; the caller rounds them once.
 struct PairReference {
   double branch_x, branch_y, gap;
 };
 
-/// @param dx, dy x_j - x_i, any image [m]; @param sum_radii R [m]
+/// The reference of a pair. @param dx, dy x_j - x_i for any image of j [m]; @param sum_radii R [m]
 [[nodiscard]] KOKKOS_INLINE_FUNCTION PairReference pair_reference(double dx, double dy, double sum_radii,
                                                                   const Cell& cell) {
   cell.nearest(dx, dy);

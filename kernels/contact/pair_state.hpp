@@ -1,8 +1,10 @@
 #pragma once
-/// Working state of one group: W RVEs cloned from one packing, one per lane, all lanes of a number side by side.
+/// The working state of one group: W RVEs cloned from one packing, one per lane. The values of a number in all lanes
+/// stand side by side.
 ///
-/// Layout (grain, quantity, lane) and (pair, quantity, lane): everything one pair touches is a run of whole cache
-/// lines. One thread owns a group for a whole increment, so it stays in L1/L2.
+/// The layout is (grain, quantity, lane) and (pair, quantity, lane), so that all numbers of one grain or pair are a run
+/// of whole cache lines. One thread owns a group for a whole evaluation, so that the group stays in its caches (L1 and
+/// L2).
 
 #include <cstdint>
 #include <vector>
@@ -31,7 +33,7 @@ struct GrainShape {
   real half_mobility, half_rotational_mobility;  ///< half of each
 };
 
-/// A candidate contact, lane by lane.
+/// The numbers of a candidate contact that differ from lane to lane.
 template <class Law>
 struct PairLanes {
   using V = typename Law::Value;
@@ -40,7 +42,8 @@ struct PairLanes {
   typename Law::History history;
 };
 
-/// A candidate contact, the same in all lanes. Rows are grains i, `other` is j > i.
+/// The numbers of a candidate contact that are the same in all lanes. The contact stands in the row of grain i; `other`
+/// is j > i.
 template <class Law>
 struct PairShape {
   using real = real_of<typename Law::Value>;
@@ -79,9 +82,10 @@ struct SweepSums {
   V largest_measure = V(0);                                                  ///< largest e = -g/R^2 over contacts [-]
 };
 
-inline constexpr int pairs_ahead = 2;  ///< a sweep fetches the grains of the pair that stands so far ahead in the list
+inline constexpr int pairs_ahead = 2;  ///< a sweep fetches the grain of the pair that is this many places ahead in the
+                                       ///< list
 
-/// Plain vectors, not views: a group grows its arrays inside the parallel region, where a view may not be made.
+/// The arrays are vectors, not views, because a group grows them inside the parallel region, where no view may be made.
 template <class Law>
 struct GroupState {
   using V = typename Law::Value;

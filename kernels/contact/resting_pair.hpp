@@ -2,13 +2,14 @@
 /// One pair at rest and its parts of stress and tangent, by one law call with zero motion.
 ///
 /// Love-Weber stress, eq. (3): sigma = (1/V) sum P (x) b. Contact tangent, eq. (4): D = (1/V) sum k_n n b n b + k_t t b
-/// t b, symmetrised for the FEM; it is affine (too stiff by 1.2 to 3) and neglects spins.
+/// t b, symmetrised for the FEM. This tangent lets every grain follow the mean strain, which makes it too stiff by a
+/// factor of 1.2 to 3, and it neglects spins.
 
 #include "kernels/contact/pair_forces.hpp"
 
 namespace voussoir::kernels {
 
-/// Sums over all contacts; divide by the volume for stress and tangent. Voigt (xx, yy, xy), upper triangle.
+/// Sums over all contacts. Divided by the volume they are stress and tangent (upper triangle, Voigt order xx, yy, xy).
 template <class V>
 struct Homogenised {
   SweepSums<V> sums;
@@ -22,7 +23,7 @@ struct SpringTerms {
   V xx, yy, xy;     ///< s
   V kxx, kyy, kxy;  ///< k s
 
-  /// Entry `c` of the tangent's upper triangle grows by these factors.
+  /// Entry `c` of the tangent's upper triangle, with the part of this spring added.
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION V added_to(int c, const V& tangent) const {
     const V& left = c < 3 ? kxx : (c < 5 ? kyy : kxy);
     const V& right = c == 0 ? xx : (c == 1 || c == 3 ? yy : xy);
@@ -48,7 +49,8 @@ struct RestingPair {
   V overlap;                          ///< e = -g/R^2
 };
 
-/// The pair at its present position. Its history is limited by the caps there, as the next step would do.
+/// The pair at its present position. Its history is limited by the caps at this position, as the next step would limit
+/// it.
 template <class Law, class V>
 KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<Law>& pair, const PairShape<Law>& shape,
                                                 const PairGeometry<V>& at, const CellMotion<V>& cell,

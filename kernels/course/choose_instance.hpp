@@ -8,18 +8,19 @@
 
 namespace voussoir::kernels {
 
-/// A type as an argument.
+/// Passes a type to a function as an argument.
 template <class Type>
 struct Instance {
   using type = Type;
 };
 
 enum class Width {
-  one,    ///< one RVE by itself: teams
+  one,    ///< one RVE by itself, for teams
   widest  ///< one RVE a SIMD lane, as many as the processor has
 };
 
-/// Whether most RVEs have a packing of their own: they would leave wide lanes empty and run one to a group instead.
+/// Whether most RVEs have a packing of their own. Such RVEs would leave most lanes of a group empty, so that each of
+/// them runs in a group of one lane instead.
 [[nodiscard]] inline bool mostly_alone(const RveBatch& batch) { return batch.size() < 2 * batch.packings.size(); }
 
 /// Calls body(Instance<float or double>).

@@ -2,7 +2,7 @@
 /// How a lane's cell is driven: a given motion (the ground) or stresses (consolidation, element tests).
 ///
 /// A drive is a template argument of the time loop. `rate(step)` is the velocity gradient per step, `looks(step)` asks
-/// for a measuring step, `judge(step, ...)` is given that step's measurement and says whether the lane is done.
+/// for a measuring step, `judge(step, ...)` receives the measurement of such a step and says whether the lane is done.
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@ struct Measurement {
 
 enum class Verdict { running, converged, step_limit };
 
-/// Largest |L| per step at which lists keep up: within one list interval the cell then moves a pair by a tenth of the
-/// slack.
+/// Largest |L| per step with which lists stay valid: within one list interval the cell then moves the two grains of a
+/// pair against each other by at most a twentieth of the skin.
 [[nodiscard]] inline double largest_rate(const RunScales& scales, const EngineSettings& settings) {
   return 0.05 * scales.skin / (settings.list_interval * scales.reach);
 }
@@ -30,7 +30,7 @@ enum class Verdict { running, converged, step_limit };
   return largest_rate(scales_of<PlainEngineLaw>(packing, settings), settings);
 }
 
-/// F(t) = exp(t log F_rel / n) for n steps, then rest until the forces balance.
+/// The cell moves by F(t) = exp(t log F_rel / n) for n steps, then rests until the forces balance.
 class StrainDrive {
  public:
   using Request = StrainRequest;
@@ -46,7 +46,7 @@ class StrainDrive {
     if (strain_steps_ > 0) rate_ = (1.0 / strain_steps_) * total_;
   }
 
-  /// False for a motion without a real logarithm (NaN, det F <= 0): the RVE is not run.
+  /// False for a motion without a real logarithm (NaN, det F <= 0); the RVE is then not run.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool possible() const { return std::isfinite(total_.norm()); }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION Mat2 rate(int step) const { return step < strain_steps_ ? rate_ : Mat2{}; }
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool looks(int step) const {
@@ -70,8 +70,8 @@ class StrainDrive {
   Mat2 rate_;
 };
 
-/// PI control of each stress-controlled axis against a reference modulus (mean stiffness of the packing's contacts over
-/// its thickness): the proportional part alone leaves an offset with stiff grains (method.md §6).
+/// PI control of each stress-controlled axis. Its reference modulus is the mean stiffness of the packing's contacts
+/// over the thickness. The proportional part alone would leave an offset with stiff grains.
 class ServoControl {
  public:
   using Request = ServoRequest;
@@ -107,7 +107,7 @@ class ServoControl {
     return step + 1 >= request_.max_steps ? Verdict::step_limit : Verdict::running;
   }
 
-  /// Whether the caller wants a sample of this step, and the sample; to be called after `judge`.
+  /// Whether the caller wants a sample of this step, which `sample` makes; both are to be called after `judge`.
   [[nodiscard]] KOKKOS_INLINE_FUNCTION bool samples(int step) const {
     return request_.trace != nullptr && step % request_.trace_interval == 0;
   }
@@ -138,7 +138,7 @@ class ServoControl {
     const double error = (axis.target - stress) / modulus_;
     const double wanted = proportional * error + integral * (rate.sum + error);
     rate.value = Kokkos::clamp(wanted, -request_.max_rate, request_.max_rate);
-    if (wanted == rate.value) rate.sum += error;  // no wind-up while the rate is at its limit
+    if (wanted == rate.value) rate.sum += error;  // the sum stands still while the rate is at its limit
     return std::abs(axis.target - stress) <= request_.stress_tolerance * Kokkos::max(std::abs(axis.target), floor_);
   }
 
@@ -150,19 +150,19 @@ class ServoControl {
   int settled_ = 0;
 };
 
-/// The control with its trace kept where the caller wants it, and the contact network where it is asked for.
+/// The control that also keeps the trace, and the contact network along the path, where the caller asks for them.
 class ServoDrive : public ServoControl {
  public:
   static constexpr bool can_record = true;
   using ServoControl::ServoControl;
 
-  /// Whether `record` is wanted before the step's sweep; the sample that `judge` takes after the sweep holds the
+  /// Whether `record` must be called before the step's sweep. The sample that `judge` takes after the sweep holds the
   /// recorded microstructure.
   [[nodiscard]] bool records(int step) const { return request_.microstructure.any() && samples(step); }
   [[nodiscard]] const MicrostructureRequest& recorded_quantities() const { return request_.microstructure; }
   void record(const Microstructure& m) { recorded_ = m; }
 
-  /// Runs on the host; marked for both because its caller is.
+  /// Runs on the host only; it is marked for host and device because its caller is.
   KOKKOS_INLINE_FUNCTION Verdict judge(int step, const Measurement& m) {
     const Verdict verdict = ServoControl::judge(step, m);
     KOKKOS_IF_ON_HOST((if (samples(step)) keep(sample(step, m));))

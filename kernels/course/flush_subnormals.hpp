@@ -1,6 +1,7 @@
 #pragma once
-/// Subnormal numbers are flushed to zero while a worker advances RVEs: grains at rest decay into them, at ten times the
-/// cost a step on a CPU. Nothing on a GPU, where they cost nothing.
+/// Flushes subnormal numbers to zero while a worker advances RVEs. The velocities of grains at rest decay into
+/// subnormal numbers, with which a step on a CPU costs ten times as much. On a GPU, where they cost nothing, this class
+/// does nothing.
 
 #include <Kokkos_Macros.hpp>
 

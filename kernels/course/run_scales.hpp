@@ -12,7 +12,7 @@ struct RunScales {
   double mean_diameter = 0;   ///< [m]
   double largest_radius = 0;  ///< [m]
   double mean_mobility = 0;   ///< [m/N]
-  double mean_stiffness = 0;  ///< of the grains' contacts with their likes, at the overlap limit [N/m]
+  double mean_stiffness = 0;  ///< of the grains, each against an equal one, at the overlap limit [N/m]
   double thickness = 0;       ///< [m]
   double local_damping = 0;   ///< [-]
   double skin = 0;            ///< of the lists [m]

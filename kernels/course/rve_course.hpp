@@ -28,7 +28,7 @@ struct RveCourse {
   double rotation = 0;  ///< sum of W per step since the committed state [rad]
 };
 
-/// The velocity gradient of the motion to `step`.
+/// Sets the velocity gradient of the coming motion, which is that of `step`.
 template <class Drive>
 KOKKOS_INLINE_FUNCTION void set_rate(RveCourse<Drive>& course, int step) {
   const Mat2 rate = course.drive.rate(step);
@@ -37,7 +37,7 @@ KOKKOS_INLINE_FUNCTION void set_rate(RveCourse<Drive>& course, int step) {
   course.e = exp_minus_identity(rate);
 }
 
-/// The numbers of the cell's motion, rounded for the sweep into lane `l`.
+/// Rounds the numbers of the cell's motion into lane `l`, for the sweep.
 template <class V, class Drive>
 KOKKOS_INLINE_FUNCTION void round_motion(const RveCourse<Drive>& course, CellMotion<V>& m, std::size_t l) {
   using real = real_of<V>;
@@ -53,7 +53,8 @@ KOKKOS_INLINE_FUNCTION void round_motion(const RveCourse<Drive>& course, CellMot
   m.alive[l] = course.running ? real(1) : real(0);
 }
 
-/// F <- exp(rate) F in double, then its rounded copy. A course that is not running stands still.
+/// Moves the cell, F <- exp(rate) F in double, and rounds its motion for the sweep. The cell of a course that is not
+/// running stands still.
 template <class V, class Drive>
 KOKKOS_INLINE_FUNCTION void move_cell(RveCourse<Drive>& course, int step, CellMotion<V>& m, std::size_t l) {
   using real = real_of<V>;
@@ -69,12 +70,13 @@ KOKKOS_INLINE_FUNCTION void move_cell(RveCourse<Drive>& course, int step, CellMo
   round_motion(course, m, l);
 }
 
-/// The verdict of a look at displacements on the list. The last two end the course.
+/// What a look at the displacements says about the list. The last two states end the course; in the last one a grain
+/// has moved by more than a mean diameter.
 enum class ListState { valid, stale, not_finite, flown };
 
-/// Whether grains may meet someone who is not listed before the next look: with what comes until then, 2 max|u| + |F -
-/// I| (R + skin) reaches the skin. @param largest, fastest max |u| [m] and max |w| [m/step]; @param finite all of them
-/// are
+/// Whether two grains whose pair is not listed may meet before the next look. They may where 2 max|u| + |F - I| (R +
+/// skin), extrapolated to the next look, reaches the skin.
+/// @param largest max |u| [m]; @param fastest max |w| [m/step]; @param finite whether all displacements are finite
 template <class Drive>
 KOKKOS_INLINE_FUNCTION ListState look_at_list(RveCourse<Drive>& course, double largest, double fastest, bool finite,
                                               const RunScales& scales, int list_interval, int step) {
@@ -95,7 +97,8 @@ KOKKOS_INLINE_FUNCTION ListState look_at_list(RveCourse<Drive>& course, double l
   return 1.0 - std::sqrt(1.0 - (e < 1.0 ? e : 1.0));
 }
 
-/// Looks at overlaps come on fixed steps, whatever runs beside.
+/// Whether overlaps are looked at in this step. These steps are fixed, so that they do not depend on the RVEs in other
+/// lanes.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION bool guards(const EngineSettings& settings, int step) {
   return step % settings.guard_interval == settings.guard_interval - 1;
 }
@@ -106,7 +109,7 @@ template <class Drive>
   return plus_identity(course.f_minus_i) * reference;
 }
 
-/// @param sums of lane `l` over one measuring sweep; @param cell the current one
+/// The measurement of lane `l`. @param sums over one measuring sweep; @param cell the current one
 template <class V>
 [[nodiscard]] KOKKOS_INLINE_FUNCTION Measurement measurement_of(const SweepSums<V>& sums, std::size_t l,
                                                                 const Mat2& cell, const RunScales& scales,
@@ -127,8 +130,8 @@ template <class V>
 /// The decision of a measuring step: `ended` keeps the state, `lost` gives it up.
 enum class Outcome { running, ended, lost };
 
-/// Sets the status of a course that ends. @param reference cell at the last rebase; @param seen what the drive saw,
-/// where it looked
+/// Sets the status of a course that ends. @param reference cell at the last rebase; @param seen receives the
+/// measurement if the drive looks at this step
 template <class V, class Drive>
 KOKKOS_INLINE_FUNCTION Outcome judge(RveCourse<Drive>& course, int step, const EngineSettings& settings,
                                      const SweepSums<V>& sums, std::size_t l, const Mat2& reference,

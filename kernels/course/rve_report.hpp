@@ -18,8 +18,8 @@ KOKKOS_INLINE_FUNCTION void begin_report(const RveCourse<Drive>& course, RveRepo
   report.largest_overlap = course.overlap;
 }
 
-/// Stress, tangent and status from lane `l` of the sums. @param volume current [m^3]; @param finite all grains' motions
-/// are
+/// Sets stress, tangent and status from lane `l` of the sums. @param volume current [m^3]; @param finite whether all
+/// grains' motions are finite
 template <class V, class Drive>
 KOKKOS_INLINE_FUNCTION void fill_report(const RveCourse<Drive>& course, const Homogenised<V>& h, std::size_t l,
                                         double volume, bool finite, const RunScales& scales,

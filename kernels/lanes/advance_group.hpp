@@ -1,5 +1,6 @@
 #pragma once
-/// One group from its committed states to its trial states: restore, time loop with masked retirement, finish.
+/// Brings one group from its committed to its trial states: it is restored, goes through the time loop, in which lanes
+/// that have ended stand still, and is finished.
 
 #include "kernels/lanes/finish.hpp"
 #include "kernels/lanes/rebase.hpp"
@@ -51,7 +52,7 @@ void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums)
   }
 }
 
-/// @param requests, reports by RVE
+/// Advances the group of `members`. @param requests, reports by RVE
 template <class Run>
 void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int>(Run::width)>& members,
                    std::span<const typename Run::Drive::Request> requests, const EngineSettings& settings,

@@ -1,5 +1,5 @@
 #pragma once
-/// The engine's verbs with one RVE a SIMD lane: what a CPU runs. Called through `kernels::advance` (advance_rves.hpp).
+/// The engine of CPUs: one RVE in each SIMD lane. Call it through `kernels::advance` (advance_rves.hpp).
 
 #include <span>
 
@@ -8,11 +8,12 @@
 
 namespace voussoir::kernels::lanes {
 
-/// Given motions of some RVEs (their numbers, each once). `requests` and `reports` have batch.size() entries.
+/// Advances some RVEs by given motions: `rves` are their numbers, each at most once. `requests` and `reports` have
+/// batch.size() entries.
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports, std::span<const int> rves);
 
-/// Stress-controlled cells.
+/// Advances some RVEs under controlled stresses.
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports, std::span<const int> rves);
 

@@ -36,7 +36,7 @@ template <class Run>
   return std::isfinite(all);
 }
 
-/// Contacts at the final positions with the history that is kept, of the lanes that are `stored`.
+/// Stores the contacts at the final positions with their histories, for the lanes that are `stored`.
 template <class Run>
 void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) {
   RveStates& to = run.batch->trial;
@@ -64,7 +64,8 @@ void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) 
   }
 }
 
-/// The lane's final configuration as the RVE's trial state, but for its contacts. False where it cannot be stored.
+/// Stores the lane's final configuration as the RVE's trial state, but for its contacts. False where they have no room
+/// or the cell has become too narrow.
 template <class Run>
 [[nodiscard]] bool store(Run& run, std::size_t l, const RveReport& report) {
   const auto rve = static_cast<std::size_t>(run.lanes[l].rve);

@@ -1,6 +1,6 @@
 #pragma once
 /// Groups of RVEs, and the parallel loop over them. Only advance_lanes.cpp and tests with a law of their own include
-/// it: it is long to compile.
+/// this file, because it takes long to compile.
 
 #include <algorithm>
 #include <atomic>
@@ -14,7 +14,8 @@
 
 namespace voussoir::kernels::lanes {
 
-/// RVEs of one packing side by side, most work first, so that lanes end together and the longest group starts first.
+/// Puts RVEs of one packing side by side, most work first, so that the lanes of a group end together and the longest
+/// group starts first.
 template <int width, class Request>
 std::vector<GroupMembers<width>> form_groups(const RveBatch& batch, std::span<const Request> requests,
                                              std::span<const int> rves) {
@@ -86,7 +87,7 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
           const RegionTeller::Turn turn(teller);
           run.regions = turn.regions();
           advance_group(run, batch, groups[g], requests, settings, reports);
-        } catch (...) {  // for example no memory: an exception may leave the parallel region only by this way
+        } catch (...) {  // for example no memory; an exception may leave the parallel region only in this way
           if (!failed.test_and_set()) failure = std::current_exception();
         }
         tokens.release(token);

@@ -1,6 +1,6 @@
 #pragma once
-/// A group on its way from committed to trial states: its lanes, their lists and the working arrays. One per worker,
-/// reused.
+/// A group on its way from committed to trial states: its lanes, their lists and the working arrays. Each worker has
+/// one such object and uses it for group after group.
 
 #include <array>
 #include <vector>
@@ -35,7 +35,7 @@ struct GroupRun {
   GroupState<Law> group;
   UnionBuilder<Law> builder;
   SpringSystem<V> springs;             ///< empty unless the static tangent is asked for
-  StepSystem<V> step;                  ///< empty unless the loading one is
+  StepSystem<V> step;                  ///< empty unless the loading tangent is asked for
   std::vector<std::uint32_t> keys;     ///< scratch of a rebase
   std::vector<KeptContact<Law>> kept;  ///< scratch of a restore or rebase
   Regions regions;
@@ -47,7 +47,7 @@ template <class Run>
   return current_cell(run.lanes[l], run.lists[l].cell).det() * run.scales.thickness;
 }
 
-/// The lane stands still from here on: nothing that later steps do can change it.
+/// Makes the lane stand still; no later step can change its numbers.
 template <class Run>
 void freeze(Run& run, std::size_t l, RveStatus status) {
   run.lanes[l].running = false;
@@ -55,7 +55,7 @@ void freeze(Run& run, std::size_t l, RveStatus status) {
   for (auto& g : run.group.grains) g.w_x[l] = g.w_y[l] = g.spin[l] = 0;
 }
 
-/// The lane is given up: its numbers leave the group.
+/// Gives the lane up and removes its numbers from the group.
 template <class Run>
 void discard(Run& run, std::size_t l, RveStatus status) {
   freeze(run, l, status);
@@ -64,8 +64,8 @@ void discard(Run& run, std::size_t l, RveStatus status) {
   run.lists[l].pairs.clear();
 }
 
-/// Keeps the cell as wide as its lattice allows (a sheared cell flips back, with the same images); false when nearest
-/// images are not unique even so.
+/// Makes the cell as wide as its lattice allows: its shortest vectors replace those of a sheared cell, with the same
+/// images. False when nearest images are not unique even then.
 template <class Run>
 [[nodiscard]] bool reduce_cell(const Run& run, LaneList<typename Run::Law>& list) {
   list.cell = reduced_lattice(list.cell);
@@ -74,7 +74,7 @@ template <class Run>
   return wide_enough(cell, run.scales.largest_radius, run.scales.skin);
 }
 
-/// x = F X + u of a lane, in place.
+/// Replaces the reference positions X of a lane by its current ones, x = F X + u.
 template <class Run>
 void move_positions(const Run& run, std::size_t l, std::vector<double>& position) {
   const Mat2 f = plus_identity(run.lanes[l].f_minus_i);

@@ -1,7 +1,7 @@
 #pragma once
-/// Neighbour lists of a group. Each lane lists its own candidates when its own displacements ask for it; the group
-/// walks the union of the lists. A pair that only other lanes list is inert in a lane, so a lane's numbers never depend
-/// on its neighbours.
+/// Neighbour lists of a group. Each lane lists its own candidates anew when its own displacements require that; the
+/// group walks through the union of the lists. A pair that only other lanes list has no effect in a lane, so a lane's
+/// numbers never depend on its neighbours.
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ struct KeptContact {
   HistoryNumbers<Law, double> history;
 };
 
-/// A candidate as one lane sees it.
+/// A candidate with the numbers that one lane has for it.
 template <class Law>
 struct ListedPair {
   using real = real_of<typename Law::Value>;
@@ -41,8 +41,8 @@ struct LaneList {
   std::vector<ListedPair<Law>> pairs;
 };
 
-/// Branches and gaps in double, rounded once; histories from `kept` (ascending keys; a kept contact that is no
-/// candidate has opened by more than the skin and is dropped).
+/// Lists the pairs `keys` of a lane. Branches and gaps are computed in double and rounded once; histories come from
+/// `kept`, whose keys ascend. A kept contact that is no candidate has opened by more than the skin and is dropped.
 template <class Law>
 void list_pairs(LaneList<Law>& lane, std::span<const double> radii, std::span<const std::uint32_t> keys,
                 const std::vector<KeptContact<Law>>& kept) {
@@ -66,7 +66,7 @@ void list_pairs(LaneList<Law>& lane, std::span<const double> radii, std::span<co
   }
 }
 
-/// The lanes' pair (i, j) of a packing.
+/// The constants of pair (i, j) of a packing, for the lanes.
 template <class Law>
 PairShape<Law> shape_of(const Packing& packing, int i, int j) {
   const auto si = static_cast<std::size_t>(i), sj = static_cast<std::size_t>(j);

@@ -13,15 +13,16 @@ namespace voussoir::kernels::lanes {
 
 namespace {
 
-/// Members are tested side by side; their arrays end with as many again, so that a run may be read past its end.
+/// Several members are tested at once, one a lane. The arrays of members have as many spare entries at their end, so
+/// that a load may go past the last member.
 using Lanes = WideLane<double>;
 constexpr std::size_t at_once = static_cast<std::size_t>(lane_count<Lanes>);
 
 /// Grains of one size level (radii within a factor 2) sorted into bins of the fractional cell by counting sort. A bin
-/// is as wide as the level's largest grain plus skin, so that whoever meets a member from outside or inside the level,
-/// being no larger, finds it within one bin. A frame of bins around the cell holds images of those inside, so that all
-/// neighbours of a point are three runs of members, without a look at the period: at least two bins fit across a cell
-/// that is wide enough.
+/// is at least as wide as the level's largest grain plus the skin, so that a grain which is no larger finds all members
+/// near it in its own bin and the bins next to that. A frame of bins around the cell holds images of the members
+/// inside, so that all neighbours of a point stand in three runs of members and the search need not know that the cell
+/// is periodic. At least two bins fit across a cell that is wide enough.
 struct Level {
   int nx = 2, ny = 2;
   std::vector<int> start;            ///< of each bin of (ny + 2) rows of (nx + 2)
@@ -31,8 +32,8 @@ struct Level {
   Level(std::span<const double> positions, std::span<const double> radii, const std::vector<int>& grains,
         const Cell& cell, double largest, double skin) {
     const double width = 2.0 * largest + skin;
-    const double most = std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 2.0;  // more bins than grains would
-                                                                                         // be empty nothing
+    // More bins than grains would only add empty bins.
+    const double most = std::ceil(std::sqrt(static_cast<double>(grains.size()))) + 2.0;
     nx = static_cast<int>(std::clamp(cell.height(0) / width, 2.0, most));
     ny = static_cast<int>(std::clamp(cell.height(1) / width, 2.0, most));
     sort(images(positions, grains, cell), radii);
@@ -107,9 +108,10 @@ std::vector<std::vector<int>> sort_by_size(std::span<const double> radii, double
   return levels;
 }
 
-/// Keys of grain i with the members whose bits are set, to `to`, which has room for all: how many.
+/// Writes the keys of grain i and the members whose bits are set to `to`, which has room for all members. Returns their
+/// number.
 std::size_t append_keys(unsigned near, int i, const int* members, std::uint32_t* to) {
-#if defined(VOUSSOIR_AVX512)  // without a branch, which would be mispredicted as often as not
+#if defined(VOUSSOIR_AVX512)  // without a branch, whose prediction would be wrong half of the time
   const __m256i own = _mm256_set1_epi32(i), other = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(members));
   const __m256i key = _mm256_or_si256(_mm256_slli_epi32(_mm256_min_epi32(own, other), 16),
                                       _mm256_max_epi32(own, other));
@@ -125,7 +127,7 @@ std::size_t append_keys(unsigned near, int i, const int* members, std::uint32_t*
 #endif
 }
 
-/// A grain that looks for others.
+/// The grain whose neighbours are sought.
 struct Seeker {
   int grain;
   double x, y, reach;  ///< inside the cell; own radius plus skin [m]
@@ -151,7 +153,8 @@ void append_near(const Seeker& one, const Level& level, int first, int last, std
   }
 }
 
-/// Pairs within a level: each member inside the cell meets those after it in its bin, and the bins ahead.
+/// Appends the pairs within a level. Each member inside the cell is tested against the members after it in its bin, and
+/// against those in the bins that follow.
 void append_within(const Level& level, double skin, std::vector<std::uint32_t>& keys, std::size_t& count) {
   for (int row = 0; row < level.ny; ++row) {
     for (int column = 0; column < level.nx; ++column) {
@@ -168,7 +171,7 @@ void append_within(const Level& level, double skin, std::vector<std::uint32_t>& 
   }
 }
 
-/// Pairs of a level's members with a coarser level's.
+/// Appends the pairs of a level's members with the members of a coarser level.
 void append_between(const Level& level, const Level& coarser, const Cell& cell, double skin,
                     std::vector<std::uint32_t>& keys, std::size_t& count) {
   for (int r = 0; r < level.ny; ++r) {
@@ -184,7 +187,8 @@ void append_between(const Level& level, const Level& coarser, const Cell& cell, 
   }
 }
 
-/// Ascending order by two steps: by first grain (counting sort), and the few of a grain by insertion.
+/// Sorts keys in ascending order in two steps: all keys by their first grain (counting sort), then the few keys of one
+/// grain by insertion.
 void sort_keys(std::vector<std::uint32_t>& keys, std::size_t grains) {
   std::vector<std::uint32_t> sorted(keys.size());
   std::vector<std::size_t> next(grains + 1, 0);

@@ -1,5 +1,6 @@
 #pragma once
-/// Keeping neighbour lists valid while the lanes move: each lane by its own displacements, on its own steps.
+/// Keeps neighbour lists valid while grains move. Each lane renews its list by its own displacements, at steps of its
+/// own.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,7 @@
 
 namespace voussoir::kernels::lanes {
 
-/// Largest displacement and velocity of a group's grains, lane by lane.
+/// The largest displacement and velocity of a group's grains, for each lane.
 template <class V>
 struct Motion {
   V largest = V(0), fastest = V(0);  ///< squared [m^2], [m^2/step^2]
@@ -27,7 +28,7 @@ template <class Law, class V = typename Law::Value>
   return m;
 }
 
-/// The lane's current configuration becomes its reference; histories are kept.
+/// Makes the lane's current configuration its reference; histories are kept.
 template <class Run>
 void rebase(Run& run, std::size_t l) {
   auto& list = run.lists[l];
@@ -48,7 +49,7 @@ void rebase(Run& run, std::size_t l) {
   list_pairs(list, run.packing->radii, run.keys, run.kept);
 }
 
-/// Lists of the stale lanes anew, and the union of all.
+/// Renews the lists of the stale lanes, and the union of all lists.
 template <class Run>
 VOUSSOIR_OWN_SYMBOL void rebuild(Run& run, const std::array<bool, Run::width>& stale) {
   for (std::size_t l = 0; l < Run::width; ++l) {
@@ -60,7 +61,8 @@ VOUSSOIR_OWN_SYMBOL void rebuild(Run& run, const std::array<bool, Run::width>& s
   run.builder.build(run.group, run.lists, *run.packing);
 }
 
-/// Whether the lane's list is to be renewed. A lane that is lost is discarded, before any binning.
+/// Whether the lane's list is to be renewed. A lane that is lost is discarded here, before its grains would be sorted
+/// into bins.
 template <class Run>
 [[nodiscard]] bool is_stale(Run& run, std::size_t l, const Motion<typename Run::Value>& m, int step) {
   const double largest = std::sqrt(static_cast<double>(m.largest[l]));

@@ -8,8 +8,8 @@
 
 namespace voussoir::kernels::lanes {
 
-/// Contacts of lane `l`; its cell and its grains must be at the same step. Normal forces
-/// only, since tangential forces are not known before the sweep.
+/// The contacts of lane `l`, whose cell and grains must be at the same step. They have normal forces only, since
+/// tangential forces are not known before the sweep.
 template <class Run>
 [[nodiscard]] std::vector<NetworkContact> network_of(const Run& run, std::size_t l) {
   using Law = typename Run::Law;
@@ -36,8 +36,9 @@ template <class Run>
   return out;
 }
 
-/// Hands the drives that record at this step their lane's microstructure; rotations count from the request's start. To
-/// be called where cell and grains are at the same step, before the sweep. Compiled out for drives that never record.
+/// Gives each drive that records at this step the microstructure of its lane; rotations count from the request's start.
+/// To be called before the sweep, where cell and grains are at the same step. Compiled out for drives that never
+/// record.
 template <class Run>
 void record_microstructures(Run& run, int step) {
   if constexpr (Run::Drive::can_record) {

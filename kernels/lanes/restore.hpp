@@ -1,5 +1,5 @@
 #pragma once
-/// Committed states into a group's lanes.
+/// Brings committed states into the lanes of a group.
 
 #include <numeric>
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace voussoir::kernels::lanes {
 
-/// The committed state of the lane's RVE as the lane's reference. False, with the reason as status, for a lane that
-/// cannot run; it stays empty.
+/// Makes the committed state of the lane's RVE the lane's reference. False, with the reason as status, for a lane that
+/// cannot run, which then stays empty.
 template <class Run>
 [[nodiscard]] bool restore_lane(Run& run, std::size_t l) {
   auto& lane = run.lanes[l];
@@ -44,7 +44,7 @@ template <class Run>
   return true;
 }
 
-/// The grains' constants and zero motion, for all lanes.
+/// Sets the grains' constants, and their motions to zero, for all lanes.
 template <class Run>
 void restore_grains(Run& run) {
   using V = typename Run::Value;

@@ -1,9 +1,9 @@
 #pragma once
 /// One step of all grains of a group: contacts, law, forces, integration; kernels/README.md, "One step".
 ///
-/// A half list sorted by i < j: grain i gathers its force in registers, and is integrated right after its last pair,
-/// since every pair (h, i) with h < i stands in an earlier row. The loop contains no wrap into the cell, no square root
-/// and no division.
+/// The list holds every pair once, with i < j, and is sorted. Grain i gathers its force in registers and is integrated
+/// right after its last pair, since every pair (h, i) with h < i stands in an earlier row. The loop contains no wrap
+/// into the cell, no square root and no division.
 
 #include <cstddef>
 
@@ -23,7 +23,7 @@ KOKKOS_FORCEINLINE_FUNCTION void fetch_ahead([[maybe_unused]] const GrainLanes<V
 #endif
 }
 
-/// One step of the whole group. Sums are filled for `Sweep::measure` only.
+/// Advances the whole group by one step. Sums are filled for `Sweep::measure` only.
 template <Sweep mode, class Law, class V>
 VOUSSOIR_OWN_SYMBOL void sweep_pairs(GroupState<Law>& group, SweepSums<V>& sums) {
   using real = real_of<V>;

@@ -9,7 +9,7 @@
 namespace voussoir::kernels::lanes {
 
 /// Whether a static tangent `d` [Pa] is at most as stiff as the contact tangent. In exact arithmetic every static
-/// tangent is; one that is stiffer shows that rounding has spoilt the iterations. False for NaN. The slack covers the
+/// tangent is softer; a stiffer one shows that rounding has spoilt the iterations. False for NaN. The slack covers the
 /// factor y (kernels/README.md, "Static tangent").
 [[nodiscard]] inline bool is_softer(const double* d, const double* contact) {
   constexpr double slack = 1.05;
@@ -33,7 +33,8 @@ template <class V>
   return found;
 }
 
-/// Lane l of a loading tangent, with the stress's change by that of the volume. @param stress xx xy yx yy [Pa]
+/// Lane l of a loading tangent, with the change of stress that the change of volume makes. @param stress xx xy yx yy
+/// [Pa]
 template <class V>
 [[nodiscard]] FoundTangent found_in(const LoadingTangent<V>& result, const double* stress, std::size_t l, double v) {
   const double carried[3] = {stress[0], stress[3], 0.5 * (stress[1] + stress[2])};

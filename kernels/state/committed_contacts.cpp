@@ -9,7 +9,8 @@ namespace voussoir::kernels {
 
 namespace {
 
-/// One law call without motion: histories are within their caps, as an evaluation left them.
+/// Sets the forces of a contact by one call of the law without motion. The history is within its caps, as the
+/// evaluation left it.
 /// @param numbers of the contact's history; @param length |b| [m]
 void add_forces(const Packing& packing, const double* numbers, CommittedContact& contact, double length) {
   using Law = PlainEngineLaw;

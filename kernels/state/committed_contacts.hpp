@@ -20,7 +20,7 @@ struct CommittedContact {
   [[nodiscard]] double force_y() const { return -normal_force * normal_y + tangential_force * normal_x; }  ///< on i [N]
 };
 
-/// Stored contacts of `rve`, in their order, into `out`.
+/// Writes the stored contacts of `rve` to `out`, in their order.
 void committed_contacts(const RveBatch& batch, std::size_t rve, std::vector<CommittedContact>& out);
 
 }  // namespace voussoir::kernels

@@ -47,7 +47,7 @@ void describe_committed(const RveBatch& batch, const MicrostructureRequest& want
           Scratch scratch;
           const std::size_t last = std::min(batch.size(), (block + 1) * share);
           for (std::size_t k = block * share; k < last; ++k) out[k] = describe(batch, k, wanted, scratch);
-        } catch (...) {  // no memory, say
+        } catch (...) {  // for example where memory runs out
           if (!failed.test_and_set()) failure = std::current_exception();
         }
       });

@@ -8,8 +8,8 @@
 
 namespace voussoir::kernels {
 
-/// Committed states of a batch, RVEs side by side; normal forces are the contact law's. `out` has batch.size() entries.
-/// Cost: README.md, "Microstructure".
+/// Describes the contact network of every committed state of a batch, with the normal forces that the contact law
+/// gives. `out` has batch.size() entries. kernels/README.md, "Microstructure", has the cost.
 void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<Microstructure> out);
 
 }  // namespace voussoir::kernels

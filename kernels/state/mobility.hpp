@@ -20,7 +20,8 @@ struct Mobility {
   double rotation;     ///< dt^2/J [rad/(N m)]
 };
 
-/// @param largest_radius of the packing [m]; @param overlap_limit over r_i + r_j, at which an RVE is given up
+/// The mobilities of a grain. @param largest_radius of the packing [m]; @param overlap_limit overlap/(r_i + r_j) at
+/// which an RVE is given up
 template <class Law>
 [[nodiscard]] Mobility mobility_of(const GrainMaterial& material, double radius, double largest_radius,
                                    double overlap_limit) {
@@ -39,7 +40,7 @@ template <class Law>
   return sum / static_cast<double>(packing.radii.size());
 }
 
-/// Mean normal stiffness of a packing's grains against their likes at the overlap limit [N/m].
+/// Mean normal stiffness of a packing's grains, each against an equal one, at the overlap limit [N/m].
 template <class Law>
 [[nodiscard]] double mean_stiffness(const Packing& packing, double overlap_limit) {
   double sum = 0;

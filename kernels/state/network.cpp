@@ -11,7 +11,7 @@ namespace {
 
 /// Eq. (22): a = 2 |<exp(2 i theta)>| and theta_a half its argument, every contact weighted alike.
 void describe_fabric(std::span<const NetworkContact> contacts, Microstructure& out) {
-  double cosine = 0, sine = 0;  // of twice the angle of the normal
+  double cosine = 0, sine = 0;  // sums over twice the angle of the normal
   for (const NetworkContact& c : contacts) {
     cosine += c.normal_x * c.normal_x - c.normal_y * c.normal_y;
     sine += 2.0 * c.normal_x * c.normal_y;
@@ -22,8 +22,8 @@ void describe_fabric(std::span<const NetworkContact> contacts, Microstructure& o
   out.fabric_direction = direction <= -0.5 * std::numbers::pi ? 0.5 * std::numbers::pi : direction;
 }
 
-/// Eq. (23), (2 N_c - N_1)/(N_p - N_0 - N_1), of the contacts that carry at least `least` [N]: N_p - N_0 - N_1 are the
-/// grains with two of them or more, whether N_p counts all grains or those involved.
+/// Eq. (23), (2 N_c - N_1)/(N_p - N_0 - N_1), of the contacts that carry at least `least` [N]. N_p - N_0 - N_1 is the
+/// number of grains with at least two such contacts, whether N_p counts all grains or only those that have one.
 double mechanical_coordination(std::span<const NetworkContact> contacts, double least, std::vector<int>& contacts_of) {
   std::fill(contacts_of.begin(), contacts_of.end(), 0);
   int total = 0;

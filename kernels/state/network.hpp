@@ -1,6 +1,6 @@
 #pragma once
-/// The contact network of an RVE: fabric and connectivity (method.md, eqs. 22 and 23). Each quantity is computed only
-/// where it was asked for.
+/// The contact network of an RVE: fabric and connectivity (eqs. 22 and 23). Each quantity is computed only where it was
+/// asked for.
 
 #include <array>
 #include <span>
@@ -11,7 +11,7 @@ namespace voussoir::kernels {
 /// The numbers of a contact that the network needs.
 struct NetworkContact {
   int i, j;                   ///< grains
-  double normal_x, normal_y;  ///< unit vector along the branch; its sense does not matter
+  double normal_x, normal_y;  ///< unit vector along the branch; its sign does not matter
   double normal_force;        ///< f_n >= 0 [N]
 };
 
@@ -36,8 +36,8 @@ struct Microstructure {
   std::array<double, strong_thresholds.size()> strong_coordination{};  ///< Z_m of the strong networks
 };
 
-/// The quantities of `wanted` that follow from the contacts (and `coordination`) of a packing of `grains` grains into
-/// `out`.
+/// Writes to `out` the coordination, and those quantities of `wanted` that follow from the contacts, of a packing of
+/// `grains` grains.
 void describe_network(std::span<const NetworkContact> contacts, int grains, const MicrostructureRequest& wanted,
                       Microstructure& out);
 

@@ -22,7 +22,8 @@ enum class TangentKind { contact, elastic, static_, loading };
 /// bits more slowly). `automatic`: teams where Kokkos' default execution space is a device of its own.
 enum class Backend { automatic, lanes, teams };
 
-/// Numerical settings of a run. The case file's [engine] table sets them for a mesh; packings are made with these.
+/// Numerical settings of a run. The case file's [engine] table sets them for a mesh; packings are made with the
+/// defaults.
 struct EngineSettings {
   Precision precision = Precision::float32;
   double skin = 0.08;             ///< list skin / mean diameter [-]
@@ -33,15 +34,17 @@ struct EngineSettings {
   int list_interval = 8;          ///< steps between looks at displacements
   int guard_interval = 256;       ///< steps between looks at overlaps while straining
   Backend backend = Backend::automatic;
-  int team_size = 0;  ///< threads of a team; 0: Kokkos chooses, one on CPUs, where several starve on shared cores
+  int team_size = 0;  ///< threads of a team; with 0 Kokkos chooses: on CPUs one, since several threads would wait for
+                      ///< one another on shared cores
   TangentKind tangent = TangentKind::contact;
   double tangent_tolerance = 2e-3;  ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
-  int tangent_iterations = 800;     ///< limit
-  double tangent_strain = 1e-6;     ///< strain whose secant a loading tangent is; negative: against the last
+  int tangent_iterations = 800;     ///< most iterations of a static tangent
+  double tangent_strain = 1e-6;     ///< strain over which a loading tangent is the secant; negative: against the last
                                     ///< motion [-]
 };
 
-/// Given motion of one RVE: F_rel reached in `strain_steps` equal steps, then at most `hold_cap` steps of rest.
+/// The motion that is given to one RVE: it reaches F_rel in `strain_steps` equal steps, then rests for at most
+/// `hold_cap` steps.
 struct StrainRequest {
   Mat2 f_rel = identity2;
   int strain_steps = 0;
@@ -68,11 +71,11 @@ struct ServoRequest {
   ServoAxis x, y;
   double max_rate = 1e-5;          ///< largest |strain| per step [-]
   double stress_tolerance = 1e-3;  ///< |sigma - target| / max(|target|, floor) that counts as reached [-]
-  int max_steps = 100000;          ///< ends as step_limit
+  int max_steps = 100000;          ///< the request then ends as step_limit
   int settle_steps = 200;          ///< steps that stress and unbalanced ratio must stay within tolerance
   double end_strain_y = std::numeric_limits<double>::infinity();  ///< |strain_y| at which the request is done [-]
-  std::vector<ServoSample>* trace = nullptr;                      ///< the caller's, one per RVE; samples are appended
-  int trace_interval = 100;                                       ///< steps between samples
+  std::vector<ServoSample>* trace = nullptr;  ///< owned by the caller, one per RVE; samples are appended
+  int trace_interval = 100;                   ///< steps between samples
   MicrostructureRequest microstructure = {};  ///< of the samples; nothing is computed unless asked for
 };
 
@@ -83,7 +86,7 @@ struct ServoRequest {
 /// The work of one call of the engine.
 struct Work {
   std::size_t particle_steps = 0;  ///< executed steps x grains, of the RVEs that ran
-  std::size_t lane_steps = 0;  ///< as particle_steps, but lanes count that were empty or had ended: the hardware's work
+  std::size_t lane_steps = 0;  ///< as particle_steps, with the lanes that were empty or had ended: the hardware's work
 
   Work& operator+=(const Work& other) {
     particle_steps += other.particle_steps;

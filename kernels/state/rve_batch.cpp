@@ -13,7 +13,8 @@
 namespace voussoir::kernels {
 
 namespace {
-/// A contact graph of discs is planar on the torus: at most 3 contacts per grain. One more leaves room for overlaps.
+/// The contacts of discs form a planar graph on the torus, which has at most 3 contacts per grain. One more leaves room
+/// for overlaps.
 constexpr int contacts_per_grain = 4;
 }  // namespace
 
@@ -111,7 +112,7 @@ RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of, 
     grains = std::max(grains, p.size());
   }
   for (const int p : packing_of) {
-    if (p < 0 || p >= static_cast<int>(packings.size())) throw std::invalid_argument("an RVE names no packing");
+    if (p < 0 || p >= static_cast<int>(packings.size())) throw std::invalid_argument("an RVE has no packing");
   }
   RveBatch batch;
   batch.packings = std::move(packings);

@@ -1,9 +1,10 @@
 #pragma once
 /// All RVEs of a run: their packings, their committed states, and the trial states that the last evaluation left. This
-/// file holds data; the engine's verbs are in advance_rves.hpp.
+/// file holds data; the functions that advance them are in advance_rves.hpp.
 ///
-/// Layout (RVE, grain, component), LayoutRight: one thread walks one group, one RVE is contiguous. State is double,
-/// whatever the lanes compute in, and complete: neighbour lists derive from it.
+/// The layout is (RVE, grain, component), LayoutRight, so that the numbers of one RVE are contiguous for the thread
+/// that advances it. The state is in double, whatever precision the lanes compute in, and it is complete: neighbour
+/// lists follow from it.
 
 #include <Kokkos_Core.hpp>
 #include <cmath>
@@ -34,12 +35,13 @@ struct Packing {
   [[nodiscard]] double largest_radius() const;
   [[nodiscard]] double solid_area() const;  ///< sum of pi r^2 [m^2]
 
-  /// As below, of the mean mobility that the engine's law gives the packing under the default overlap limit.
+  /// The function inertial_time below, with the mean mobility that the engine's law gives this packing at the default
+  /// overlap limit.
   [[nodiscard]] double inertial_time(double pressure) const;
 };
 
-/// Inertial number per strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| * inertial_time(p) for
-/// |D| in strain per step. @param mean_mobility [m/N]; @param thickness [m]; @param pressure [Pa]
+/// The inertial number divided by the strain rate, sqrt(m / (p t)) with the mean scaled mass [steps]: I = |D| *
+/// inertial_time(p) for |D| in strain per step. @param mean_mobility [m/N]; @param thickness [m]; @param pressure [Pa]
 [[nodiscard]] KOKKOS_INLINE_FUNCTION double inertial_time(double mean_mobility, double thickness, double pressure) {
   return 1.0 / std::sqrt(mean_mobility * pressure * thickness);
 }
@@ -76,9 +78,9 @@ struct RveStates {
   return static_cast<int>(key & 0xffffU);
 }
 
-inline constexpr int max_grains = 65535;  ///< indices of a pair fit one word
+inline constexpr int max_grains = 65535;  ///< the two indices of a pair fit one word
 
-/// The end of an evaluation of one RVE. The last three make the increment unusable; `open` and `step_limit` are
+/// How the evaluation of one RVE ended. The last three make the increment unusable; `open` and `step_limit` are
 /// reported. `neighbour_overflow` also stands for a cell too narrow for its largest grains.
 enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, overlap_limit, not_finite };
 
@@ -86,7 +88,7 @@ enum class RveStatus : int { converged, step_limit, open, neighbour_overflow, ov
   return s >= RveStatus::neighbour_overflow;
 }
 [[nodiscard]] const char* name_of(RveStatus s);
-[[nodiscard]] const char* name_of(TangentKind kind);  ///< as a case file has it
+[[nodiscard]] const char* name_of(TangentKind kind);  ///< as a case file writes it
 
 /// Answer of one RVE.
 struct RveReport {
@@ -98,8 +100,8 @@ struct RveReport {
   double tangent_skew[3] = {};  ///< of a loading tangent, (D_ab - D_ba)/2 of xxyy xxxy yyxy [Pa]
   TangentKind tangent_kind = TangentKind::contact;
   int tangent_iterations = 0;   ///< of a static tangent
-  bool tangent_capped = false;  ///< the iterations reached their limit: the tangent is too stiff, less so than eq. (4);
-                                ///< of `loading`: `elastic` instead
+  bool tangent_capped = false;  ///< the iterations reached their limit, so the tangent is too stiff, but less than eq.
+                                ///< (4); of `loading`: the elastic tangent stands here
   double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
   double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
   double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]
@@ -108,7 +110,8 @@ struct RveReport {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double pressure() const { return -0.5 * (stress[0] + stress[3]); }
 };
 
-/// Candidate contacts of a committed state, kept between evaluations; derived, never stored.
+/// Candidate contacts of a committed state, kept between evaluations. They follow from the state, so no file stores
+/// them.
 struct CandidateCache {
   std::vector<std::vector<std::uint32_t>> keys;
   std::vector<double> skin;  ///< the skin they were found with [m]; negative: none
@@ -127,18 +130,18 @@ struct RveBatch {
   }
 };
 
-/// One RVE's state from one set of states to another of the same shape.
+/// Copies one RVE's state from one set of states to another of the same shape.
 void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size_t grains);
 
-/// Room for RVEs of the given packings; states are to be filled by the caller.
+/// A batch with room for RVEs of the given packings; the caller fills the states.
 /// @param history numbers that a contact of the law remembers
 [[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of,
                                   int history = history_size<PlainEngineLaw>);
 
-/// The trial states become the committed ones; an RVE whose evaluation failed keeps its committed state.
+/// Makes the trial states the committed ones; an RVE whose evaluation failed keeps its committed state.
 void commit(RveBatch& batch);
 
-/// Whether any grain resists rolling; where none does, that part of the law is compiled out.
+/// Whether any grain resists rolling; where none does, an engine runs from which that part of the law is compiled out.
 [[nodiscard]] bool rolls(const RveBatch& batch);
 
 /// To be called after `committed` was written from outside.

@@ -2,9 +2,10 @@
 /// The contacts of a group at rest as springs, whose stiffnesses are the law's, and the forces of these springs when
 /// grains move.
 ///
-/// One symmetric operator per contact: k_n, k_t / y and k_r on the changes of length of kernels/README.md "One step",
-/// 3. The force is the engine's own; its torque arms r - delta/2 are taken as r/y, and the rotation of the forces
-/// already carried is left out (both of the order of overlap / diameter).
+/// Each contact is one symmetric operator: the stiffnesses k_n, k_t / y and k_r act on the changes of length of
+/// kernels/README.md, "One step", 3. The forces are the engine's own but for two differences of the order of overlap /
+/// diameter: the torque arms are r/y instead of r - delta/2, and the rotation of the forces already carried is left
+/// out.
 
 #include <array>
 #include <vector>
@@ -16,7 +17,7 @@ namespace voussoir::kernels {
 
 inline constexpr int unit_strains = 3;  ///< xx, yy, gamma_xy
 
-/// Motion of a grain under one unit strain, or a force and torque in the same places.
+/// The motion of a grain under one unit strain, or its force and torque in the same places.
 template <class V>
 struct GrainDofs {
   V x, y, spin;
@@ -30,7 +31,7 @@ struct SpringLanes {
   V normal, tangential, rolling;  ///< k_n, k_t / y [N/m], k_r [N m/rad]
 };
 
-/// A contact, the same in all lanes.
+/// The numbers of a contact that are the same in all lanes.
 template <class real>
 struct SpringShape {
   int other;
@@ -52,7 +53,8 @@ struct SolverGrain {
   GrainDofs<V> inverse_diagonal;  ///< of K; 0 where the grain has no stiffness
 };
 
-/// K of a group, matrix-free. Reused from group to group.
+/// The stiffness K of a group as its springs; the matrix itself is never formed. The arrays are reused from group to
+/// group.
 template <class V>
 struct SpringSystem {
   std::vector<int> row;  ///< springs of grain i: row[i] .. row[i + 1]
@@ -63,7 +65,7 @@ struct SpringSystem {
   std::vector<SolverGrain<V>> grains;
 };
 
-/// Displacement of a branch's far end under unit strain `a`.
+/// Adds to (dx, dy) the displacement of a branch's far end under unit strain `a`.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION void add_unit_strain(int a, const SpringLanes<V>& s, V& dx, V& dy) {
   const V bx = s.branch * s.normal_x, by = s.branch * s.normal_y;
@@ -80,10 +82,10 @@ KOKKOS_FORCEINLINE_FUNCTION void add_unit_strain(int a, const SpringLanes<V>& s,
 template <class V>
 struct SpringStrain {
   V normal, sliding, rolling;
-  V across;  ///< displacement of the far end along t: over |b|, the contact's turn
+  V across;  ///< displacement of the far end along t; over |b| it is the contact's rotation
 };
 
-/// @param dx, dy displacement of grain j against i
+/// The changes of length of a contact's springs. @param dx, dy displacement of grain j against i
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION SpringStrain<V> spring_strain(const SpringLanes<V>& s, const V& dx, const V& dy,
                                                           const V& radius_i, const V& spin_i, const V& radius_j,
@@ -119,7 +121,7 @@ KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull(const SpringLanes<V>& s, const Spr
 /// Share of its cap at which a spring counts as yielded; above 1, no spring does.
 [[nodiscard]] inline double elastic_share(TangentKind kind) { return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0; }
 
-/// The springs of every pair that touches in some lane.
+/// Collects the springs of every pair that touches in at least one lane.
 template <class Law, class V>
 void collect_springs(const GroupState<Law>& group, TangentKind kind, SpringSystem<V>& system) {
   using real = real_of<V>;
@@ -178,7 +180,7 @@ void for_each_spring(SpringSystem<V>& system, const Body& body) {
   }
 }
 
-/// Residuals under the unit strains, the inverse diagonal, and the energies (twice) of the affine motion.
+/// Computes the residuals under the unit strains, the inverse diagonal, and twice the energies of the affine motion.
 template <class V>
 void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
   const V zero(0);
@@ -200,9 +202,9 @@ void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
   }
 }
 
-/// Adds the contacts' forces on grain i under the motions(i) to forces(i); both are StrainDofs of all grains.
-/// act(c, a, strain, radius_i, radius_j, on_i, on_j) is contact c under motion a. Rows gather grain i's part in
-/// registers.
+/// Adds to forces(i) the forces of the contacts on grain i when all grains j move by motions(j); both return StrainDofs
+/// of a grain. act(c, a, strain, radius_i, radius_j, on_i, on_j) adds the forces of contact c under motion a. The part
+/// of grain i is summed in registers while its row is walked.
 template <class V, class Motions, class Forces, class Act>
 void respond(const SpringSystem<V>& system, const Motions& motions, const Forces& forces, const Act& act) {
   for (std::size_t i = 0; i + 1 < system.row.size(); ++i) {
@@ -224,7 +226,7 @@ void respond(const SpringSystem<V>& system, const Motions& motions, const Forces
   }
 }
 
-/// The springs as `respond` takes them.
+/// The action of the springs, for `respond`.
 template <class V>
 struct SpringsAct {
   const SpringSystem<V>& system;
@@ -253,7 +255,7 @@ VOUSSOIR_LANES_INLINE SpringStrain<V> strain_of(const SpringLanes<V>& s, std::si
   return spring_strain(s, dx, dy, ri, gi.motion[a].spin, rj, gj.motion[a].spin);
 }
 
-/// Twice the mixed energies of the three motions.
+/// Adds twice the mixed energies of the three motions to the upper triangle `tangent`.
 template <class V>
 void add_energies(SpringSystem<V>& system, V* tangent) {
   for_each_spring(

@@ -2,9 +2,10 @@
 /// A small step of strain on the contacts at rest, with the law's caps: the changes of the forces and the slopes of
 /// these changes.
 ///
-/// The geometry is linear, the law is not: a contact whose spring would pass its cap follows mu f_n (or arm f_n)
-/// instead, an opening one loses its forces (the law's `step`). Forces that are carried already turn with their
-/// contacts. All motions and forces are per strain of the step, so that they have the size of static_tangent.hpp's.
+/// The geometry is linear, the law (its function `step`) is not: a force that would pass its cap follows the cap
+/// instead, mu f_n or arm f_n, and a contact that opens loses its forces. The forces that a contact carries already
+/// turn with it. All motions and forces are divided by the strain of the step, so that they have the size of those in
+/// static_tangent.hpp.
 
 #include "kernels/tangents/contact_springs.hpp"
 
@@ -23,7 +24,7 @@ struct StepSpring {
   std::array<StepSlope<V>, unit_strains> slope;  ///< at the last take_step
 };
 
-/// Working arrays of one grain in the biconjugate gradients, beside those of SolverGrain.
+/// Working arrays of one grain in the biconjugate gradients, in addition to those of SolverGrain.
 template <class V>
 struct StepGrain {
   StrainDofs<V> shadow, half, half_image;
@@ -38,7 +39,8 @@ struct StepSystem {
   std::vector<StepGrain<V>> grains;
 };
 
-/// Change of sum P (x) b by unit strain: xx, yy, xy (symmetrised) [N m]; the volume's change is not in it.
+/// Change of sum P (x) b by unit strain: xx, yy, xy (symmetrised) [N m]. It leaves out the part that comes from the
+/// change of volume.
 template <class V>
 using StressChange = std::array<std::array<V, 3>, unit_strains>;
 
@@ -48,7 +50,7 @@ VOUSSOIR_LANES_INLINE SpringForce<V> force_of(const StepSlope<V>& k, const Sprin
           fused(k.moment, e.rolling, -(k.moment_by_closing * e.normal))};
 }
 
-/// As `pull`, with the carried force turned. Returns the change of the force on i.
+/// Does what `pull` does, and turns the carried force with the contact. Returns the change of the force on i.
 template <class V>
 VOUSSOIR_LANES_INLINE GrainDofs<V> pull_and_turn(const SpringLanes<V>& s, const StepSpring<V>& carried,
                                                  const SpringForce<V>& f, const V& across, const V& radius_i,
@@ -69,7 +71,7 @@ VOUSSOIR_LANES_INLINE V carried_tangential(const Law& law, const V& overlap, con
   return law({overlap, overlap * ratio, V(0), V(0)}, history).tangential;
 }
 
-/// The contacts' carried forces and the arrays' sizes. After collect_springs.
+/// Sets the sizes of the arrays and the forces that contacts carry; to be called after collect_springs.
 template <class Law, class V>
 void prepare_step(const GroupState<Law>& group, const SpringSystem<V>& system, StepSystem<V>& step) {
   step.springs.resize(system.springs.size());
@@ -86,7 +88,8 @@ void prepare_step(const GroupState<Law>& group, const SpringSystem<V>& system, S
   }
 }
 
-/// The law's answer for contact c under strain `e` of column `a`, per strain of the step; its slopes are kept.
+/// The law's forces for contact c under strain `e` of column `a`, divided by the strain of the step. Their slopes are
+/// kept in `step`.
 template <class Law, class V>
 VOUSSOIR_LANES_INLINE SpringForce<V> answer(const GroupState<Law>& group, const SpringSystem<V>& system,
                                             StepSystem<V>& step, std::size_t c, std::size_t a,
@@ -104,8 +107,8 @@ VOUSSOIR_LANES_INLINE SpringForce<V> answer(const GroupState<Law>& group, const 
   return {-(fn * over_size), now.tangential.change * over_ratio * over_size, now.moment.change * over_size};
 }
 
-/// Adds a contact's part of the change of the stress. @param force change of that on i; @param dx, dy of the
-/// far end
+/// Adds a contact's part of the change of the stress. @param force change of the force on i; @param dx, dy displacement
+/// of the branch's far end
 template <class V>
 VOUSSOIR_LANES_INLINE void add_change(const SpringLanes<V>& s, const StepSpring<V>& carried, const GrainDofs<V>& force,
                                       const V& dx, const V& dy, std::array<V, 3>& sum) {
@@ -116,7 +119,8 @@ VOUSSOIR_LANES_INLINE void add_change(const SpringLanes<V>& s, const StepSpring<
   sum[2] = fused(half, fused(force.x, by, fused(force.y, bx, fused(px, dy, py * dx))), sum[2]);
 }
 
-/// Residual forces on the grains at their present motions, the contacts' slopes there, and the change of the stress.
+/// Computes the residual forces on the grains at their present motions, the slopes of the contacts at these motions,
+/// and the change of the stress.
 template <class Law, class V>
 void take_step(const GroupState<Law>& group, SpringSystem<V>& system, StepSystem<V>& step, StressChange<V>& change) {
   const V zero(0);
@@ -135,7 +139,7 @@ void take_step(const GroupState<Law>& group, SpringSystem<V>& system, StepSystem
   });
 }
 
-/// The contacts' slopes at the last take_step, as `respond` takes them.
+/// The action of the contacts by their slopes at the last take_step, for `respond`.
 template <class V>
 struct SlopesAct {
   const SpringSystem<V>& system;

@@ -1,16 +1,17 @@
 #pragma once
-/// Loading tangent of all lanes at rest: column a is the change of stress under a small strain in direction a over its
-/// size, with the contacts that stick and those that reach their caps on the way told apart column by column.
+/// The loading tangent of all lanes at rest. Column a is the change of stress under a small strain in direction a, over
+/// the size of that strain. Each column has contacts of its own that stick and that reach their caps on the way.
 ///
-/// The direction's sign is that of the last motion, so it is the secant of going on (loading_step.hpp has the step's
-/// physics). Newton on the step's residual, whose slopes are piecewise constant: the contacts at their caps are those
-/// of the last residual. Its systems are nonsymmetric (f_t = +- mu f_n has no potential) and solved by biconjugate
-/// gradients, stabilised (van der Vorst 1992), with the elastic diagonal as preconditioner, to a tenth each. It starts
-/// from the elastic tangent's motions.
+/// The sign of the strain is that of the last motion, so that a column is the secant of a motion that goes on
+/// (loading_step.hpp has the physics of the step). Newton's method finds the grains' motions. It starts from those of
+/// the elastic tangent; the slopes of its residual are piecewise constant, because each round takes the contacts to be
+/// at their caps that were so at the last residual. The linear systems are nonsymmetric, since f_t = +- mu f_n has no
+/// potential. Stabilised biconjugate gradients (van der Vorst 1992) with the elastic diagonal as preconditioner reduce
+/// the residual of each system to a tenth.
 ///
-/// A packing may have no equilibrium within the step (a limit state), and contacts may alternate for ever: a lane with
-/// a column that has not converged at the limit of iterations, or whose residual grows, keeps its elastic tangent and
-/// says so.
+/// A packing may have no equilibrium within the step (a limit state), and contacts may alternate for ever between two
+/// states. So a lane keeps its elastic tangent, and its report says so, where one of its columns has not converged at
+/// the limit of iterations or its residual grows.
 
 #include "kernels/tangents/loading_step.hpp"
 #include "kernels/tangents/static_tangent.hpp"
@@ -44,7 +45,7 @@ template <class V>
   return {V(0), V(0), V(0)};
 }
 
-/// x where the column runs and x is a number other than 0, else 0, which freezes the column.
+/// x where the column is running and x is finite and not 0. Elsewhere the value is 0 and the column is frozen.
 template <class V>
 VOUSSOIR_LANES_INLINE V usable(const V& x, V& running) {
   const V zero(0), magnitude = Kokkos::abs(x);
@@ -53,7 +54,7 @@ VOUSSOIR_LANES_INLINE V usable(const V& x, V& running) {
   return Kokkos::Experimental::condition(fine, x, zero);
 }
 
-/// Where a round starts: shadow = preconditioned residual, no direction yet.
+/// Starts a round: the shadow is the preconditioned residual, and there is no direction yet.
 template <class V>
 void begin_round(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<V>& solver) {
   const V zero(0), one(1);
@@ -68,8 +69,8 @@ void begin_round(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<V>& s
   solver.rho = solver.alpha = solver.omega = {one, one, one};
 }
 
-/// direction = preconditioned residual + beta (direction + omega preconditioned image); clears the images. Images are
-/// those of the contacts' forces, which are minus the matrix.
+/// direction = preconditioned residual + beta (direction + omega preconditioned image); clears the images. An image
+/// holds the forces of the contacts, so it is minus the matrix times the direction.
 template <class V>
 void turn_step_directions(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<V>& solver) {
   const V zero(0);
@@ -95,7 +96,7 @@ void turn_step_directions(SpringSystem<V>& system, StepSystem<V>& step, Biconjug
   }
 }
 
-/// The first half of an iteration: along the direction, down to a residual orthogonal to the shadow.
+/// The first half of an iteration: it goes along the direction until the residual is orthogonal to the shadow.
 template <class V>
 void take_first_half(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<V>& solver) {
   const V zero(0);
@@ -121,7 +122,8 @@ void take_first_half(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<V
   }
 }
 
-/// The second half: along the preconditioned residual, down to the least residual. Moves the grains by both.
+/// The second half: it goes along the preconditioned residual until the residual is least, and moves the grains by both
+/// halves.
 template <class V>
 void take_second_half(SpringSystem<V>& system, StepSystem<V>& step, Biconjugate<V>& solver) {
   respond(
@@ -177,7 +179,7 @@ template <class V>
   out.converged.fill(true);
   for (std::size_t a = 0; a < unit_strains; ++a) {
     const V goal = small * elastic.affine[a];
-    const auto done = !(goal < norm[a]) && (norm[a] < V(std::numeric_limits<real>::max()));  // not of NaN
+    const auto done = !(goal < norm[a]) && (norm[a] < V(std::numeric_limits<real>::max()));  // false for NaN
     const auto open = (goal < norm[a]) && (norm[a] < elastic.affine[a]) && (solver.count[a] < most);
     solver.running[a] = Kokkos::Experimental::condition(open, live[a], zero);
     const V within = V(real(0.25)) * goal, reduced = V(static_cast<real>(round_reduction * round_reduction)) * norm[a];
@@ -204,7 +206,8 @@ template <class V, class Lanes>
   return size;
 }
 
-/// @param elastic of the same springs, whose motions stand in `system`; @param step with its sizes
+/// The loading tangent of a group. @param elastic tangent of the same springs, whose motions are in `system`; @param
+/// step has its sizes set
 template <class Law, class V>
 LoadingTangent<V> loading_tangent(const GroupState<Law>& group, SpringSystem<V>& system, StepSystem<V>& step,
                                   const StaticTangent<V>& elastic, const std::array<bool, V::size()>& live,

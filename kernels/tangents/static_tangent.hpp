@@ -1,12 +1,12 @@
 #pragma once
 /// Static tangent of all lanes at rest: the packing's own stiffness with the grains' motion condensed out.
 ///
-/// Every contact is replaced by the springs of the law at its state (a sliding or rolling contact has lost that
-/// spring). Under a unit strain the grains move and spin until the springs balance:  K x = -B,  D = (1/V)(A - B^T K^+
-/// B)  with A the springs' affine stiffness. K is never formed: preconditioned conjugate gradients (Hestenes and
-/// Stiefel 1952) for the three unit strains at once, one RVE per lane. D is taken as the energy of the motion found,
-/// sum k e_a e_b / V: symmetric and positive semidefinite whatever the iterations left, its error of second order,
-/// never below the exact one (Ritz).
+/// Every contact is replaced by the springs of the law at its state (a contact that slides has lost its tangential
+/// spring, one that rolls its rolling spring). Under a unit strain the grains move and spin until the springs balance:
+/// K x = -B,  D = (1/V)(A - B^T K^+ B)  with A the springs' affine stiffness. K is never formed; preconditioned
+/// conjugate gradients (Hestenes and Stiefel 1952) find x for the three unit strains at once, one RVE per lane. D is
+/// the energy of the motion found, sum k e_a e_b / V. It is therefore symmetric and positive semidefinite wherever the
+/// iterations end, its error is of second order, and it is never softer than the exact D (Ritz).
 ///
 /// K is singular (rigid translations, rattlers, mechanisms of sliding contacts), but the loads come from the same
 /// springs, so the system is consistent and the iterations stay in the range of K.
@@ -20,8 +20,8 @@
 namespace voussoir::kernels {
 
 inline constexpr int tangent_look_interval = 16;  ///< iterations between looks at the energies
-inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine energy: mechanisms
-                                         ///< have none
+inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine energy, because
+                                         ///< mechanisms have no energy
 
 /// Answer of a group: sums over contacts, to be divided by the volume.
 template <class V>
@@ -78,12 +78,12 @@ struct Progress {
   PerStrain<V> running;
   PerStrain<V> energy;                    ///< twice the energy of the motion so far: the diagonal of V D
   PerStrain<V> affine;                    ///< the same of the affine motion
-  PerStrain<V> rounding;                  ///< preconditioned residual norm that is rounding
+  PerStrain<V> rounding;                  ///< preconditioned residual norm below which a residual is rounding
   PerStrain<V> gained{V(0), V(0), V(0)};  ///< its decrease since the last look
 };
 
-/// Step lengths: rho / (direction . K direction), 0 where a solution is frozen or its residual is down to rounding (on
-/// an exact solution of a mechanism the next step would be noise over noise).
+/// Step lengths: rho / (direction . K direction), 0 where a solution is frozen or its residual is down to rounding (at
+/// the exact solution of a mechanism the next step would be the quotient of two rounding errors).
 template <class V>
 [[nodiscard]] PerStrain<V> step_lengths(const SpringSystem<V>& system, const PerStrain<V>& rho,
                                         const Progress<V>& progress) {
@@ -134,7 +134,7 @@ template <class V>
   return any;
 }
 
-/// The conjugate gradients. On return system.grains[i].motion holds the grains' motions.
+/// Runs the conjugate gradients. On return system.grains[i].motion holds the motion of grain i.
 template <class V>
 void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent<V>& out,
                    const EngineSettings& settings) {
@@ -163,8 +163,8 @@ void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent
   }
 }
 
-/// @param live lanes whose answer is wanted; the others do not prolong the iterations
-/// Call after homogenise(), which brings the contacts' histories to the final positions.
+/// The static tangent of a group; to be called after homogenise(), which brings the contacts' histories to the final
+/// positions. @param live lanes whose answer is wanted; the other lanes do not prolong the iterations
 template <class Law, class V>
 StaticTangent<V> static_tangent(const GroupState<Law>& group, SpringSystem<V>& system,
                                 const std::array<bool, V::size()>& live, const EngineSettings& settings) {

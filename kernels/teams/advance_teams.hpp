@@ -1,9 +1,9 @@
 #pragma once
-/// The engine's verbs with one RVE per team of threads: what a GPU runs. The time loop is inside the kernel and every
-/// team ends with its RVE. An RVE's answer has the bits of `EngineSettings::backend = lanes` on the same processor,
-/// whatever the team's size.
+/// The engine of GPUs: one RVE per team of threads. The time loop is inside the kernel, and a team ends when its RVE
+/// ends. On the same processor an RVE's answer has the bits of `EngineSettings::backend = lanes`, for every size of
+/// teams.
 ///
-/// Called through `kernels::advance` (advance_rves.hpp).
+/// Call it through `kernels::advance` (advance_rves.hpp).
 
 #include <span>
 
@@ -12,17 +12,18 @@
 
 namespace voussoir::kernels::teams {
 
-/// Given motions of some RVEs (their numbers, each once), on Kokkos' default execution space.
-/// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team the space cannot form,
-/// or packings whose list does not fit the scratch
+/// Advances some RVEs by given motions, on Kokkos' default execution space: `rves` are their numbers, each at most
+/// once.
+/// @throws std::invalid_argument for a static tangent, a microstructure along the path, a team size that the space does
+/// not allow, or packings whose list does not fit the scratch
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports, std::span<const int> rves);
 
-/// Stress-controlled cells.
+/// Advances some RVEs under controlled stresses.
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports, std::span<const int> rves);
 
-/// Bytes of scratch one running team takes, in fast memory and besides it.
+/// Bytes of scratch that one running team takes: in fast memory (hot), and in the level below it (cold).
 struct TeamScratchBytes {
   std::size_t hot, cold;
 };

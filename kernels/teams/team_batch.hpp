@@ -1,6 +1,6 @@
 #pragma once
 /// The data that teams read and write: packings, states and requests in the memory of the space that runs them. Where
-/// that is the host's memory, the states are the batch's own.
+/// this is the host's memory, the states are the batch's own.
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace voussoir::kernels::teams {
 template <class T, class Space>
 using TeamArray = Kokkos::View<T, Kokkos::LayoutRight, typename Space::memory_space>;
 
-/// Packings side by side.
+/// The packings of a batch.
 template <class real, class Space>
 struct TeamPackings {
   TeamArray<RunScales*, Space> scales;
@@ -89,7 +89,7 @@ void copy_back(const TeamStates<Space>& from, RveStates& to) {
   Kokkos::deep_copy(to.contact_history, from.contact_history);
 }
 
-/// The values of a span in the space's memory.
+/// A copy of the values of a span in the space's memory.
 template <class Space, class T>
 [[nodiscard]] TeamArray<T*, Space> team_array(const char* label, std::span<const T> values) {
   const TeamArray<T*, Space> out(Kokkos::view_alloc(Kokkos::WithoutInitializing, std::string(label)), values.size());

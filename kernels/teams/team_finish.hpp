@@ -7,7 +7,7 @@
 
 namespace voussoir::kernels::teams {
 
-/// Entry `c` of the tangent's upper triangle in the order of the list.
+/// Entry `c` of the tangent's upper triangle, summed in the order of the list.
 template <class Run>
 [[nodiscard]] KOKKOS_FUNCTION typename Run::V tangent_sum(const Run& run, int c) {
   typename Run::V sum(0);
@@ -18,7 +18,7 @@ template <class Run>
   return sum;
 }
 
-/// All pairs at rest, and their sums.
+/// Computes all pairs at rest, and their sums.
 template <class Run>
 KOKKOS_FUNCTION void homogenise_team(const Run& run) {
   using V = typename Run::V;
@@ -47,7 +47,7 @@ KOKKOS_FUNCTION void homogenise_team(const Run& run) {
   });
 }
 
-/// The final configuration as trial state. False where it cannot be stored.
+/// Stores the final configuration as trial state. False where contacts have no room or the cell has become too narrow.
 template <class Run>
 [[nodiscard]] KOKKOS_FUNCTION bool store(const Run& run, int contacts) {
   const auto& at = run.at;
@@ -80,7 +80,7 @@ template <class Run>
   return true;
 }
 
-/// The committed state as trial state, of an RVE that failed.
+/// Makes the committed state the trial state, for an RVE that failed.
 template <class Run>
 KOKKOS_FUNCTION void keep_committed(const Run& run) {
   const auto& from = run.batch.committed;
@@ -103,7 +103,7 @@ KOKKOS_FUNCTION void keep_committed(const Run& run) {
   });
 }
 
-/// Stress, tangent and status of an RVE that was not lost on the way.
+/// Reports stress, tangent and status of an RVE that was not lost on the way.
 template <class Run>
 KOKKOS_FUNCTION void answer(const Run& run) {
   const auto& at = run.at;
@@ -120,7 +120,7 @@ KOKKOS_FUNCTION void answer(const Run& run) {
   });
 }
 
-/// The RVE's report and trial state. One that failed keeps its committed state as trial state.
+/// Writes the RVE's report and trial state. An RVE that failed keeps its committed state as trial state.
 template <class Run>
 KOKKOS_FUNCTION void finish(const Run& run) {
   RveReport& report = run.batch.reports(run.rve);

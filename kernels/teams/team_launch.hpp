@@ -1,5 +1,5 @@
 #pragma once
-/// The team kernel and its launch. Only advance_teams.cpp and tests include it: it is long to
+/// The team kernel and its launch. Only advance_teams.cpp and tests include this file, because it takes long to
 /// compile.
 
 #include <Kokkos_Profiling_ScopedRegion.hpp>
@@ -12,7 +12,7 @@
 
 namespace voussoir::kernels::teams {
 
-/// Judges a measuring step, by one thread.
+/// Judges a measuring step; one thread calls it.
 template <class Run>
 KOKKOS_FUNCTION void judge_team(const Run& run, int step) {
   auto& course = run.course();
@@ -33,7 +33,7 @@ KOKKOS_FUNCTION void sweep_team(const Run& run) {
   move_grains<mode>(run);
 }
 
-/// From committed to trial state.
+/// Brings the team's RVE from its committed to its trial state.
 template <class Run>
 KOKKOS_FUNCTION void advance_team(const Run& run) {
   restore(run);
@@ -70,7 +70,8 @@ struct AdvanceTeams {
   }
 };
 
-/// Scratch for the kernel: fast memory for what every step reads if it fits, the rest from the level below.
+/// Asks for the kernel's scratch: fast memory for the numbers that every step reads, if they fit, and the level below
+/// for all else.
 /// @throws std::invalid_argument where a level is too small
 template <class Kernel>
 void ask_for_scratch(typename Kernel::Policy& policy, Kernel& kernel) {
@@ -98,7 +99,7 @@ template <class Kernel>
   return Policy(league, team_size);
 }
 
-/// Room for the traces that requests ask for.
+/// Makes room for the traces that requests ask for.
 template <class Batch>
 void make_sample_room(Batch& batch, std::span<const ServoRequest> requests) {
   int room = 0;
@@ -158,7 +159,7 @@ template <class Law, class Drive, class Space>
 Work launch_teams(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
                   std::span<RveReport> reports, std::span<const int> rves) {
   using Kernel = AdvanceTeams<Law, Drive, Space>;
-  if (settings.tangent != TangentKind::contact) throw std::invalid_argument("teams: the tangent is that of eq. (4)");
+  if (settings.tangent != TangentKind::contact) throw std::invalid_argument("teams: the only tangent is eq. (4)");
   if (batch.committed.history_size() != static_cast<std::size_t>(history_size<Law>)) {
     throw std::invalid_argument("teams: the batch holds the histories of another law");
   }

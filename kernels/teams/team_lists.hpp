@@ -1,6 +1,6 @@
 #pragma once
-/// A team lists the pairs of its RVE: all pairs are tried, N (N - 1) / 2 distances shared by its threads. Rows come out
-/// in ascending order without a sort.
+/// A team lists the pairs of its RVE by trying all of them; its threads share the N (N - 1) / 2 distances. Rows come
+/// out in ascending order without a sort.
 
 #include "kernels/contact/pair_reference.hpp"
 #include "kernels/teams/team_run.hpp"
@@ -14,7 +14,7 @@ struct KeptContacts {
   const Histories& histories;  ///< (contact, k), as in RveStates
   int count;
 
-  /// Where the pair stands, or -1.
+  /// The place of the pair, or -1 where it is not kept.
   [[nodiscard]] KOKKOS_FUNCTION int find(std::uint32_t key) const {
     int first = 0, last = count;
     while (first < last) {
@@ -39,7 +39,7 @@ KOKKOS_FORCEINLINE_FUNCTION void meet_others(const Run& run, const Cell& cell, i
   }
 }
 
-/// Ascending order of a few numbers.
+/// Sorts a few numbers in ascending order.
 template <class Numbers>
 KOKKOS_INLINE_FUNCTION void sort_few(const Numbers& numbers, int first, int last) {
   for (int k = first + 1; k < last; ++k) {
@@ -56,7 +56,8 @@ template <class Run>
   return i == 0 ? 0 : run.at.incoming_end(i - 1);
 }
 
-/// Rows, and every grain's incoming pairs in the order of the list. False where there is no room.
+/// Finds the rows, and every grain's incoming pairs in the order of the list. False where the list has no room for all
+/// pairs.
 template <class Run>
 [[nodiscard]] KOKKOS_FUNCTION bool find_pairs(const Run& run, const Cell& cell) {
   const auto& at = run.at;
@@ -85,8 +86,8 @@ template <class Run>
   return true;
 }
 
-/// The list at the RVE's positions; branches and gaps in double, rounded once. A kept contact that is no candidate has
-/// opened by more than the skin and is dropped. False where there is no room.
+/// Makes the list at the RVE's positions; branches and gaps are computed in double and rounded once. A kept contact
+/// that is no candidate has opened by more than the skin and is dropped. False where there is no room.
 template <class Run, class Kept>
 [[nodiscard]] KOKKOS_FUNCTION bool list_pairs(const Run& run, const Kept& kept) {
   using Law = typename Run::Law;

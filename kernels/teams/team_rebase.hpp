@@ -1,11 +1,11 @@
 #pragma once
-/// Restoring a team's RVE, and keeping its list valid while it moves.
+/// Restores a team's RVE, and keeps its list valid while it moves.
 
 #include "kernels/teams/team_lists.hpp"
 
 namespace voussoir::kernels::teams {
 
-/// The RVE's course ends here. Called by all threads.
+/// Ends the RVE's course; all threads call it.
 template <class Run>
 KOKKOS_FUNCTION void end_course(const Run& run, RveStatus status) {
   alone(run, [&] {
@@ -14,7 +14,7 @@ KOKKOS_FUNCTION void end_course(const Run& run, RveStatus status) {
   });
 }
 
-/// Keeps the cell as wide as its lattice allows; false when nearest images are not unique even so.
+/// Makes the cell as wide as its lattice allows; false when nearest images are not unique even then.
 template <class Run>
 [[nodiscard]] KOKKOS_FUNCTION bool reduce_cell(const Run& run) {
   alone(run, [&] { run.shared().cell = reduced_lattice(run.shared().cell); });
@@ -23,7 +23,8 @@ template <class Run>
   return wide_enough(cell, run.scales().largest_radius, run.scales().skin);
 }
 
-/// x = F X + u and the cell with it; displacements and F stay as they are.
+/// Replaces the reference positions by the current ones, x = F X + u, and the cell likewise; displacements and F stay
+/// as they are.
 template <class Run>
 KOKKOS_FUNCTION void move_positions(const Run& run) {
   const Mat2 f = plus_identity(run.course().f_minus_i);
@@ -35,7 +36,8 @@ KOKKOS_FUNCTION void move_positions(const Run& run) {
   alone(run, [&] { run.shared().cell = current_cell(run.course(), run.shared().cell); });
 }
 
-/// Committed state, request and list. Where the RVE cannot run its course ends at once, with the reason as status.
+/// Restores committed state, request and list. Where the RVE cannot run, its course ends at once, with the reason as
+/// status.
 template <class Run>
 KOKKOS_FUNCTION void restore(const Run& run) {
   using V = typename Run::V;
@@ -55,7 +57,7 @@ KOKKOS_FUNCTION void restore(const Run& run) {
     run.at.position(i, 1) = from.position(rve, i, 1);
     run.at.grains(i) = {zero, zero, zero, zero, zero, zero, zero, zero, zero};
   });
-  const Mat2 cell = run.shared().cell;  // before the barrier in `count`: later it is written to
+  const Mat2 cell = run.shared().cell;  // read before the barrier in `count`, after which it is written to
   const int unknown = count(run, run.grains, [&](int i) {
     return !std::isfinite(run.at.position(i, 0)) || !std::isfinite(run.at.position(i, 1));
   });
@@ -71,7 +73,7 @@ KOKKOS_FUNCTION void restore(const Run& run) {
   alone(run, [&] { set_rate(run.course(), 0); });
 }
 
-/// The current configuration becomes the reference; histories are kept.
+/// Makes the current configuration the reference; histories are kept.
 template <class Run>
 KOKKOS_FUNCTION void rebase(const Run& run) {
   const auto& at = run.at;
@@ -92,7 +94,8 @@ KOKKOS_FUNCTION void rebase(const Run& run) {
   alone(run, [&] { round_motion(run.course(), run.shared().motion, 0); });
 }
 
-/// Looks at displacements, on the RVE's own steps, and renews the list where grains may meet someone who is not listed.
+/// Looks at displacements, on the RVE's own steps, and renews the list where two grains may meet whose pair is not
+/// listed.
 template <class Run>
 KOKKOS_FUNCTION void check_list(const Run& run, int step) {
   using V = typename Run::V;

@@ -1,9 +1,9 @@
 #pragma once
-/// One team at work on one RVE: where its numbers are, and the three ways its threads share a loop. All three end in a
-/// barrier.
+/// One team at work on one RVE: where its numbers are, and the functions by which its threads share a loop. Each of
+/// these functions ends in a barrier.
 ///
-/// Results do not depend on the number of threads: a loop's body writes only what is its own, maxima and counts have no
-/// order, and sums of real numbers are taken by one thread each, in the order of the list.
+/// Results do not depend on the number of threads: a loop's body writes only the numbers of its own index, maxima and
+/// counts do not depend on an order, and sums of real numbers are taken by one thread each, in the order of the list.
 
 #include "kernels/teams/team_batch.hpp"
 #include "kernels/teams/team_scratch.hpp"
@@ -48,13 +48,14 @@ struct TeamRun {
   [[nodiscard]] KOKKOS_FUNCTION int listed() const { return at.row(grains); }
 };
 
+/// Calls body(i) for i = 0 .. n - 1.
 template <class Run, class Body>
 KOKKOS_FORCEINLINE_FUNCTION void each(const Run& run, int n, const Body& body) {
   Kokkos::parallel_for(Kokkos::TeamThreadRange(run.member, n), body);
   run.member.team_barrier();
 }
 
-/// One thread.
+/// Calls body() by one thread.
 template <class Run, class Body>
 KOKKOS_FORCEINLINE_FUNCTION void alone(const Run& run, const Body& body) {
   Kokkos::single(Kokkos::PerTeam(run.member), body);
@@ -76,7 +77,7 @@ template <class real, class Run, class Body>
   return out < real(0) ? real(0) : out;
 }
 
-/// How many body(i) hold.
+/// The number of i for which body(i) is true.
 template <class Run, class Body>
 [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int count(const Run& run, int n, const Body& body) {
   int out = 0;
@@ -86,7 +87,7 @@ template <class Run, class Body>
   return out;
 }
 
-/// Calls place(i, number of holds(k) with k < i) for every i that holds. @returns how many do
+/// Calls place(i, number of k < i with holds(k)) for every i with holds(i). @returns the number of such i
 template <class Run, class Holds, class Place>
 KOKKOS_FORCEINLINE_FUNCTION int pack(const Run& run, int n, const Holds& holds, const Place& place) {
   int out = 0;
@@ -102,7 +103,7 @@ KOKKOS_FORCEINLINE_FUNCTION int pack(const Run& run, int n, const Holds& holds, 
   return out;
 }
 
-/// counts(0 .. n - 1) become the sums of those before them. @returns the sum of all
+/// Replaces each of counts(0 .. n - 1) by the sum of the counts before it. @returns the sum of all
 template <class Run, class Counts>
 KOKKOS_FORCEINLINE_FUNCTION int sums_before(const Run& run, int n, const Counts& counts) {
   int out = 0;

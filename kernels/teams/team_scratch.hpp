@@ -1,7 +1,7 @@
 #pragma once
-/// Working state of one RVE in its team's scratch. A GPU's fast memory (level 0) holds what every pair reads, the
-/// grains, if it fits; the list and what rebases need are in level 1, of which there is one per team that runs, not one
-/// per RVE.
+/// Working state of one RVE in its team's scratch. A GPU's fast memory (level 0) holds the grains, which every pair
+/// reads, if they fit. The list and the arrays of a rebase are in level 1, of which there is one per running team, not
+/// one per RVE.
 
 #include <Kokkos_Core.hpp>
 
@@ -10,8 +10,8 @@
 
 namespace voussoir::kernels::teams {
 
-/// Room of a team's list. Discs in contact have at most 3 pairs each, a skin lists more. An RVE that needs more room
-/// ends as `neighbour_overflow`.
+/// Pairs per grain for which a team's list has room. Discs have at most 3 contacts each, but a list with a skin holds
+/// more pairs. An RVE that needs more room ends as `neighbour_overflow`.
 inline constexpr int listed_per_grain = 8;
 
 /// The data that all threads of a team share.
@@ -98,7 +98,7 @@ struct TeamScratch {
 
   static KOKKOS_FUNCTION int capacity(int n) { return listed_per_grain * n; }
 
-  /// Of what every step reads of all grains.
+  /// Bytes of the numbers that every step reads of all grains.
   static std::size_t hot_bytes(int n) { return Shared::shmem_size(1) + Grains::shmem_size(n); }
 
   static std::size_t cold_bytes(int n) {

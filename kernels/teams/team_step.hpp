@@ -1,16 +1,16 @@
 #pragma once
 /// One step of a team's RVE, kernels/README.md "One step": all pairs at once, then all grains at once.
 ///
-/// A pair is computed once, in the lanes' orientation i < j, and keeps what it does to both grains; a grain then
-/// gathers its pairs, those with smaller neighbours first. That is the order of the lanes' sweep: same bits, and no
-/// atomics.
+/// A pair is computed once, in the lanes' orientation i < j, and keeps its action on both grains; a grain then gathers
+/// its pairs, first those whose other grain has a smaller number. This is the order of the lanes' sweep, which gives
+/// the same bits and needs no atomics.
 
 #include "kernels/contact/grain_motion.hpp"
 #include "kernels/teams/team_run.hpp"
 
 namespace voussoir::kernels::teams {
 
-/// Contacts and law of all pairs. Branches and overlaps are kept for `Sweep::measure` only.
+/// Computes contacts and law of all pairs. Branches and overlaps are kept for `Sweep::measure` only.
 template <Sweep mode, class Run>
 KOKKOS_FUNCTION void press_pairs(const Run& run) {
   using V = typename Run::V;
@@ -23,7 +23,7 @@ KOKKOS_FUNCTION void press_pairs(const Run& run) {
     const GrainLanes<V>&gi = at.grains(i), &gj = at.grains(shape.other);
     const PairGeometry<V> now = geometry_of(pair, cell, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
     const bool touches = Kokkos::Experimental::any_of(now.gap < V(0));
-    if (!touches && shape.active == 0) return;  // the pair's last action was none, and that still holds
+    if (!touches && shape.active == 0) return;  // the pair's last action was zero and still is
     shape.active = touches ? 1 : 0;
     at.actions(p) = act(pair, shape, now, cell, gj.w_x - gi.w_x, gj.w_y - gi.w_y,
                         rim_of(V(run.shape(i).radius), gi.spin), gj.spin);
@@ -31,7 +31,7 @@ KOKKOS_FUNCTION void press_pairs(const Run& run) {
   });
 }
 
-/// Forces on all grains, and their motion. Forces are kept for `Sweep::measure` only.
+/// Sums the forces on all grains and moves them. Forces are kept for `Sweep::measure` only.
 template <Sweep mode, class Run>
 KOKKOS_FUNCTION void move_grains(const Run& run) {
   using V = typename Run::V;
@@ -69,7 +69,7 @@ template <class Run>
   return sum;
 }
 
-/// Puts entry `q` of the stress where it belongs.
+/// Sets entry `q` of the stress.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION void set_stress(SweepSums<V>& sums, int q, const V& value) {
   if (q == 0) sums.stress_xx = value;
@@ -85,7 +85,7 @@ template <class Run>
   return largest<real>(run, run.listed(), [&](int p) { return static_cast<real>(run.at.branches(p).overlap); });
 }
 
-/// The sums of a measuring step, one a thread, in the order of the lanes' sweep.
+/// Computes the sums of a measuring step, each by one thread, in the order of the lanes' sweep.
 template <class Run>
 KOKKOS_FUNCTION void sum_step(const Run& run) {
   using V = typename Run::V;

@@ -33,7 +33,8 @@ TEST(LinearElastic, EvaluatesFromTheCommittedStateOnly) {
   EXPECT_LT((evaluate_one(material, h) - 2 * once).norm(), 1e-9);
   material.set_state(before);
   EXPECT_EQ(evaluate_one(material, h), once);
-  expect_throws<std::runtime_error>([&] { material.set_state(std::span(before).first(8)); }, "of another batch");
+  expect_throws<std::runtime_error>([&] { material.set_state(std::span(before).first(8)); },
+                                    "belongs to another batch");
 }
 
 TEST(LinearElastic, LogarithmicStrainLetsARotationTurnTheStressOnly) {

@@ -192,7 +192,8 @@ TEST(CaseFile, WrongExtensionsAreOneLine) {
   EXPECT_TRUE(nowhere.starts_with("case.toml:2: extends: ")) << nowhere;
   EXPECT_TRUE(nowhere.ends_with("nowhere.toml does not exist")) << nowhere;
   EXPECT_EQ(message("extends = 3"), "case.toml:1: extends: must be the name of a case file, or an array of such names");
-  EXPECT_EQ(message("extends = \"case.toml\""), "case.toml:1: extends: goes in a circle, or deeper than eight files");
+  EXPECT_EQ(message("extends = \"case.toml\""),
+            "case.toml:1: extends: the files extend one another in a circle, or more than eight deep");
 }
 
 TEST(CaseFile, PathsBeginWhereTheyAreWritten) {

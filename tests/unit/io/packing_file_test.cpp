@@ -84,15 +84,15 @@ TEST_F(PackingFileTest, SizesThatDisagreeAreRefused) {
   Packing packing = example();
   packing.x.pop_back();
   expect_throws<std::invalid_argument>([&] { save_packing(folder_ / "p.h5", packing); },
-                                       "p.h5: 3 radii, but 2 x, 3 y, 3 rotations");
+                                       "p.h5: has 3 radii, but 2 x, 3 y, 3 rotations");
   packing = example();
   packing.history.pop_back();
   expect_throws<std::invalid_argument>([&] { save_packing(folder_ / "p.h5", packing); },
-                                       "contact arrays differ in length");
+                                       "its contact arrays differ in length");
   packing = example();
   packing.contact_j[0] = 3;
   expect_throws<std::invalid_argument>([&] { save_packing(folder_ / "p.h5", packing); },
-                                       "contact 0 joins grains 0 and 3 of 3");
+                                       "contact 0 joins grains 0 and 3, but there are 3 grains");
   packing = example();
   packing.radius[1] = -1;
   expect_throws<std::invalid_argument>([&] { save_packing(folder_ / "p.h5", packing); },

@@ -243,7 +243,7 @@ TEST_F(ResultFileTest, TablesThatCannotBeReadBackAreRefused) {
   ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
   const auto refuses = [&](const std::string& name, const std::vector<TableColumn>& columns) {
     expect_throws<std::invalid_argument>([&] { writer.set_table(name, columns); },
-                                         "table \"" + name + "\": names, or lengths of its columns");
+                                         "table \"" + name + "\": its names or the lengths of its columns");
   };
   refuses("a/b", {{"x", "-", {1}}});
   refuses("", {{"x", "-", {1}}});

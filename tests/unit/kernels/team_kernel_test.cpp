@@ -255,7 +255,7 @@ TEST(TeamScratch, GrainsOfAnRveFitTheFastMemoryOfAGpu) {
 TEST_F(TeamKernel, RefusesWhatItCannotDo) {
   RveBatch batch = clones(dense_, 1);
   EngineSettings settings{.backend = Backend::teams, .tangent = TangentKind::elastic};
-  expect_throws<std::invalid_argument>([&] { run(batch, {general}, settings); }, "the tangent is that of eq. (4)");
+  expect_throws<std::invalid_argument>([&] { run(batch, {general}, settings); }, "the only tangent is eq. (4)");
   settings = {.backend = Backend::teams, .team_size = 100000};
   expect_throws<std::invalid_argument>([&] { run(batch, {general}, settings); }, "no teams of that size");
 }
