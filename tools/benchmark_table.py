@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Markdown rows of a benchmark report, for tests/benchmark/README.md: tools/benchmark_table.py REPORT.json ...
 
-Reports are those of --benchmark_out=FILE. One row a benchmark: medians of particle-steps/s in float and double, and in
-float of contact-steps/s and listed-pair-steps/s, all in million; contacts per grain. Several reports (one thread and
-two, say) make one table each, headed by their machine.
+A report is the file of --benchmark_out=FILE. Each benchmark gets one row: contacts per grain, then in million the
+medians of particle-steps/s in float and double, and of contact-steps/s and listed-pair-steps/s in float. Each report
+(for example of one thread and of two) makes a table of its own under a line about its machine.
 """
 
 import json

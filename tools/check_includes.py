@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tree is the architecture: fails when it is not.
+"""Fails where the tree of the sources is not the architecture that the tables below describe.
 
 Checks, over all files of the checkout (or of the folder given as the only argument):
   - an include stays within the lines of the table FOLDERS, for our folders and for third-party libraries;
@@ -26,7 +26,7 @@ FOLDERS = {
     "io": ({"io"}, {"HDF5", "toml++", "JSON", "fmt", "POSIX"}),
     # host joins the others, so it holds their types (Kokkos views, Eigen matrices) and starts Kokkos.
     "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX", "MPI"}),
-    "tests": (set(OURS), None),  # None: any
+    "tests": (set(OURS), None),  # None: all libraries
     "tools": (set(), {"CUDA"}),
 }
 
@@ -47,10 +47,10 @@ ROOMS = {
     ),
 }
 
-# Libraries that even their own folder keeps in a few files.
+# Libraries that only a few files of their folder may include.
 CONFINED = {
     "Gmsh": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
-    # to give back the thread number that Gmsh changes
+    # the files need OpenMP to restore the number of threads, which Gmsh changes
     "OpenMP": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
     "MPI": re.compile(r"host/ranks/channel\.cpp"),
 }
@@ -105,7 +105,7 @@ def room_of(path):
 
 
 def level_fault(path, header):
-    """What is wrong with an include of `header` from the file `path` of the same folder, or None."""
+    """The fault of an include of `header` from the file `path` of the same folder, or None."""
     folder = path.parts[0]
     if folder not in ROOMS:
         return None
@@ -120,7 +120,7 @@ def level_fault(path, header):
 
 
 def include_fault(root, path, quote, header):
-    """What is wrong with one include of the file `path` (relative to root), or None."""
+    """The fault of one include in the file `path` (relative to root), or None."""
     folder = path.parts[0]
     if folder not in FOLDERS:
         return f"source files belong into one of {', '.join(FOLDERS)}"

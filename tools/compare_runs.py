@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Compares two benchmark reports: tools/compare_runs.py BEFORE.json AFTER.json.
 
-Reports are those of --benchmark_out=FILE. Prints the median particle-steps/s [million] of each benchmark in both and
-the ratio AFTER / BEFORE; says what differs between the machines, since a ratio across machines is no progress.
+A report is the file of --benchmark_out=FILE. Prints the median particle-steps/s [million] of each benchmark in both and
+the ratio AFTER / BEFORE; also prints how the machines differ, since a ratio between two machines does not show progress
+of the code.
 """
 
 import argparse

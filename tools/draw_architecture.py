@@ -4,8 +4,8 @@
 A box is a room, that is a sub-folder of host or kernels, or the whole of fem and io. The rows are the levels of the
 table ROOMS in tools/check_includes.py; an arrow points from a room to one that its files include. Arrows that follow
 from others are left out, and the arrows between two folders are drawn as one. An arrow in red points upwards or
-sideways, which the table does not allow. --check only compares the picture with the file, so that a test keeps it from
-going stale.
+sideways, which the table does not allow. --check only compares the picture with the file, so that a test can
+notice an old picture.
 """
 
 import argparse
@@ -34,7 +34,7 @@ Places = dict[str, tuple[float, float]]  # middle of each box
 
 
 def rooms_of(folder: str) -> dict[str, set[str]]:
-    """The rooms of a folder and what each includes of the others."""
+    """The rooms of a folder, and for each room the other rooms that it includes."""
     graph = read_graph(ROOT, [folder])
     return quotient(graph, {path: room_of(path) for path in graph})
 
@@ -69,7 +69,7 @@ def place(rows: list[list[str]], left: float, top: float, width: float) -> Place
 
 
 def arrow(begin: tuple[float, float], end: tuple[float, float], colour: str, width: float = 1.2) -> str:
-    """From the lower edge of a box to the upper edge of another one; bent where it would run through boxes between."""
+    """An arrow from the lower edge of a box to the upper edge of another; it is bent around boxes between them."""
     (x1, y1), (x2, y2) = begin, end
     y1, y2 = y1 + BOX_HEIGHT / 2, y2 - BOX_HEIGHT / 2
     rows = round((y2 - y1 + BOX_HEIGHT) / ROW)
@@ -157,7 +157,7 @@ def main() -> int:
     if given.check:
         if FILE.exists() and FILE.read_text(encoding="utf-8") == drawn:
             return 0
-        print(f"{FILE.relative_to(ROOT)} is not what the includes say; tools/draw_architecture.py draws it anew")
+        print(f"{FILE.relative_to(ROOT)} does not agree with the includes; tools/draw_architecture.py draws it again")
         return 1
     FILE.write_text(drawn, encoding="utf-8")
     return 0

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Draws the figures of a run: tools/figures.py RESULT_DIR [-o DIR] [--only NAME ...] [further options: --help].
 
-What a result does not hold is skipped with a line saying why. Dataset names: io/FORMAT.md; the figures:
-voussoir_plots/README.md.
+A figure whose data are missing is skipped, and a line says why. io/FORMAT.md describes the data sets,
+voussoir_plots/README.md the figures.
 """
 
 import argparse
@@ -18,7 +18,7 @@ TRENDS = {"trends.md": trend_table.write}
 
 
 def chosen(arguments):
-    """What to write, by the name of its file."""
+    """The functions that write the wanted files, by the names of the files."""
     if arguments.trends:
         return TRENDS
     everything = {**FIGURES, **TRENDS}
@@ -29,8 +29,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("result", type=Path, help="folder of a run")
     parser.add_argument("-o", "--output", type=Path, help="folder for the figures; default: the run's own")
-    parser.add_argument("--only", nargs="+", metavar="NAME", help="only these, by their names without .png")
-    parser.add_argument("--trends", action="store_true", help="only trends.md: the study's trends, each seen or not")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="draw only these figures, named without .png")
+    parser.add_argument(
+        "--trends", action="store_true", help="write only trends.md: the study's trends, each seen or not"
+    )
     settings.add_options(parser)
     arguments = parser.parse_args()
     output = arguments.output or arguments.result

@@ -1,4 +1,5 @@
-"""Who includes whom in a tree of ours: shared by the tools that draw it, measure it and choose what to check."""
+"""The graph of includes in a tree of sources. Tools use it to draw the tree, to measure it and to choose files to
+check."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -10,12 +11,12 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 
 
 def included_by(path: Path) -> list[str]:
-    """What a file includes in quotation marks: our own headers, written from the root."""
+    """The headers that a file includes in quotation marks: our own ones, written from the root."""
     return INCLUDE.findall(path.read_text(encoding="utf-8"))
 
 
 def read_graph(root: Path, folders: Iterable[str] = FOLDERS) -> dict[str, set[str]]:
-    """{source file: our own files that it includes}, both from the root."""
+    """{source file: our own files that it includes}, both written from the root."""
     files = {p.relative_to(root).as_posix(): p for f in folders for p in (root / f).rglob("*") if p.suffix in SUFFIXES}
     return {name: {h for h in included_by(path) if h in files} for name, path in sorted(files.items())}
 
@@ -32,7 +33,7 @@ def room_of(path: str) -> str:
 
 
 def quotient(graph: Mapping[str, set[str]], part_of: Mapping[str, str]) -> dict[str, set[str]]:
-    """The graph between parts, without what a part includes of itself."""
+    """The graph between parts, without the includes inside a part."""
     parts: dict[str, set[str]] = {part: set() for part in sorted(set(part_of.values()))}
     for path, headers in graph.items():
         parts[part_of[path]] |= {part_of[header] for header in headers}
@@ -40,9 +41,9 @@ def quotient(graph: Mapping[str, set[str]], part_of: Mapping[str, str]) -> dict[
 
 
 def levels(graph: Mapping[str, set[str]]) -> dict[str, int]:
-    """How many steps each part stands above the ground: one more than the highest that it includes; 0 for none.
+    """The level of each part: one more than the highest level that it includes; 0 where it includes no part.
 
-    Parts that include one another, directly or around, count as standing on one level.
+    Parts that include one another, directly or through others, stand on one level.
     """
     group = cycles(graph)
     found: dict[str, int] = {}
@@ -62,7 +63,7 @@ def levels(graph: Mapping[str, set[str]]) -> dict[str, int]:
 
 
 def reachable(graph: Mapping[str, set[str]], start: str) -> set[str]:
-    """All that a part includes, directly or through others; itself only when it stands in a circle."""
+    """All parts that a part includes, directly or through others; the part itself only when it is in a circle."""
     seen: set[str] = set()
     waiting = list(graph[start])
     while waiting:
@@ -74,13 +75,13 @@ def reachable(graph: Mapping[str, set[str]], start: str) -> set[str]:
 
 
 def cycles(graph: Mapping[str, set[str]]) -> dict[str, set[str]]:
-    """{part: those that it includes and that include it, itself among them}."""
+    """{part: the parts that it includes and that also include it, and the part itself}."""
     below = {part: reachable(graph, part) for part in graph}
     return {part: {part, *(other for other in below[part] if part in below[other])} for part in graph}
 
 
 def reduced(graph: Mapping[str, set[str]]) -> dict[str, set[str]]:
-    """The graph without the arrows that follow from others; for graphs without circles."""
+    """The graph without the arrows that follow from others. The graph must have no circles."""
     return {
         part: {other for other in others if not any(other in reachable(graph, via) for via in others - {other})}
         for part, others in graph.items()

@@ -4,13 +4,14 @@
     tools/mutants.py [--seed 1] [--count 20] [--again] [--list] [--files GLOB ...] [--tests REGEX]
 
 A mutant is one token changed: an operator, a sign, a constant or a bound. The seed chooses them; each group of GROUPS
-gets its share. They are built in a copy of the checkout, build/mutants/tree, with -O1 and assertions. Tests are built
-and run in the order of their nearness to the mutated file, and the first that fails (or takes too long) kills the
+gets its share. Mutants are built in a copy of the checkout, build/mutants/tree, with -O1 and assertions. Tests are
+built and run in the order of their nearness to the mutated file, and the first that fails (or takes too long) kills the
 mutant, so that most mutants cost the build of a library and of one or two tests.
 
-Finished mutants are kept in build/mutants/results.jsonl: a call that was stopped goes on where it was, and --again
-repeats those that survived, after a test has been added. Writes build/mutants/table.md. Exit status: 0 all were killed
-(or are the same machine code as the original), 1 some survived, 2 the tests fail without any mutant.
+Verdicts are kept in build/mutants/results.jsonl, so that a call after an interruption goes on with the other mutants.
+--again repeats the mutants that survived; use it after you have added a test. Writes build/mutants/table.md. Exit
+status: 0 all were killed (or are the same machine code as the original), 1 some survived, 2 the tests fail without any
+mutant.
 """
 
 import argparse
@@ -36,7 +37,7 @@ GROUPS = {
     "pool": ["host/material/rve_pool*.cpp"],
 }
 
-# What is not code for us, then words, numbers and operators; the order matters.
+# First the text that is not mutated (comments, literals), then numbers, words and operators; the order matters.
 TOKEN = re.compile(
     r"""(?P<skip>//[^\n]*|/\*.*?\*/|^[ \t]*\#[^\n]*|R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*')
     |(?P<number>(?<![\w.])(?:\d+\.\d*(?:e[+-]?\d+)?|\d+(?:e[+-]?\d+)?)(?![\w.]))
@@ -69,12 +70,12 @@ WORDS = {"true": "false", "false": "true", "min": "max", "max": "min", "floor": 
 class Mutant:
     path: str
     line: int
-    start: int  # of the text that is replaced, in the file
+    start: int  # place in the file of the text that is replaced
     before: str
     after: str
 
     def key(self, tests: str) -> str:
-        """Under which its verdict is kept; `tests` is the choice of tests that it rests on."""
+        """The key under which the verdict is kept; `tests` names the tests on which the verdict rests."""
         text = (ROOT / self.path).read_bytes()
         return f"{self.path}:{self.start}:{self.after}:{hashlib.sha256(text).hexdigest()[:12]}:{tests}"
 
@@ -98,7 +99,7 @@ class Verdict:
 
 
 def arguments_after(text: str, opening: int) -> tuple[list[str], int] | None:
-    """The arguments of a call whose "(" stands at `opening`, and where its ")" stands."""
+    """The arguments of a call whose "(" stands at `opening`, and the place of its ")"."""
     depth, start, found = 0, opening + 1, []
     for k in range(opening, min(len(text), opening + 1000)):
         if text[k] in "([{":
@@ -114,7 +115,7 @@ def arguments_after(text: str, opening: int) -> tuple[list[str], int] | None:
 
 
 def without_bound(name: str, arguments: list[str]) -> list[str]:
-    """A call that bounds or chooses, with a bound or the choice changed."""
+    """Variants of a call that bounds or chooses, with one bound or the choice changed."""
     if name == "clamp" and len(arguments) == 3:
         value, low, high = arguments
         return [f"max({value}, {low})", f"min({value}, {high})"]
@@ -185,7 +186,7 @@ def chosen_mutants(groups: dict[str, list[str]], seed: int, count: int) -> list[
 
 
 def run(words: list[str | Path], log: str, timeout: float | None = None) -> bool:
-    """Whether a command succeeds in time; what it says goes to build/mutants/LOG."""
+    """True where a command succeeds in time; its output goes to build/mutants/LOG."""
     with (WORK / log).open("w") as file:
         try:
             done = subprocess.run(words, check=False, stdout=file, stderr=subprocess.STDOUT, timeout=timeout)
@@ -195,7 +196,7 @@ def run(words: list[str | Path], log: str, timeout: float | None = None) -> bool
 
 
 def copy_tree() -> None:
-    """Brings build/mutants/tree up to date; files that are the same keep their time, so that little is built anew."""
+    """Brings build/mutants/tree up to date. Unchanged files keep their time, so that little is built again."""
     listed = subprocess.run(
         ["git", "-C", ROOT, "ls-files", "-co", "--exclude-standard"], check=True, capture_output=True, text=True
     ).stdout.splitlines()
@@ -221,20 +222,20 @@ def build(targets: list[str]) -> bool:
 
 
 def machine_code(path: str) -> bytes | None:
-    """What a .cpp of the libraries was compiled to."""
+    """The machine code that a .cpp of the libraries was compiled to."""
     folder, rest = path.split("/", 1)
     found = [p for p in (BUILD / folder).rglob(f"{Path(path).name}.o") if p.as_posix().endswith(f".dir/{rest}.o")]
     return found[0].read_bytes() if len(found) == 1 else None
 
 
 def passes(test: str, limit: float) -> bool:
-    """Whether a unit test passes in time [s]."""
+    """True where a unit test passes in time [s]."""
     words: list[str | Path] = ["ctest", "--test-dir", BUILD, "-R", f"^{test}$", "--timeout", f"{limit:.0f}"]
     return run([*words, "--no-tests=error"], "test.log", limit + 60)
 
 
 def unit_tests(pattern: str) -> list[str]:
-    """Those whose names hold the regular expression."""
+    """The tests whose names contain a match of the regular expression."""
     shown = subprocess.run(
         ["ctest", "--test-dir", BUILD, "-N", "-L", "^unit$"], check=True, capture_output=True, text=True
     )
@@ -262,7 +263,7 @@ def prepare(pattern: str) -> dict[str, float]:
 
 
 def nearness(test: str, path: str) -> tuple[bool, bool, bool]:
-    """For sorting: the test of the file's own name first, then those of its folders, then the others."""
+    """A key for sorting: first the test of the file's own name, then the tests of its folders, then all others."""
     parts = Path(path).with_suffix("").parts
     return parts[-1] not in test, not test.startswith("_".join(parts[:-1])), not test.startswith(parts[0])
 
@@ -318,10 +319,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=20, help="mutants in all (20)")
-    parser.add_argument("--again", action="store_true", help="repeat those that survived")
+    parser.add_argument("--again", action="store_true", help="repeat the mutants that survived")
     parser.add_argument("--list", action="store_true", help="only show the mutants")
-    parser.add_argument("--files", nargs="+", metavar="GLOB", help="instead of the law, Newton and the pool")
-    parser.add_argument("--tests", default="", metavar="REGEX", help="only the unit tests whose names hold it")
+    parser.add_argument(
+        "--files", nargs="+", metavar="GLOB", help="mutate these files instead of the law, Newton and the pool"
+    )
+    parser.add_argument("--tests", default="", metavar="REGEX", help="run only the unit tests whose names match")
     given = parser.parse_args()
     mutants = chosen_mutants({"files": given.files} if given.files else GROUPS, given.seed, given.count)
     if given.list:

@@ -1,17 +1,18 @@
 #!/usr/bin/env python3
-"""Runs the pinned clang-tidy on what has changed: tools/tidy.py [--all | --since REVISION] [--seconds N] [FILE ...]
+"""Runs the pinned clang-tidy on changed files: tools/tidy.py [--all | --since REVISION] [--seconds N] [FILE ...]
 
-Without files and options, the files that differ from the last release are checked, that is from the latest tag `v*`
-that this checkout knows and that HEAD descends from. Where there is no such tag (a shallow clone, or before the first
-release), tools/tidy_clean_revision.txt names the revision that was clean as a whole; where that is unknown too, all
+Without files and options it checks the files that differ from the last release, which is the latest tag `v*` among the
+ancestors of HEAD that this checkout knows. Where there is no such tag (a shallow clone, or before the first release),
+tools/tidy_clean_revision.txt names the revision that was clean as a whole; where this revision is unknown too, all
 files are checked. A changed header is checked through its own .cpp or its own test; where it has none, through the file
-that includes most of the changed headers. A change of .clang-tidy is a change of everything.
+that includes most of the changed headers. After a change of .clang-tidy all files are checked.
 
 A file that was found clean is not checked again until it, a header of ours that it includes, its compile command or the
-configuration changes (stamps in build/tidy). --seconds bounds the time: no further file is begun after it, the files
-left over are counted, and the next call goes on with them. Needs a configured build (--build, default build/openmp).
+configuration changes (stamps in build/tidy). --seconds bounds the time: no further file is begun after this time, the
+remaining files are counted, and the next call goes on with them. Needs a configured build (--build, default
+build/openmp).
 
-Exit status: 0 nothing found (though some files may be left over), 1 something found, 2 it cannot run.
+Exit status: 0 nothing was found (some files may remain), 1 something was found, 2 clang-tidy cannot run.
 """
 
 import argparse
@@ -32,7 +33,7 @@ from include_graph import included_by
 
 ROOT = Path(__file__).resolve().parent.parent
 CLANG_TIDY = ROOT / ".prefix/venv/bin/clang-tidy"
-# Named to clang-tidy: where it finds the file by itself, version 20.1.0 keeps silent about headers.
+# The file is named to clang-tidy, because version 20.1.0 says nothing about headers where it has found the file itself.
 CONFIGURATION = ROOT / ".clang-tidy"
 CLEAN_REVISION = ROOT / "tools/tidy_clean_revision.txt"
 STAMPS = ROOT / "build/tidy"
@@ -40,7 +41,7 @@ SOURCES = (".cpp", ".hpp")
 
 
 def git(*words: str) -> str | None:
-    """What git prints, or None when it fails."""
+    """The output of git, or None when git fails."""
     done = subprocess.run(["git", "-C", str(ROOT), *words], check=False, capture_output=True, text=True)
     return done.stdout.strip() if done.returncode == 0 else None
 
@@ -58,7 +59,7 @@ def base_revision() -> tuple[str | None, str]:
 
 
 def changed_since(revision: str) -> list[str] | None:
-    """Files that differ from a revision, those that git does not know yet included; None when git cannot tell."""
+    """Files that differ from a revision, and files that git does not track yet; None when git fails."""
     differ = git("diff", "--name-only", "--diff-filter=d", revision, "--")
     new = git("ls-files", "--others", "--exclude-standard")
     return None if differ is None or new is None else sorted({*differ.splitlines(), *new.splitlines()})
@@ -91,7 +92,7 @@ def includes(path: str) -> frozenset[str]:
 
 
 def own_files(header: str, commands: Iterable[str]) -> list[str]:
-    """The .cpp of a header's own name and its own test, as far as they are compiled and include it."""
+    """The .cpp and the test of a header's own name, as far as they are compiled and include the header."""
     path = Path(header)
     named = (path.with_suffix(".cpp"), Path("tests/unit") / path.parent / f"{path.stem}_test.cpp")
     return [p.as_posix() for p in named if p.as_posix() in commands and header in includes(p.as_posix())]
@@ -109,8 +110,8 @@ def files_for(changed: Iterable[str], commands: dict[str, str]) -> list[str]:
             commands, key=lambda path: (-len(headers & includes(path)), path.startswith("tests/"), len(includes(path)))
         )
         seen = headers & includes(best)
-        if not seen:  # no compiled file includes it, as for CUDA alone
-            print(f"tidy: {', '.join(sorted(headers))}: not part of this build, not checked")
+        if not seen:  # no compiled file includes the header, for example one for CUDA only
+            print(f"tidy: {', '.join(sorted(headers))}: these files are not part of this build and were not checked")
             break
         chosen.append(best)
         headers -= seen
@@ -136,7 +137,7 @@ def openmp_header(command: str) -> list[str]:
 
 
 def stamp_of(path: str, command: str) -> Path:
-    """The file that exists when `path` has been found clean as it is now."""
+    """The stamp of a file: it exists when the present version of `path` has been found clean."""
     digest = hashlib.sha256()
     for name in (".clang-tidy", "tools/requirements-style.txt", path, *sorted(includes(path))):
         digest.update(name.encode() + b"\0" + (ROOT / name).read_bytes())
@@ -165,7 +166,7 @@ class Run:
             text=True,
             cwd=ROOT,
         )
-        # Without a word on the standard output, what went wrong stands among the counts on the other one.
+        # Where the standard output is empty, the error stands among the counts on the standard error.
         return path, done.returncode, done.stdout or (done.stderr if done.returncode else "")
 
     def report(self, path: str, status: int | None, findings: str) -> None:
@@ -175,14 +176,14 @@ class Run:
             self.clean += 1
             stamp_of(path, self.commands[path]).touch()
         for finding in re.split(r"\n(?=\S+:\d+:\d+: (?:warning|error))", findings.strip()):
-            # A header's finding comes once for each file that includes it.
+            # A finding in a header appears once for each file that includes the header.
             if finding and finding not in self.printed:
                 self.printed.add(finding)
                 print(finding.replace(f"{ROOT}/", ""), flush=True)
 
 
 def chosen_files(arguments: argparse.Namespace, commands: dict[str, str]) -> tuple[list[str], str]:
-    """What to check, and why, in words."""
+    """The files to check, and the reason in words."""
     if arguments.files:
         named = [path.resolve().relative_to(ROOT).as_posix() for path in arguments.files]
         return files_for(named, commands), "the files named"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Sizes of folders and files, and how deep the includes go: tools/tree_sizes.py [--before REVISION] [--into FILE]
+"""Sizes of folders and files, and the depth of the includes: tools/tree_sizes.py [--before REVISION] [--into FILE]
 
-Prints a table (Markdown) of the checkout, beside one of an earlier revision with --before. --into puts it into a page
-between the lines `<!-- sizes -->` and `<!-- end of sizes -->`, so that docs/architecture.md is brought up to date by
+The tables are Markdown. --before adds tables of an earlier revision; --into writes all of them into a page between the
+lines `<!-- sizes -->` and `<!-- end of sizes -->`, so that docs/architecture.md is brought up to date by
 
     tools/tree_sizes.py --before 902c57a --into docs/architecture.md
 """

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Reads result.xdmf back with VTK's XDMF reader and prints every time step and field: tools/xdmf_check.py DIR_OR_FILE.
 
-Exit status: 0 all readable, 1 something is missing or not finite where the HDF5 file is, 77 no VTK here (skipped).
+Exit status: 0 all fields can be read, 1 a field is missing or differs from the HDF5 file, 77 VTK is not installed
+(skipped).
 """
 
 import argparse
@@ -26,7 +27,7 @@ def load_reader():
 
 
 def first_grid(data):
-    """The unstructured grid in what the reader returns, which may wrap it in blocks."""
+    """The unstructured grid of the reader's result, which may wrap the grid in blocks."""
     while data is not None and hasattr(data, "GetNumberOfBlocks"):
         data = data.GetBlock(0)
     return data

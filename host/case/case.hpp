@@ -1,6 +1,6 @@
 #pragma once
-/// A case: all input of a run, typed, validated and in SI. The case file (io/case_file.hpp) knows text, keys and units;
-/// this header says what the values mean. Every member's default is the default of its key.
+/// A case is all input of a run as typed, validated values in SI units. The case file (io/case_file.hpp) knows text,
+/// keys and units; this header says what the values mean. The default of each member is the default of its key.
 
 #include <array>
 #include <cstddef>
@@ -21,8 +21,8 @@ enum class CaseKind { pack, probe, biaxial, biaxial_bvp, calibrate, column, tunn
 enum class MaterialKind { grains, linear_elastic };
 enum class LossGeometry { updated_lagrangian, fixed_mesh };
 
-/// [[soil.class]] Grains up to a size, which share one material (Table 1). A key that is not given has the value of
-/// [soil].
+/// [[soil.class]] Grains up to a size, which share one material (Table 1). Where the file does not give a key, the
+/// value of [soil] holds.
 struct GrainClassCase {
   double size_to = 0;  ///< largest diameter of the class [m]
   double modulus = 0, stiffness_ratio = 0, friction_angle = 0, rolling_stiffness = 0, rolling_limit = 0;  ///< as in
@@ -39,7 +39,7 @@ struct SoilCase {
   std::vector<double> sizes;      ///< grading curve: diameters, ascending [m]; empty: uniform by number in between
   std::vector<double> passing;    ///< share of grains below each size, ascending from 0 to 1 [-]
   GradingMeasure passing_by = GradingMeasure::area;  ///< shares of the grains' area (the mass in 2D) or of their number
-  std::vector<GrainClassCase> classes;               ///< by ascending size; empty: one class
+  std::vector<GrainClassCase> classes;               ///< by ascending size; empty: all grains are of one class
   double modulus = 3.0e9;                            ///< contact modulus E [Pa]
   double stiffness_ratio = 0.5;                      ///< k_t / k_n [-]
   double friction_angle = 0.43633231299858238;       ///< contact friction angle [rad], 25 deg
@@ -54,21 +54,22 @@ struct SoilCase {
 struct PackingCase {
   int grains = 700;                 ///< grains of one RVE
   std::int64_t seed = 1;            ///< first seed; the candidates are seed, seed + 1, ...
-  std::vector<std::int64_t> seeds;  ///< the seeds to make (kind = pack); empty: those of seed and candidates
-  int candidates = 1;               ///< seeds tried; the one with the least |tau_xy|/sigma_yy is taken
+  std::vector<std::int64_t> seeds;  ///< the seeds to make (kind = pack); empty: seed and candidates name them
+  int candidates = 1;               ///< number of seeds tried; the packing with the least |tau_xy|/sigma_yy is taken
   bool mirrored = true;             ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
-  std::filesystem::path file;  ///< NAME_particles.csv of another code's packing, or a packing_*.h5; empty: made from
-                               ///< the recipe. It brings its own grains: `grains`, seeds and density do not count
+  std::filesystem::path file;  ///< NAME_particles.csv of another code's packing, or a packing_*.h5; empty: the packing
+                               ///< is made from the recipe. A file has grains of its own: `grains`, seeds and density
+                               ///< are not used then
   std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
   double consolidation_friction = 0.0;            ///< friction coefficient mu_t during consolidation [-]
-  double void_ratio = 0.0;  ///< wanted at `pressure` [-]: mu_t is found for it; 0: consolidation_friction holds
+  double void_ratio = 0.0;  ///< wanted at `pressure` [-]; mu_t is searched for it; 0: consolidation_friction is mu_t
   double pressure = 1.0e3;  ///< isotropic pressure of the finished packing [Pa]
 };
 
 /// [engine] Speed and accuracy of the grain engine: a preset (engine.hpp), whose values single keys override.
 /// What each key costs and buys is measured in docs/trade.md. The defaults are the preset `standard`.
 struct EngineCase {
-  std::string preset = "standard";  ///< fast, standard or reference; counts for the fingerprint through its values only
+  std::string preset = "standard";  ///< fast, standard or reference; only its values are part of the fingerprint
   kernels::Precision precision = kernels::Precision::float32;  ///< value type of the pair loop
   double inertial_number = 3.0e-4;                             ///< target inertial number of an increment [-]
   double hold_tolerance = 3.0e-4;                              ///< unbalanced force ratio that ends the hold [-]
@@ -77,13 +78,13 @@ struct EngineCase {
   double skin = 0.1;                                           ///< neighbour skin over the mean grain diameter [-]
   int minimum_steps = 50;                                      ///< fewest strain steps of an increment
   int maximum_steps = 2000;                                    ///< most strain steps of an increment
-  double defer = 0;  ///< change of stress over pressure up to which RVEs answer by their tangent [-]; 0: never
+  double defer = 0;  ///< change of stress over pressure up to which an RVE answers by its tangent [-]; 0: never
 };
 
 /// [ground] The half domain: symmetry axis at x = 0, base at y = 0 (method.md, section 4).
 struct GroundCase {
   double unit_weight = 20.0e3;     ///< gamma [N/m3]
-  double surcharge = 1.0e3;        ///< pressure on the surface [Pa]; equals the RVEs' initial pressure
+  double surcharge = 1.0e3;        ///< pressure on the surface [Pa]; must equal the RVEs' initial pressure
   double width = 35.0;             ///< half width [m]
   double height = 35.0;            ///< [m]
   double diameter = 5.0;           ///< tunnel diameter D [m]
@@ -116,34 +117,34 @@ struct VolumeLossCase {
   LossGeometry geometry = LossGeometry::updated_lagrangian;
 };
 
-/// The key `tangent`: the tangent that the engine shall find. "auto" is no value here and leaves the choice to
-/// tangent_kind (engine.hpp).
+/// The key `tangent`: the tangent that the engine shall find. "auto" is the choice without a value, for which
+/// tangent_kind (engine.hpp) chooses.
 using TangentChoice = std::optional<kernels::TangentKind>;
 
-/// [newton] What "converged" means (design.md, The continuum), and how it is reached.
+/// [newton] The criteria of convergence (design.md, The continuum), and how the solver reaches them.
 struct NewtonCase {
-  double tolerance = 1.0e-3;               ///< of the free residual, relative to the external force [-]
-  double displacement_tolerance = 1.0e-2;  ///< of the last correction, relative to the increment [-]
+  double tolerance = 1.0e-3;               ///< bound of the free residual, relative to the external force [-]
+  double displacement_tolerance = 1.0e-2;  ///< bound of the last correction, relative to the increment [-]
   int maximum_iterations = 40;
   int anderson_depth = 5;                  ///< 0: plain Newton
-  TangentChoice tangent = {};              ///< of the RVEs, once an increment
-  double tangent_strain = 1.0e-6;          ///< of a loading tangent, the strain it is the secant of [-]
+  TangentChoice tangent = {};              ///< tangent of the RVEs, computed once an increment
+  double tangent_strain = 1.0e-6;          ///< the strain whose secants make a loading tangent [-]
   double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
-  double relax_below = 1.0;          ///< share of a planned step up to which a failed step is relaxed, not cut [-]
-  int relax_attempts = 3;            ///< iterates from the committed state before an increment is relaxed
-  double relax_near = 0.4;           ///< residual below which these end at once, relative as `tolerance` [-]
-  int relax_substeps = 100;          ///< most substeps of a relaxation; 0: none is relaxed
+  double relax_below = 1.0;  ///< a failed step up to this share of a planned one is relaxed, a larger one cut [-]
+  int relax_attempts = 3;    ///< iterates from the committed state before an increment is relaxed
+  double relax_near = 0.4;   ///< these iterates end at once below this residual, relative as `tolerance` [-]
+  int relax_substeps = 100;  ///< most substeps of a relaxation; 0: no increment is relaxed
   double smallest_cut = 1.0 / 64.0;  ///< smallest share of a planned step that cutting tries [-]
 };
 
 /// [output]
 struct OutputCase {
-  int every = 1;             ///< increments of a stage between two result files; a stage's last is always written
-  int checkpoint_every = 1;  ///< increments of a stage between two checkpoints; a stage's last, and where a run stops,
-                             ///< has one
+  int every = 1;             ///< increments of a stage between two result files; the last one of a stage always has one
+  int checkpoint_every = 1;  ///< increments of a stage between two checkpoints; the last increment of a stage, and one
+                             ///< after which a run stops, always have one
   std::vector<std::string> fields;                ///< names of the fields written (io/FORMAT.md); empty: all
   std::vector<std::int64_t> rves;                 ///< Gauss points whose whole RVE is written with each increment
-  kernels::MicrostructureRequest microstructure;  ///< fields of the contact network; nothing unless asked for
+  kernels::MicrostructureRequest microstructure;  ///< fields of the contact network; by default none
 };
 
 /// [elastic] The verification material.
@@ -152,22 +153,22 @@ struct ElasticCase {
   double poisson = 0.3;     ///< Poisson's ratio [-]
 };
 
-/// [[probe.path]] Increments put on the packing before it is probed, as the mesh would put them.
+/// [[probe.path]] Increments that are put on the packing before it is probed, as a mesh would put them.
 struct PathSegment {
   std::array<double, 4> gradient{};  ///< displacement gradient of each increment, xx xy yx yy [-]; det(1 + gradient) >
                                      ///< 0
   int increments = 1;
-  bool constant_xx = false;  ///< sigma_xx is held at its value: the gradient's xx is found, not given; gradient not 0
+  bool constant_xx = false;  ///< sigma_xx is held: the gradient's xx is searched, not given; the rest must not be 0
 };
 
 /// [probe] Displacement gradients put on the packing at the path's end, each from the same state.
 struct ProbeCase {
   double pressure = 1.0e5;  ///< isotropic pressure of the packing [Pa]
   double strain = 1.0e-4;   ///< size of each probe [-]
-  int replicas = 1;  ///< copies of path and probes whose gradients differ by 1e-6 of their size; the scatter of their
-                     ///< answers is that of chaos
-  TangentChoice tangent = kernels::TangentKind::contact;  ///< that is reported; kernels/README.md, "Static tangent"; a
-                                                          ///< loading one of `strain`
+  int replicas = 1;  ///< copies of path and probes whose gradients differ by 1e-6 of their size; their answers scatter
+                     ///< as chaotic motion makes them
+  TangentChoice tangent = kernels::TangentKind::contact;  ///< the tangent in the report (kernels/README.md,
+                                                          ///< "Static tangent"); a loading one is for `strain`
   std::vector<PathSegment> path;
 };
 
@@ -175,31 +176,32 @@ struct ProbeCase {
 struct BiaxialCase {
   std::vector<double> pressures = {1.0e5, 2.0e5, 4.0e5};  ///< confining pressures [Pa]
   double strain = 0.20;                                   ///< logarithmic axial strain at the end [-]
-  double inertial_number = 1.0e-4;                        ///< of the axial rate at the confining pressure [-]
-  double window = 0.01;  ///< axial strain over which curves are smoothed for strength and dilatancy [-]
-  int samples = 1000;    ///< points of a curve
+  double inertial_number = 1.0e-4;  ///< inertial number of the axial rate at the confining pressure [-]
+  double window = 0.01;             ///< axial strain over which curves are smoothed for strength and dilatancy [-]
+  int samples = 1000;               ///< points of a curve
 };
 
 /// [biaxial_bvp] A biaxial test on a rectangle of elements (biaxial_bvp.hpp).
 struct BiaxialBvpCase {
-  double pressure = 1.0e5;      ///< on the sides, and that of the packing [Pa]
+  double pressure = 1.0e5;      ///< pressure on the sides and of the packing [Pa]
   double width = 0.05;          ///< of the specimen [m]
   double height = 0.10;         ///< [m]
   int columns = 2;              ///< elements across
   int rows = 4;                 ///< elements upwards
   double strain = 0.10;         ///< the top's displacement at the end, over the height [-]
-  double strain_step = 1.0e-3;  ///< the same of one increment [-]
+  double strain_step = 1.0e-3;  ///< the top's displacement in one increment, over the height [-]
 
   [[nodiscard]] int increments() const { return static_cast<int>(strain / strain_step + 0.5); }
 };
 
-/// A target of a calibration: its value, and the difference from it that adds 1 to the misfit [rad, or -].
+/// A target of a calibration: the wanted value, and the difference from it that adds 1 to the misfit [rad, or -].
 struct CalibrationTarget {
   double value = 0, tolerance = 0;
 };
 
-/// [calibrate] Search of the grains' open parameters (method.md §3) for the strength of [biaxial]'s tests. A list of
-/// one value, or none, leaves that parameter as [soil] has it. Classes of grains keep their ratios to [soil].
+/// [calibrate] Search of the grains' open parameters (method.md §3) for the strength that the tests of [biaxial] show.
+/// A parameter whose list is empty keeps the value of [soil]; a list of one value fixes the parameter at this value.
+/// Classes of grains keep their ratios to [soil].
 struct CalibrateCase {
   static constexpr double degree = std::numbers::pi / 180.0;  ///< [rad]
   std::vector<double> rolling_stiffness;                      ///< beta: values of the first grid, ascending [-]
@@ -209,10 +211,10 @@ struct CalibrateCase {
   CalibrationTarget peak{39.1 * degree, 1.0 * degree};       ///< phi_p [rad]
   CalibrationTarget critical{33.0 * degree, 1.0 * degree};   ///< phi_cs [rad]
   CalibrationTarget dilatancy{14.0 * degree, 2.0 * degree};  ///< psi_max [rad]
-  double peak_strain_minimum = 0.02;  ///< axial strain at the peak, mean of the pressures: within these limits [-]
+  double peak_strain_minimum = 0.02;  ///< limits of the axial strain at the peak, mean of the pressures [-]
   double peak_strain_maximum = 0.05;
   double peak_strain_tolerance = 0.01;  ///< [-]
-  int confirm_grains = 700;             ///< of the packings on which the optimum and [soil] as given are tested
+  int confirm_grains = 700;             ///< grains of the packings on which the optimum and [soil] as given are tested
   std::vector<std::int64_t> confirm_seeds = {1, 2, 3};
   double confirm_inertial_number = 1.0e-4;  ///< [-]
 };
@@ -237,16 +239,16 @@ struct Case {
 
   std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
   std::string resolved;     ///< TOML of every value after defaults and overrides
-  std::string fingerprint;  ///< of all values that decide the results, in SI to 12 digits: other units give the same
-                            ///< one
+  std::string fingerprint;  ///< made of all values that decide the results, in SI to 12 digits: the same values in
+                            ///< other units have the same fingerprint
 };
 
-/// Kinds that advance in load increments on a mesh: with checkpoints, and interrupted between two of them.
+/// True for kinds that advance in load increments on a mesh. They have checkpoints and can stop between increments.
 [[nodiscard]] constexpr bool runs_on_a_mesh(CaseKind kind) {
   return kind == CaseKind::biaxial_bvp || kind == CaseKind::column || kind == CaseKind::tunnel;
 }
 
-/// As the key `kind` of a case file has them.
+/// The names that the key `kind` of a case file accepts.
 inline constexpr std::array<std::pair<CaseKind, const char*>, 7> case_kind_names{
     {{CaseKind::pack, "pack"},
      {CaseKind::biaxial, "biaxial"},

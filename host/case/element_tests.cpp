@@ -47,10 +47,11 @@ std::vector<PathSegment> read_path(const io::Table& table) {
     read_integer(entry, "increments", segment.increments, {.at_least = 1, .at_most = 1'000'000});
     segment.constant_xx = entry.boolean("constant_xx", false);
     const auto [xx, xy, yx, yy] = segment.gradient;
-    if (segment.constant_xx && xx != 0) throw entry.error("gradient", "must have no xx where constant_xx finds it");
+    if (segment.constant_xx && xx != 0)
+      throw entry.error("gradient", "must have no xx where constant_xx searches the xx");
     if (segment.constant_xx && xy == 0 && yx == 0 && yy == 0) {
       throw entry.error("gradient",
-                        "must not be 0 where constant_xx is to find its xx, which is sought within its size");
+                        "must not be 0 where constant_xx searches its xx: the size of the gradient limits the search");
     }
     if (!((1 + xx) * (1 + yy) - xy * yx > 0))
       throw entry.error("gradient", "leaves no area: det(1 + gradient) must be positive");
@@ -79,7 +80,7 @@ std::vector<double> read_list(const io::Table& table, const char* key, Dimension
     if (list[k] <= list[k - 1]) throw table.error(key, "must ascend");
   }
   if (!list.empty() && !(of_soil > 0))
-    throw table.error(key, "is searched, but is 0 in [soil]: its classes have no ratios");
+    throw table.error(key, "is searched but is 0 in [soil], so that the values of the classes have no ratio to it");
   return list;
 }
 
@@ -96,7 +97,7 @@ CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil) {
   out.rolling_limit = read_list(table, "rolling_limit", Dimension::none, soil.rolling_limit);
   out.thickness = read_list(table, "thickness", Dimension::length, soil.thickness);
   if (out.rolling_stiffness.size() < 2 && out.rolling_limit.size() < 2 && out.thickness.size() < 2) {
-    throw table.error("rolling_stiffness", "nothing is searched: name at least two values of one parameter");
+    throw table.error("rolling_stiffness", "leaves nothing to search: at least one parameter needs two values");
   }
   read_integer(table, "rounds", out.rounds, {.at_least = 0, .at_most = 10});
   read_target(table, "peak_angle", out.peak);
@@ -111,7 +112,7 @@ CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil) {
   read_integer(table, "confirm_grains", out.confirm_grains, {.at_least = 30, .at_most = 20000});
   out.confirm_seeds = table.integers("confirm_seeds", {.at_least = 0}, out.confirm_seeds);
   if (out.confirm_seeds.size() < 2)
-    throw table.error("confirm_seeds", "needs two seeds at least: one shows no scatter");
+    throw table.error("confirm_seeds", "needs at least two seeds: one packing shows no scatter");
   if (std::set<std::int64_t>(out.confirm_seeds.begin(), out.confirm_seeds.end()).size() != out.confirm_seeds.size()) {
     throw table.error("confirm_seeds", "names a seed twice");
   }

@@ -9,7 +9,7 @@ namespace voussoir::host {
 [[nodiscard]] BiaxialCase read_biaxial(const io::Table& table);
 [[nodiscard]] ProbeCase read_probe(const io::Table& table);
 
-/// @param soil whose parameters are searched
+/// @param soil the soil whose parameters are searched
 [[nodiscard]] CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil);
 
 }  // namespace voussoir::host

@@ -14,7 +14,7 @@ namespace {
 
 struct Preset {
   EngineCase values;
-  const char* error;  ///< as measured, see docs/trade.md
+  const char* error;  ///< the measured error of the stress, see docs/trade.md
 };
 
 const std::array<Preset, 3>& presets() {
@@ -26,9 +26,9 @@ const std::array<Preset, 3>& presets() {
         .minimum_steps = 30,
         .maximum_steps = 1000,
         .defer = 1e-3},
-       "stress off by 3 % of p at 1 kPa, 0.6 % at 100 kPa, 0.1 % at 800 kPa (rms of 8 packings)"},
+       "the stress is off by 3 % of p at 1 kPa, 0.6 % at 100 kPa, 0.1 % at 800 kPa (rms of 8 packings)"},
       {{.preset = "standard"},
-       "stress off by 2 % of p at 1 kPa, 0.3 % at 100 kPa, 0.04 % at 800 kPa (rms of 8 packings)"},
+       "the stress is off by 2 % of p at 1 kPa, 0.3 % at 100 kPa, 0.04 % at 800 kPa (rms of 8 packings)"},
       {{.preset = "reference",
         .precision = kernels::Precision::float64,
         .inertial_number = 3e-5,
@@ -36,8 +36,8 @@ const std::array<Preset, 3>& presets() {
         .hold_cap = 10000,
         .minimum_steps = 300,
         .maximum_steps = 200000},
-       "stress off by 1 % of p at 1 kPa, as repeats are, 0.2 % at 100 kPa (one packing in 8 snaps, the others 0.02 %), "
-       "0.001 % at 800 kPa"},
+       "the stress is off by 1 % of p at 1 kPa (repeated runs differ as much), 0.2 % at 100 kPa (one packing in 8 "
+       "rearranges suddenly, the others are off by 0.02 %), 0.001 % at 800 kPa"},
   }};
   return all;
 }
@@ -46,10 +46,10 @@ const Preset& find(const std::string& name) {
   for (const Preset& preset : presets()) {
     if (preset.values.preset == name) return preset;
   }
-  throw std::logic_error("no preset is called " + name);
+  throw std::logic_error("there is no preset of the name " + name);
 }
 
-/// Keys of `engine` that are not their preset's.
+/// The keys of `engine` whose values differ from those of the preset.
 std::string overridden(const EngineCase& engine, const EngineCase& preset) {
   std::string names;
   const auto compare = [&](const char* name, const auto& a, const auto& b) {
@@ -84,10 +84,10 @@ EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
   read_quantity(table, "skin", io::Dimension::none, engine.skin, {.at_least = "0.005", .at_most = "1"});
   read_integer(table, "minimum_steps", engine.minimum_steps, {.at_least = 1, .at_most = 10'000'000});
   read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
-  if (!on_a_mesh) engine.defer = 0;  // whatever the preset says
+  if (!on_a_mesh) engine.defer = 0;  // even where the preset defers
   read_quantity(table, "defer", io::Dimension::none, engine.defer, {.at_least = "0", .at_most = "0.1"});
   if (!on_a_mesh && engine.defer > 0)
-    throw table.error("defer", "is for kinds with a mesh: without one all grains are to run");
+    throw table.error("defer", "is for kinds with a mesh only: in all other kinds the grains of every RVE have to run");
   if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
   return engine;
 }
@@ -120,11 +120,13 @@ std::string engine_note(const EngineCase& engine) {
   if (others.empty())
     note += fmt::format(": {} (docs/trade.md)", preset.error);
   else
-    note += fmt::format(", but {} overridden: its measured error need not hold (docs/trade.md)", others);
+    note += fmt::format(", with other values of {}: the measured error of the preset may not hold (docs/trade.md)",
+                        others);
   if (engine.defer > 0) {
     note += fmt::format(
-        "; RVEs deferred up to {:g} of p: how far they were off is told at each stage's end, in tunnel_quick 2e-4 of p "
-        "(defer = 3e-4), 8e-4 (1e-3), 2e-3 and once 2e-2 (3e-3)",
+        "; RVEs are deferred up to {:g} of p: the log says at the end of each stage how far they were off; in "
+        "tunnel_quick "
+        "it was 2e-4 of p with defer = 3e-4, 8e-4 with 1e-3, 2e-3 and once 2e-2 with 3e-3",
         engine.defer);
   }
   return note;

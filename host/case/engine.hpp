@@ -1,6 +1,6 @@
 #pragma once
-/// [engine] as the engine takes it; its presets, and what they were measured to be wrong by (docs/trade.md,
-/// tools/trade).
+/// The table [engine], its presets with their measured errors (docs/trade.md, tools/trade), and the settings that the
+/// kernels take from it.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,8 @@
 
 namespace voussoir::host {
 
-/// The table [engine]. Throws io::InputError. @param on_a_mesh a kind with a mesh: only there RVEs may be deferred
+/// The table [engine]. Throws io::InputError. @param on_a_mesh true for a kind with a mesh; RVEs may be deferred only
+/// there
 [[nodiscard]] EngineCase read_engine(const io::Table& table, bool on_a_mesh);
 
 /// The key `tangent`. Throws io::InputError.
@@ -18,20 +19,20 @@ namespace voussoir::host {
 
 [[nodiscard]] std::vector<std::string> engine_preset_names();
 
-/// The values of a preset. Throws std::logic_error for a name that is none.
+/// The values of a preset. Throws std::logic_error where no preset has this name.
 [[nodiscard]] EngineCase engine_preset(const std::string& name);
 
-/// Preset and measured error of an engine in one line for a log; where keys differ from their preset, which do.
+/// One line for a log: the preset of an engine and its measured error, or the keys whose values differ from the preset.
 [[nodiscard]] std::string engine_note(const EngineCase& engine);
 
-/// What [engine] says of the engine's own settings. Of the tangents it says nothing; who wants some adds that.
+/// The kernels' settings as far as [engine] decides them. A caller that wants tangents adds the settings of these.
 [[nodiscard]] kernels::EngineSettings engine_settings(const EngineCase& engine);
 
-/// The tangent of a choice; where none is named, the elastic one, or with teams of threads that of eq. (4), the only
-/// one that teams find.
+/// The tangent of a choice. A choice without a value means the elastic tangent, or eq. (4) with teams of threads, which
+/// find no other.
 [[nodiscard]] kernels::TangentKind tangent_kind(TangentChoice choice, const EngineCase& engine);
 
-/// Whether [engine] decides anything of a case: packings and biaxial tests choose their own rates.
+/// True where [engine] decides anything. It does not for packings and biaxial tests, which have rates of their own.
 [[nodiscard]] bool uses_engine(CaseKind kind, MaterialKind material);
 
 }  // namespace voussoir::host

@@ -15,14 +15,14 @@ using io::Dimension;
 
 namespace {
 
-/// `sizes` and `passing`: a grading curve, which sets the smallest and the largest size.
+/// Reads `sizes` and `passing`, a grading curve, which also sets the smallest and the largest size.
 void read_grading(const io::Table& table, SoilCase& soil) {
   soil.sizes = table.quantities("sizes", Dimension::length, {.positive = true}, std::vector<std::string>{});
   soil.passing = table.quantities("passing", Dimension::none, {.at_least = "0", .at_most = "1"},
                                   std::vector<std::string>{});
   soil.passing_by = table.choice("passing_by", {"area", "number"}, "area") == "area" ? GradingMeasure::area
                                                                                      : GradingMeasure::number;
-  if (soil.sizes.size() != soil.passing.size()) throw table.error("passing", "has not as many entries as sizes");
+  if (soil.sizes.size() != soil.passing.size()) throw table.error("passing", "must have as many entries as sizes");
   if (soil.sizes.empty()) return;
   if (soil.sizes.size() < 2 || soil.passing.front() != 0.0 || soil.passing.back() != 1.0) {
     throw table.error("passing", "must rise from 0 to 1");
@@ -71,7 +71,8 @@ SoilCase read_soil(const io::Table& table) {
   }
   if (soil.size_maximum < soil.size_minimum) throw table.error("size_maximum", "is smaller than size_minimum");
   if (soil.size_maximum > 40 * soil.size_minimum) {
-    throw table.error("size_maximum", "is more than 40 times size_minimum: no RVE of this kind holds such a range");
+    throw table.error("size_maximum",
+                      "is more than 40 times size_minimum: an RVE cannot hold grains of so different sizes");
   }
   read_quantity(table, "modulus", Dimension::pressure, soil.modulus, {.positive = true});
   read_quantity(table, "stiffness_ratio", Dimension::none, soil.stiffness_ratio, {.at_least = "0", .at_most = "2"});

@@ -1,5 +1,5 @@
 #pragma once
-/// Keys of a case file whose default is a struct's own: what a member holds before is the key's default.
+/// Reading of single keys of a case file. The value that a member has before it is read is the default of its key.
 
 #include "io/case_file.hpp"
 

@@ -28,7 +28,7 @@ CaseKind read_kind(const io::Table& root) {
   throw std::logic_error("a choice that was not offered");
 }
 
-/// Tables of the grains. A case of another material may keep them, so that one `--set` changes the material.
+/// Reads the tables of the grains. They are allowed with any material, so that one `--set` can change the material.
 void read_grain_tables(const io::Table& root, Case& input) {
   input.soil = read_soil(root.table("soil"));
   input.packing = read_packing(root.table("packing"));
@@ -36,7 +36,7 @@ void read_grain_tables(const io::Table& root, Case& input) {
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
   if (input.kind != CaseKind::probe && input.packing.file.extension() == ".h5") {
     throw root.table("packing").error(
-        "file", "is a stored state, which only kind = \"probe\" starts from: all others need isotropic pressure");
+        "file", "is a stored state: only kind = \"probe\" can start from it, all other kinds need isotropic pressure");
   }
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) {
     input.biaxial = read_biaxial(root.table("biaxial"));
@@ -45,7 +45,7 @@ void read_grain_tables(const io::Table& root, Case& input) {
   if (input.kind == CaseKind::calibrate) input.calibrate = read_calibrate(root.table("calibrate"), input.soil);
 }
 
-/// Tables of every kind with a mesh.
+/// Reads the tables that every kind with a mesh has.
 void read_mesh_tables(const io::Table& root, Case& input) {
   const std::string material = root.choice("material", {"grains", "linear_elastic"}, "grains");
   input.material = material == "grains" ? MaterialKind::grains : MaterialKind::linear_elastic;
@@ -69,7 +69,7 @@ void read_ground_tables(const io::Table& root, Case& input) {
   }
 }
 
-/// Refuses what teams of threads do not compute.
+/// Refuses a case that asks for something that teams of threads do not compute.
 void check_teams(const io::Table& root, const Case& input) {
   const auto of_lanes = [](TangentChoice tangent) { return tangent && *tangent != kernels::TangentKind::contact; };
   if (of_lanes(input.newton.tangent)) {
@@ -88,7 +88,7 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The bytes of a packing from outside: its files may change under their names.
+/// The bytes of a packing from outside. The fingerprint includes them, because the files may change under their names.
 std::string packing_content(const std::filesystem::path& file) {
   if (file.extension() == ".h5") return bytes_of(file);
   std::string name = file.filename().string();
@@ -101,7 +101,7 @@ std::string packing_content(const std::filesystem::path& file) {
   return content;
 }
 
-/// The key `title`, else the folder of a case.toml, else the file's stem.
+/// The title of a case without the key `title`: its folder's name for a case.toml, the file's stem for other names.
 std::string default_title(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   const std::string folder = std::filesystem::absolute(file).parent_path().filename().string();
@@ -117,7 +117,7 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   input.kind = read_kind(root);
   input.name = root.text("title", default_title(file));
   if (input.name.empty() || input.name.front() == '.' || input.name.find('/') != std::string::npos) {
-    throw root.error("title", "names the folder of the results: no / in it and no dot before it");
+    throw root.error("title", "names the folder of the results: there must be no / in it and no dot at its beginning");
   }
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
@@ -125,7 +125,7 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();
   input.resolved = text.resolved();
-  // None of them changes a number; a preset does so through the values it gives.
+  // None of these keys changes a number: a preset acts only through the values that it gives to other keys.
   const std::array<std::string, 4> without{"title", "output", "packing.folder", "engine.preset"};
   input.fingerprint = text.fingerprint(without);
   if (!input.packing.file.empty())

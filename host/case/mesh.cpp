@@ -79,7 +79,7 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
   read_quantity(table, "strain_step", Dimension::none, test.strain_step, {.at_most = "0.05", .positive = true});
   if (test.strain > 100'000.5 * test.strain_step) throw table.error("strain_step", "makes more than 100000 increments");
   if (std::abs(test.increments() * test.strain_step - test.strain) > 1e-6 * test.strain) {
-    throw table.error("strain_step", "does not divide the strain");
+    throw table.error("strain_step", "must divide the strain into equal increments");
   }
   return test;
 }
@@ -115,7 +115,7 @@ OutputCase read_output(const io::Table& table) {
   output.fields = table.texts("fields", std::vector<std::string>{});
   for (const std::string& name : output.fields) {
     if (find_result_field(name) == nullptr)
-      throw table.error("fields", "\"" + name + "\" is no field, see io/FORMAT.md");
+      throw table.error("fields", "\"" + name + "\" is not a field, see io/FORMAT.md");
   }
   return output;
 }
@@ -124,7 +124,7 @@ kernels::MicrostructureRequest read_microstructure(const io::Table& table) {
   kernels::MicrostructureRequest request;
   for (const std::string& name : table.texts("microstructure", std::vector<std::string>{})) {
     if (!ask_for(name, request)) {
-      throw table.error("microstructure", "\"" + name + "\" is none of fabric, coordination, strong_networks");
+      throw table.error("microstructure", "\"" + name + "\" is neither fabric nor coordination nor strong_networks");
     }
   }
   return request;

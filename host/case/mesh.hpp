@@ -16,7 +16,7 @@ namespace voussoir::host {
 [[nodiscard]] NewtonCase read_newton(const io::Table& table);
 [[nodiscard]] OutputCase read_output(const io::Table& table);
 
-/// The key `microstructure` of [output], the only one that a case without a mesh has there.
+/// The key `microstructure` of [output]. A case without a mesh has only this key there.
 [[nodiscard]] kernels::MicrostructureRequest read_microstructure(const io::Table& table);
 
 }  // namespace voussoir::host

@@ -1,9 +1,10 @@
 #pragma once
-/// The fields of result files (io/FORMAT.md): one table, from which the record, the pool of RVEs, the mirrored batch,
-/// the estimate of storage and the check of `output.fields` all read. A new field is a row here and the line that
-/// computes its values, which finds the row by its name. A value that has a sign or a direction needs its `Mirror`
-/// here, or half of the points tell it the wrong way round. A value made of a number of kernels::RveReport must use one
-/// that `transfer_report` (material/rve_pool_state.cpp) stores, or it is 0 after a run has been resumed.
+/// The one table of the fields of result files (io/FORMAT.md). The record, the pool of RVEs, the mirrored batch, the
+/// estimate of storage and the check of `output.fields` all read it. A new field needs a row here and the line of code
+/// that computes its values; this line finds the row by its name when it is compiled. A value that has a sign or a
+/// direction needs its `Mirror`, or it is wrong at every second point, which answers as a mirror image. A value that is
+/// made of a number of kernels::RveReport must use one that `transfer_report` (material/rve_pool_state.cpp) stores, or
+/// it is 0 after a run has been resumed.
 
 #include <array>
 #include <stdexcept>
@@ -14,11 +15,11 @@
 
 namespace voussoir::host {
 
-/// What becomes of a value where an RVE answers as its mirror image (x to -x).
+/// The change of a value where an RVE answers as its mirror image (x to -x).
 enum class Mirror {
-  none,         ///< it stays; so do fields of the mesh, which are made from answers that are mirrored already
-  sign,         ///< it changes its sign
-  axis_from_x,  ///< an axis' angle from x in (-pi/2, pi/2]: it changes its sign, but the vertical stays
+  none,         ///< the value stays; also for fields of the mesh, whose values come from mirrored answers
+  sign,         ///< the value changes its sign
+  axis_from_x,  ///< angle of an axis from x in (-pi/2, pi/2]: it changes its sign, but pi/2 (vertical) stays
 };
 
 struct ResultField {
@@ -26,11 +27,11 @@ struct ResultField {
   const char* unit;
   int components;
   io::FieldLocation location = io::FieldLocation::gauss;
-  bool of_grains = false;  ///< only where the material is made of grains
+  bool of_grains = false;  ///< the field exists only where the material is made of grains
   Mirror mirror = Mirror::none;
-  /// Written only where this is asked for; nullptr: always.
+  /// The request without which the field is not written; nullptr: the field is always written.
   bool kernels::MicrostructureRequest::* request = nullptr;
-  /// Its value in what the kernels tell of a contact network; nullptr: it is no quantity of the network.
+  /// Takes the value from the kernels' report of a contact network; nullptr where the field is no part of this report.
   double (*of_network)(const kernels::Microstructure&) = nullptr;
 };
 
@@ -43,7 +44,7 @@ using Network = kernels::Microstructure;
 
 static_assert(kernels::strong_thresholds == std::array{1.0, 2.0, 2.5}, "the names below say the thresholds");
 
-/// In the order in which files have them.
+/// The rows stand in the order in which files have the fields.
 inline constexpr auto table = std::to_array<ResultField>({
     {"displacement", "m", 2, node},
     {"reaction", "N/m", 2, node},
@@ -79,7 +80,7 @@ inline constexpr auto table = std::to_array<ResultField>({
 
 inline constexpr const auto& result_field_table = result_field_rows::table;
 
-/// The row of a name; nullptr where the table has none.
+/// The row of a name; nullptr where the table has no such row.
 [[nodiscard]] constexpr const ResultField* find_result_field(std::string_view name) {
   for (const ResultField& field : result_field_table) {
     if (name == field.name) return &field;
@@ -87,19 +88,21 @@ inline constexpr const auto& result_field_table = result_field_rows::table;
   return nullptr;
 }
 
-/// The row of a name that the code itself writes: a name that the table lacks does not compile.
+/// The row of a name that stands in the code. The lookup is done by the compiler: a name that the table lacks is an
+/// error of compilation.
 [[nodiscard]] consteval const ResultField& result_field(std::string_view name) {
   const ResultField* found = find_result_field(name);
   if (found == nullptr) throw std::invalid_argument("result_field_table has no field of this name");
   return *found;
 }
 
-/// Whether a record with this request has the field, as far as the request decides it.
+/// False where a record with this request does not have the field.
 [[nodiscard]] constexpr bool is_asked_for(const ResultField& field, const kernels::MicrostructureRequest& wanted) {
   return field.request == nullptr || wanted.*field.request;
 }
 
-/// Adds what an entry of `output.microstructure` names; false where it names nothing.
+/// Adds the quantity that an entry of `output.microstructure` names to the request; false where there is no such
+/// quantity.
 [[nodiscard]] bool ask_for(std::string_view name, kernels::MicrostructureRequest& request);
 
 }  // namespace voussoir::host

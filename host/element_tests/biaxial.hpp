@@ -12,14 +12,14 @@
 
 namespace voussoir::host {
 
-/// One point of a test; soil mechanics' signs: compression positive.
+/// One point of a test, in the signs of soil mechanics: compression is positive.
 struct BiaxialPoint {
   double axial_strain;                     ///< logarithmic [-]
   double lateral_strain;                   ///< logarithmic [-]
   double stress_xx, stress_yy, stress_xy;  ///< [Pa]
   double unbalanced;                       ///< [-]
 
-  kernels::Microstructure microstructure = {};  ///< as far as it was asked for; grain rotation since the test's start
+  kernels::Microstructure microstructure = {};  ///< the requested part of it; grain rotation since the test's start
 
   [[nodiscard]] fem::PlaneTensor stress() const {
     return {-stress_xx, -stress_yy, -stress_xy};
@@ -35,22 +35,23 @@ struct BiaxialPoint {
 
 struct BiaxialCurve {
   std::int64_t seed = 0;
-  double pressure = 0;         ///< confining [Pa]
+  double pressure = 0;         ///< confining pressure [Pa]
   double void_ratio = 0;       ///< at the start [-]
-  double inertial_number = 0;  ///< of the axial rate at the confining pressure [-]
+  double inertial_number = 0;  ///< inertial number of the axial rate at the confining pressure [-]
   kernels::RveStatus status = kernels::RveStatus::converged;
   std::vector<BiaxialPoint> points;
 
-  /// Area of voids over area of grains [-]. @param point of this curve
+  /// Area of voids over area of grains [-]. @param point a point of this curve
   [[nodiscard]] double void_ratio_at(const BiaxialPoint& point) const {
     return (1.0 + void_ratio) * std::exp(-point.volumetric_strain()) - 1.0;
   }
 };
 
-/// All packings in one batch, each compressed along y from its own state, its own pressure held on x. The packing must
-/// rest at that pressure already. Throws std::invalid_argument where the rate asks for more than 1e9 steps.
+/// Tests all packings in one batch. Each is compressed along y from its own state while its own pressure is held on x;
+/// it must already be at rest under this pressure. Throws std::invalid_argument where the rate asks for more than 1e9
+/// steps.
 /// @param strain axial, logarithmic [-]; @param inertial_number sets the rate; @param samples points of a curve
-/// @param microstructure of each point; nothing is computed unless asked for, and the curve's bits stay the same
+/// @param microstructure the quantities of the contact network that each point gets; they do not change the curve
 [[nodiscard]] std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double strain,
                                                       double inertial_number, int samples,
                                                       const kernels::EngineSettings& settings,

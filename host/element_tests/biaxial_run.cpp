@@ -32,7 +32,7 @@ io::TableColumn column(const char* name, const char* unit, const std::vector<Bia
   return out;
 }
 
-/// What of a contact network every RVE of a mesh has, and what was asked for besides.
+/// Adds columns of the contact network: those that every RVE of a mesh has, and those that the case asks for.
 void add_microstructure(const BiaxialCurve& curve, const kernels::MicrostructureRequest& wanted,
                         std::vector<io::TableColumn>& table) {
   if (!wanted.any()) return;
@@ -120,7 +120,7 @@ struct Summary {
             {"valid", "-", valid}};
   }
 
-  /// Entries of the tests that were held.
+  /// The values of the tests that were held.
   [[nodiscard]] std::vector<double> of_valid(const std::vector<double>& values) const {
     std::vector<double> out;
     for (std::size_t k = 0; k < values.size(); ++k) {
@@ -130,12 +130,13 @@ struct Summary {
   }
 };
 
-/// Tests that a case asks for; a packing that does not come to rest leaves some out. A file is one packing a pressure.
+/// Number of tests that a case asks for; tests whose packing does not come to rest are left out later. A file gives one
+/// packing for each pressure.
 std::size_t wanted_tests(const PackingCase& recipe, const BiaxialCase& test) {
   return (recipe.file.empty() ? seeds_of(recipe).size() : 1) * test.pressures.size();
 }
 
-/// Exit code of the tests that a finished run has left; nothing where there is none.
+/// Exit code of a finished run, from the tests in its folder; nothing where there is no finished run.
 std::optional<int> finished_before(std::size_t wanted, const RunOptions& options) {
   const std::filesystem::path file = options.folder / "run.h5";
   if (!options.resume || !std::filesystem::exists(file)) return {};
@@ -156,7 +157,7 @@ int run_biaxial(const Case& input, const RunOptions& options) {
   const BiaxialCase& test = input.biaxial;
   const std::size_t wanted = wanted_tests(input.packing, test);
   if (const std::optional<int> before = finished_before(wanted, options)) {
-    std::printf("%s: finished already, nothing to do\n", options.folder.string().c_str());
+    std::printf("the run in %s is finished already, there is nothing to do\n", options.folder.string().c_str());
     return *before;
   }
   if (options.resume) std::printf("biaxial tests run all at once and have no checkpoint: they begin anew\n");
@@ -185,8 +186,8 @@ int run_biaxial(const Case& input, const RunOptions& options) {
         *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
   }
   if (curves.size() < wanted) {
-    std::fprintf(stderr, "biaxial: %zu of %zu tests have no packing that comes to rest\n", wanted - curves.size(),
-                 wanted);
+    std::fprintf(stderr, "biaxial: %zu of %zu tests were left out because their packings do not come to rest\n",
+                 wanted - curves.size(), wanted);
   }
   return failed || curves.size() < wanted ? exit_numerical : exit_ok;
 }

@@ -6,7 +6,7 @@
 
 namespace voussoir::host {
 
-/// Curves and strength to run.h5:/tables, a summary to standard output. Returns an exit code.
+/// Writes curves and strength to run.h5:/tables and a summary to standard output. Returns an exit code.
 [[nodiscard]] int run_biaxial(const Case& input, const RunOptions& options);
 
 }  // namespace voussoir::host

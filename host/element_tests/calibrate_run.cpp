@@ -43,7 +43,7 @@ void print(const char* label, const SetTests& one, const CalibrateCase& targets)
   std::printf("\n");
 }
 
-/// One row a set: what it is, what it gave.
+/// A table with one row for each set: its parameters, and the results of its tests.
 std::vector<io::TableColumn> table_of(const std::vector<SetTests>& sets, const std::vector<double>& rounds,
                                       const CalibrateCase& targets) {
   std::vector<io::TableColumn> columns{{"round", "-", rounds}, {"usable", "-", {}}, {"misfit", "-", {}}};
@@ -84,7 +84,7 @@ struct Search {
   void add(std::vector<SetTests> more, int round, const CalibrateCase& targets) {
     for (SetTests& one : more) {
       print(fmt::format("round {}", round).c_str(), one, targets);
-      one.curves.clear();  // hundreds of tests: what was read from them is enough
+      one.curves.clear();  // the results are kept; the curves of hundreds of tests would only take memory
       rounds.push_back(round);
       sets.push_back(std::move(one));
     }
@@ -100,7 +100,7 @@ struct Search {
   }
 };
 
-/// The tests with which the optimum is confirmed.
+/// The program of the tests that confirm the optimum.
 TestProgram confirmation(TestProgram program, const CalibrateCase& targets) {
   program.packing.grains = targets.confirm_grains;
   program.packing.seeds = targets.confirm_seeds;
@@ -148,7 +148,7 @@ std::vector<io::TableColumn> sensitivity_table(const Optimum& optimum) {
   return columns;
 }
 
-/// Every test of the confirmation.
+/// A table with one row for each test of the confirmation.
 std::vector<io::TableColumn> test_table(const std::vector<SetTests>& sets) {
   std::vector<io::TableColumn> c{{"set", "-", {}},
                                  {"seed", "-", {}},

@@ -6,8 +6,8 @@
 
 namespace voussoir::host {
 
-/// Grid, refinements, confirmation; tables `search`, `fit`, `tests` and `sensitivity` of run.h5, a summary to standard
-/// output. Returns an exit code.
+/// Tests the grid, refines around its optimum and confirms the optimum. Writes the tables `search`, `fit`, `tests` and
+/// `sensitivity` of run.h5 and a summary to standard output. Returns an exit code.
 [[nodiscard]] int run_calibrate(const Case& input, const RunOptions& options);
 
 }  // namespace voussoir::host

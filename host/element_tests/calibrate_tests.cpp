@@ -12,7 +12,8 @@ namespace voussoir::host {
 
 namespace {
 
-/// Packings of one set at all pressures, pressure by pressure. Throws std::runtime_error where a seed is lost.
+/// Packings of one set at all pressures, pressure by pressure. Throws std::runtime_error where a packing does not come
+/// to rest.
 std::vector<PackedRve> packings_of(const TestProgram& program, const ParameterSet& set) {
   const std::vector<std::int64_t> seeds = seeds_of(program.packing);
   std::vector<PackedRve> all;
@@ -26,14 +27,14 @@ std::vector<PackedRve> packings_of(const TestProgram& program, const ParameterSe
                                            seeds.size() - at_pressure.size(), seeds.size(), pressure * 1e-3));
     }
     for (PackedRve& rve : at_pressure) {
-      rve.pressure = pressure;  // the servo left it within a thousandth
+      rve.pressure = pressure;  // the consolidation has reached this pressure to a thousandth
       all.push_back(std::move(rve));
     }
   }
   return all;
 }
 
-/// What one seed's tests show.
+/// The observables that the tests of one seed give.
 Observation observe(std::span<const BiaxialCurve> curves, std::span<const Strength> strengths, std::int64_t seed) {
   std::vector<double> peak, peak_p, critical, critical_p;
   double dilatancy = 0, strain = 0;
@@ -51,7 +52,7 @@ Observation observe(std::span<const BiaxialCurve> curves, std::span<const Streng
   return {common_angle(peak, peak_p), common_angle(critical, critical_p), std::asin(dilatancy / n), strain / n};
 }
 
-/// Those of which no test was lost: `held` of each curve.
+/// The seeds all of whose tests held (strength.hpp).
 std::vector<std::int64_t> held_seeds(const std::vector<std::int64_t>& seeds, const SetTests& tests) {
   std::vector<std::int64_t> out;
   for (const std::int64_t seed : seeds) {

@@ -11,7 +11,7 @@ namespace {
 
 double squared(double x) { return x * x; }
 
-/// 1, x_i, x_i x_j of a place.
+/// The monomials 1, x_i and x_i x_j at a place.
 Eigen::VectorXd monomials(std::span<const double> place) {
   std::vector<double> out{1.0};
   for (std::size_t i = 0; i < place.size(); ++i) {
@@ -21,7 +21,7 @@ Eigen::VectorXd monomials(std::span<const double> place) {
   return Eigen::Map<Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
 }
 
-/// Calls body(place) for an even lattice over the box, `side` places along each dimension.
+/// Calls body(place) for each place of an even lattice over the box with `side` places along each dimension.
 template <class Body>
 void for_each_place(std::size_t dimensions, int side, const Body& body) {
   std::vector<int> at(dimensions, 0);
@@ -119,7 +119,8 @@ ResponseSurface::ResponseSurface(const SearchBox& box, std::span<const Measured>
   for (Eigen::Index k = 0; k < n; ++k) {
     const Measured& point = points[static_cast<std::size_t>(k)];
     const std::vector<double> place = box.place_of(point.set);
-    weights(k) = std::exp(-0.25 * distance_squared(place, center) / (range * range));  // of a row: its square weighs
+    // The row is multiplied by this factor, so that the square of the factor is the weight of its residual.
+    weights(k) = std::exp(-0.25 * distance_squared(place, center) / (range * range));
     rows.row(k) = weights(k) * monomials(place).transpose();
     for (std::size_t o = 0; o < Observable::count; ++o)
       values(k, static_cast<Eigen::Index>(o)) = weights(k) * point.value[o];
@@ -149,7 +150,7 @@ Optimum find_optimum(const SearchBox& box, std::span<const Measured> points, con
     return misfit(a.value, targets) < misfit(b.value, targets);
   };
   std::vector<double> center = box.place_of(std::min_element(points.begin(), points.end(), worse)->set);
-  // Twice: the best of the points may be a lucky one, the surface around it sees its neighbours.
+  // Done twice: the best point may be best by chance; the surface around it takes its neighbours into account.
   for (int k = 0; k < 2; ++k) center = lowest(box, ResponseSurface(box, points, center, range), targets, center, range);
   const ResponseSurface surface(box, points, center, range);
   Optimum best{.set = box.set_at(center), .scatter = surface.scatter()};

@@ -1,6 +1,6 @@
 #pragma once
-/// The search behind `kind = "calibrate"`: a grid of parameters, a quadratic response surface through the measurements
-/// on it, and the places to measure next. No grains are in here: the measurements come from calibrate_tests.hpp.
+/// The search of `kind = "calibrate"`: a grid of parameters, a quadratic response surface through the measurements on
+/// this grid, and the places to measure next. This file knows no grains: calibrate_tests.hpp makes the measurements.
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace voussoir::host {
 
-/// The open parameters of method.md §3, those of [soil]; classes of grains keep their ratios to them.
+/// The open parameters of method.md §3, which are keys of [soil]; classes of grains keep their ratios to [soil].
 struct Parameter {
   enum Index : std::size_t { rolling_stiffness, rolling_limit, thickness, count };
 };
@@ -28,13 +28,14 @@ struct Measured {
   Observation value{};
 };
 
-/// Sum of squared differences from the targets over their tolerances; within its limits the peak strain adds nothing.
+/// Sum of squared differences from the targets, each over its tolerance. A peak strain within its limits adds nothing.
 [[nodiscard]] double misfit(const Observation& value, const CalibrateCase& targets);
 
-/// The box that is searched: between the smallest and the largest value of each list, even in the logarithm.
+/// The box that is searched: from the smallest to the largest value of each list. Its coordinates are linear in the
+/// logarithm of the values.
 class SearchBox {
  public:
-  /// Lists of fewer than two values leave their parameter as `soil` has it.
+  /// A parameter with an empty list keeps the value of `soil`; a list of one value fixes the parameter at this value.
   SearchBox(const CalibrateCase& lists, const SoilCase& soil);
 
   [[nodiscard]] std::size_t dimensions() const { return searched_.size(); }
@@ -47,7 +48,8 @@ class SearchBox {
   /// All combinations of the lists.
   [[nodiscard]] std::vector<ParameterSet> grid() const;
 
-  /// Coordinates in [0, 1] of a set, one per dimension, and back (a place outside is moved to the box's side).
+  /// Coordinates of a set in [0, 1], one per dimension. set_at is the inverse; it moves a place outside to the box's
+  /// side.
   [[nodiscard]] std::vector<double> place_of(const ParameterSet& set) const;
   [[nodiscard]] ParameterSet set_at(std::span<const double> place) const;
 
@@ -60,8 +62,8 @@ class SearchBox {
 /// Weighted least-squares quadratics, one per observable, over places of a box.
 class ResponseSurface {
  public:
-  /// Near `center`, where weights fall off over `range`. With fewer points than coefficients the smallest coefficients
-  /// are taken.
+  /// Fits the surface near `center`; the weights fall off over the distance `range`. With fewer points than
+  /// coefficients the solution with the smallest coefficients is taken.
   ResponseSurface(const SearchBox& box, std::span<const Measured> points, std::span<const double> center, double range);
 
   [[nodiscard]] Observation at(std::span<const double> place) const;
@@ -77,8 +79,8 @@ class ResponseSurface {
 struct Optimum {
   ParameterSet set{};
   Observation scatter{};
-  std::array<Observation, Parameter::count> per_doubling{};  ///< change of the observables when a parameter doubles; 0:
-                                                             ///< not searched
+  std::array<Observation, Parameter::count> per_doubling{};  ///< change of the observables when a parameter doubles; 0
+                                                             ///< when not searched
 };
 [[nodiscard]] Optimum find_optimum(const SearchBox& box, std::span<const Measured> points, const CalibrateCase& targets,
                                    int round);

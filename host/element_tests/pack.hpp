@@ -1,5 +1,5 @@
 #pragma once
-/// `kind = "pack"`: packings of a recipe, made and stored.
+/// `kind = "pack"` makes packings of a recipe and stores them.
 
 #include "host/case/case.hpp"
 

@@ -23,7 +23,7 @@ namespace {
 
 const PackingNote print = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
 
-/// Far below what matters to the stress, far above what float rounds away.
+/// The difference is too small to matter to the stress by itself, and far larger than the rounding of float.
 constexpr double replica_difference = 1e-6;
 
 struct Probe {
@@ -51,7 +51,7 @@ std::vector<double> scales(int replicas) {
   return scale;
 }
 
-/// What the run's tables hold so far.
+/// The rows of the run's tables so far.
 struct Tables {
   std::string path =
       "seed,replica,increment,evaluations,strain_xx,strain_yy,strain_xy,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,void_"
@@ -82,17 +82,18 @@ void print_probe(const Probe& probe, const fem::Stress& change, double strain) {
   std::printf("%-9s %12.4f %12.4f %12.4f\n", probe.name, slope(0), slope(1), slope(2));
 }
 
-/// By the answer's own name: where what was asked for was not found, it is another one.
+/// Prints a tangent with the name of the kind that was found. This kind differs from the requested one where the
+/// requested tangent was not found.
 void print_tangent(const kernels::RveReport& report) {
   const fem::Tangent d = whole_tangent_of(report) * 1e-6;
   std::printf("tangent (%s) [MPa]: xxxx %.4f xxyy %.4f xxxy %.4f yyyy %.4f yyxy %.4f xyxy %.4f",
               kernels::name_of(report.tangent_kind), d(0, 0), d(0, 1), d(0, 2), d(1, 1), d(1, 2), d(2, 2));
   if (report.tangent_kind == kernels::TangentKind::loading)
     std::printf(" yyxx %.4f xyxx %.4f xyyy %.4f", d(1, 0), d(2, 0), d(2, 1));
-  std::printf("%s\n", report.tangent_capped ? "; not found within its iterations" : "");
+  std::printf("%s\n", report.tangent_capped ? "; the iterations ended before its tolerance was met" : "");
 }
 
-/// The path; its end into `rve`. Returns what failed.
+/// Takes the path and stores its end in `rve`. Returns a sentence about a failure, empty without one.
 std::string take_path(const ProbeCase& probe, const EngineCase& engine, PackedRve& rve, Tables& tables) {
   const std::vector<double> scale = scales(probe.replicas);
   RvePool pool(rve, {engine}, scale.size());
@@ -119,7 +120,7 @@ std::string take_path(const ProbeCase& probe, const EngineCase& engine, PackedRv
   return {};
 }
 
-/// All probes of all replicas from the state `rve`. Returns what failed.
+/// Makes all probes of all replicas from the state `rve`. Returns a sentence about a failure, empty without one.
 std::string take_probes(const ProbeCase& wanted, const EngineCase& engine, const PackedRve& rve, Tables& tables,
                         bool show) {
   const std::vector<Probe> all = probes(wanted.strain);
@@ -152,7 +153,7 @@ std::string take_probes(const ProbeCase& wanted, const EngineCase& engine, const
   return report.usable ? "" : fmt::format("seed {}, {}", rve.seed, report.message);
 }
 
-/// The packings that are probed; several are not compared with each other, so their bias is not measured.
+/// The packings that are probed. Where there are several, all are used, so that no bias has to be measured to choose.
 std::vector<PackedRve> packings_to_probe(const SoilCase& soil, PackingCase recipe, double pressure) {
   recipe.pressure = pressure;
   if (recipe.seeds.empty() || !recipe.file.empty()) return {choose_packing(soil, recipe, print)};

@@ -12,8 +12,8 @@ namespace voussoir::host {
 
 namespace {
 
-/// Looks for the gradient's xx at which sigma_xx has its wanted value: secants, whose slope is kept within what contact
-/// tangents (stiff) and yielding packings (soft) make plausible.
+/// Searches the gradient's xx at which sigma_xx has its wanted value, by secants. Their slope is kept between the
+/// contact tangent, which is stiff, and a small share of it, as yielding packings have.
 class LateralSearch {
  public:
   LateralSearch(double first, double wanted) : x_(first), wanted_(wanted) {}
@@ -33,7 +33,8 @@ class LateralSearch {
     x_before_ = x_;
     error_before_ = error;
     seen_ = true;
-    x_ -= tangent > 0 ? std::clamp(error / slope, -longest, longest) : longest;  // an open packing is brought together
+    // A packing without contacts has no tangent; it is compressed until it has contacts.
+    x_ -= tangent > 0 ? std::clamp(error / slope, -longest, longest) : longest;
   }
 
  private:
@@ -49,13 +50,13 @@ fem::Gradient gradient_of(const PathSegment& segment, double scale) {
   return scale * h;
 }
 
-/// All RVEs on their way.
+/// The state of all RVEs along the path.
 struct Walk {
   RvePool& pool;
   std::vector<fem::Gradient> gradients;
   std::vector<fem::Stress> stress;
   std::vector<fem::Tangent> tangent;
-  std::vector<kernels::Mat2> f;  ///< since the path's start
+  std::vector<kernels::Mat2> f;  ///< deformation gradient since the path's start
   std::vector<double> wanted;    ///< sigma_xx where it is held [Pa]
   std::vector<double> lateral;   ///< gradient's xx over its norm in the last increment
 
@@ -74,7 +75,7 @@ struct Walk {
 struct IncrementEnd {
   fem::BatchReport report;
   int evaluations = 0;
-  double miss = 0;  ///< largest, where sigma_xx was held [-]
+  double miss = 0;  ///< the largest deviation of sigma_xx where it was held [-]
 };
 
 IncrementEnd evaluate_given(Walk& walk) {

@@ -14,7 +14,7 @@ namespace voussoir::host {
 struct PathPoint {
   std::size_t rve = 0;
   int increment = 0;      ///< 1, 2, ... over all segments
-  int evaluations = 0;    ///< of this increment so far, the last one included
+  int evaluations = 0;    ///< evaluations that this increment took
   kernels::Mat2 strain;   ///< log F since the path's start, extension positive [-]
   fem::Stress stress;     ///< tension positive [Pa]
   double void_ratio = 0;  ///< [-]
@@ -24,9 +24,9 @@ struct PathPoint {
 /// How a path ended.
 struct PathEnd {
   bool usable = true;
-  std::string message;      ///< what failed and when; empty when usable
-  int missed = 0;           ///< increments that end beyond `lateral_tolerance` after `most_evaluations`
-  double largest_miss = 0;  ///< of all RVEs and held increments, |sigma_xx - wanted| over the wanted one [-]
+  std::string message;      ///< a sentence that says what failed and when; empty when usable
+  int missed = 0;           ///< increments that end beyond `lateral_tolerance`, after `most_evaluations` evaluations
+  double largest_miss = 0;  ///< over all RVEs and held increments: |sigma_xx - wanted| / |wanted| [-]
 };
 
 /// Takes all RVEs of `pool` along the segments, each increment by `evaluate` and `commit`. Where a segment holds
@@ -38,7 +38,7 @@ struct PathEnd {
 [[nodiscard]] PathEnd walk_path(RvePool& pool, std::span<const PathSegment> segments, std::span<const double> scale,
                                 const std::function<void(const PathPoint&)>& note);
 
-inline constexpr double lateral_tolerance = 5e-3;  ///< |sigma_xx - wanted| over the wanted one [-]
+inline constexpr double lateral_tolerance = 5e-3;  ///< |sigma_xx - wanted| / |wanted| [-]
 inline constexpr int most_evaluations = 10;
 
 }  // namespace voussoir::host

@@ -68,7 +68,7 @@ Strength strength_of(const BiaxialCurve& curve, double window) {
 double mean_stress_at(double pressure, double angle) { return pressure / (1.0 - std::sin(angle)); }
 
 bool held(const BiaxialCurve& curve, const Strength& strength) {
-  constexpr double most_scatter = 0.1;  // beyond it a test is not the one that was asked for
+  constexpr double most_scatter = 0.1;  // with more scatter the test is not one at a constant lateral stress
   return curve.status == kernels::RveStatus::converged && strength.lateral_scatter <= most_scatter;
 }
 

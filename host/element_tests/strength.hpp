@@ -10,7 +10,7 @@ namespace voussoir::host {
 /// Strength and dilatancy of one curve.
 struct Strength {
   double peak_angle = 0;       ///< phi_p, sin phi = q/p at its largest [rad]
-  double peak_strain = 0;      ///< axial strain there [-]
+  double peak_strain = 0;      ///< axial strain at the largest q/p [-]
   double critical_angle = 0;   ///< phi_cs, mean of q/p over the last quarter of the axial strain [rad]
   double dilatancy = 0;        ///< psi_max, sin psi = max(-d eps_v / d eps_q) [rad]
   double contraction = 0;      ///< largest eps_v [-]
@@ -18,11 +18,11 @@ struct Strength {
   double lateral_scatter = 0;  ///< root mean square of sigma_xx / pressure - 1 [-]
 };
 
-/// q/p and the slope of eps_v against eps_q are taken over a moving window of axial strain (mean and least-squares
-/// line).
+/// Reads strength and dilatancy from a curve. Within a moving window of axial strain q/p is averaged, and the slope of
+/// eps_v against eps_q is that of a least-squares line.
 [[nodiscard]] Strength strength_of(const BiaxialCurve& curve, double window);
 
-/// p [Pa] where a test under `pressure` [Pa] on x mobilises `angle` [rad].
+/// The mean stress p [Pa] at which a test under `pressure` [Pa] on x mobilises the friction angle `angle` [rad].
 [[nodiscard]] double mean_stress_at(double pressure, double angle);
 
 /// True if the test reached its end and sigma_xx was held with a scatter below a tenth.

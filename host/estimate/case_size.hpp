@@ -7,15 +7,16 @@ namespace voussoir::host {
 
 struct CaseSize {
   std::size_t points = 0;         ///< Gauss points of the largest mesh
-  std::size_t column_points = 0;  ///< of the column
+  std::size_t column_points = 0;  ///< Gauss points of the column
   std::size_t increments = 0;     ///< planned, all stages
-  double grains = 0;              ///< of all RVEs of the largest mesh; 0 without grains
-  double particle_steps = 0;      ///< estimate of the whole run [grains x steps], packings apart; 0 without grains
-  std::size_t tests = 0;          ///< of packings, for kinds without a mesh
-  std::size_t packings = 0;       ///< to be made or found
-  double memory = 0;              ///< estimate of the first process [bytes]; 0 without a mesh
-  double result_file = 0;         ///< estimate [bytes]; 0 without a mesh
-  double checkpoint = 0;          ///< estimate; two are kept [bytes]
+  double grains = 0;              ///< grains of all RVEs of the largest mesh; 0 without grains
+  double particle_steps = 0;  ///< estimate for the whole run [grains x steps] without the making of packings; 0 without
+                              ///< grains
+  std::size_t tests = 0;      ///< tests of packings, for kinds without a mesh
+  std::size_t packings = 0;   ///< packings to be made or found
+  double memory = 0;          ///< estimate for the first process [bytes]; 0 without a mesh
+  double result_file = 0;     ///< estimate [bytes]; 0 without a mesh
+  double checkpoint = 0;      ///< estimate for one checkpoint, of which two are kept [bytes]
 };
 
 }  // namespace voussoir::host

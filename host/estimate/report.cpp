@@ -17,7 +17,8 @@ std::string bytes_text(double bytes) {
 void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& case_name) {
   for (const std::int64_t point : output.rves) {
     if (static_cast<std::size_t>(point) < size.points) continue;
-    throw io::InputError(case_name, "output.rves", fmt::format("names point {} of {}", point, size.points));
+    throw io::InputError(case_name, "output.rves",
+                         fmt::format("names the point {}, but the mesh has only {} points", point, size.points));
   }
 }
 
@@ -26,29 +27,29 @@ std::vector<std::string> describe(const CaseSize& size, MaterialKind material, c
   std::vector<std::string> lines;
   if (!packing.file.empty()) {
     lines.push_back(
-        fmt::format("packing.file holds {} grains; packing.grains, seeds and density do not count", packing.grains));
+        fmt::format("packing.file holds {} grains; packing.grains, seeds and density are not used", packing.grains));
   } else if (material == MaterialKind::grains) {
-    lines.push_back(fmt::format("{} packings of {} grains to be made or found", size.packings, packing.grains));
+    lines.push_back(fmt::format("{} packings of {} grains have to be made or found", size.packings, packing.grains));
   }
   if (size.tests > 0) {
-    lines.push_back(
-        fmt::format("{} tests, about {:.2g} particle-steps, packings apart", size.tests, size.particle_steps));
+    lines.push_back(fmt::format("{} tests take about {:.2g} particle-steps, the making of packings not included",
+                                size.tests, size.particle_steps));
   }
   if (size.points > 0) {
-    lines.push_back(fmt::format("{} Gauss points, {} in the column, {} increments planned", size.points,
-                                size.column_points, size.increments));
+    lines.push_back(fmt::format("{} Gauss points in the largest mesh, {} in the column; {} increments are planned",
+                                size.points, size.column_points, size.increments));
   }
   if (size.grains > 0) {
     lines.push_back(
-        fmt::format("{:.3g} grains in all, about {:.2g} particle-steps (an estimate, good to a factor of 2)",
+        fmt::format("{:.3g} grains in all take about {:.2g} particle-steps (this estimate is good to a factor of 2)",
                     size.grains, size.particle_steps));
   }
   if (size.points > 0) {
     const auto files = static_cast<double>(size.increments) / output.every;
-    lines.push_back(
-        fmt::format("about {} of memory; result files of {} each, {} in all; checkpoints of {}, two are kept",
-                    bytes_text(size.memory), bytes_text(size.result_file), bytes_text(files * size.result_file),
-                    bytes_text(size.checkpoint)));
+    lines.push_back(fmt::format(
+        "the run takes about {} of memory, result files of {} each ({} in all) and two checkpoints of {} each",
+        bytes_text(size.memory), bytes_text(size.result_file), bytes_text(files * size.result_file),
+        bytes_text(size.checkpoint)));
   }
   return lines;
 }

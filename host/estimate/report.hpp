@@ -1,5 +1,5 @@
 #pragma once
-/// The estimates as text for the user, before a case is run.
+/// The estimates as text for the user who asks before a run.
 
 #include <string>
 #include <vector>

@@ -7,11 +7,11 @@
 namespace voussoir::host {
 namespace {
 
-// Measured: 984 RVEs of 300 grains took 179.5 MB, checkpoints of 18.94 MB and result files of 278 kB; 3344 RVEs of 700
-// grains 915.8 MB, 148.1 MB and, with five whole RVEs, 1.33 MB.
-constexpr double process_bytes = 73e6;    ///< of the program with its libraries
-constexpr double memory_a_grain = 360.0;  ///< committed and trial state with room for four contacts a grain, a
-                                          ///< checkpoint's copies
+// Measured values: 984 RVEs of 300 grains took 179.5 MB, checkpoints of 18.94 MB and result files of 278 kB; 3344 RVEs
+// of 700 grains 915.8 MB, 148.1 MB and, with five whole RVEs, 1.33 MB.
+constexpr double process_bytes = 73e6;    ///< memory of the program with its libraries
+constexpr double memory_a_grain = 360.0;  ///< committed and trial state with room for four contacts a grain, and
+                                          ///< the copies of which a checkpoint is made
 constexpr double contacts_a_grain = 1.93;
 constexpr double nodes_a_point = 0.79;  ///< of the study's meshes: 3.16 nodes an element
 constexpr double file_overhead = 30e3;  ///< attributes and groups of a result file
@@ -22,7 +22,8 @@ bool is_wanted(const OutputCase& output, const ResultField& field) {
          (names.empty() || std::find(names.begin(), names.end(), field.name) != names.end());
 }
 
-/// ParaView's copies included: vectors with a third component, means over the four points of an element.
+/// Size of a result file, with the copies for ParaView: vectors with a third component, and the means over the four
+/// points of an element.
 double result_file_bytes(MaterialKind material, const PackingCase& packing, const OutputCase& output, double points,
                          double nodes) {
   double bytes = file_overhead;
@@ -39,7 +40,7 @@ double result_file_bytes(MaterialKind material, const PackingCase& packing, cons
 void add_storage(CaseSize& size, MaterialKind material, const PackingCase& packing, const OutputCase& output) {
   const auto points = static_cast<double>(size.points);
   size.result_file = result_file_bytes(material, packing, output, points, nodes_a_point * points);
-  // Committed RVEs (position and rotation; key and history of each contact) and the mesh's own state.
+  // A checkpoint holds committed RVEs (position and rotation, key and history of each contact) and the mesh's state.
   size.checkpoint = size.grains * (24.0 + 20.0 * contacts_a_grain) + 300.0 * points;
   size.memory = process_bytes + memory_a_grain * size.grains;
 }

@@ -1,12 +1,12 @@
 #pragma once
-/// What a case takes of memory and disk.
+/// An estimate of the memory and the disk space that a case takes.
 
 #include "host/case/case.hpp"
 #include "host/estimate/case_size.hpp"
 
 namespace voussoir::host {
 
-/// Adds memory, result files and checkpoints to a size that knows its points and grains.
+/// Sets memory, result files and checkpoints of a size whose points and grains are known.
 void add_storage(CaseSize& size, MaterialKind material, const PackingCase& packing, const OutputCase& output);
 
 }  // namespace voussoir::host

@@ -19,19 +19,22 @@ namespace {
 //   cases/tunnel_quick, I = 3e-4      column 1.7, 132; gravity 1.8, 131; volume loss 4.9, 146
 //   the same, coarser, 1e-4, V_l 5 %  column 1.7, 218; gravity 1.9, 206; volume loss 3.0, 160
 //   cases/column, I = 2e-4            column 1.7, 144
-// With the constants below these runs are estimated at 1.1, 1.4 and 0.95 of what they took, and tunnel_quick with two
-// other packings (packing.seed = 20, 40), which were harder to bring to equilibrium, at 0.76 and 0.67. Since increments
-// are relaxed (fem/README.md) the later evaluations have few steps: the constants count whole ones. tunnel_quick to V_l
-// = 20 %, 80 increments: evaluations 2.0 (gravity), 3.5 to 10 %, 4.8 beyond.
+// With the constants below the estimates are 1.1, 1.4 and 0.95 of the work that these runs took. For tunnel_quick with
+// two other packings (packing.seed = 20, 40), whose equilibrium was harder to find, they are 0.76 and 0.67. Relaxed
+// increments (fem/README.md) have later evaluations of few steps; the constants count evaluations of the full number of
+// steps. tunnel_quick to V_l = 20 % in 80 increments took 2.0 evaluations an increment in gravity, 3.5 up to V_l = 10
+// %, 4.8 beyond.
 constexpr double gravity_evaluations = 1.2;
 constexpr double loss_evaluations = 4.5;
 constexpr double gravity_strain = 0.014;  ///< mean strain of an RVE over the load factor's step
 constexpr double loss_strain = 0.2;       ///< mean strain of an RVE over the volume loss of an increment
 constexpr double hold_steps = 30;
-constexpr double specimen_evaluations = 5.0;  ///< cases/biaxial_bvp: 7, most of them of few steps
-constexpr double specimen_strain = 1.4;       ///< norm of an RVE's strain over the top's, without change of volume
+constexpr double specimen_evaluations = 5.0;  ///< cases/biaxial_bvp took 7, most of them with few steps
+constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the strain of the specimen, without change of
+                                         ///< volume
 
-/// Steps to a strain at an inertial number, for a grain of the mean radius.
+/// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)). The mass m is the scaled one of
+/// kernels/README.md, with which one time step is stable for all sizes, for six neighbours.
 double inertial_steps(const SoilCase& soil, double strain, double pressure, double inertial_number) {
   const kernels::GrainMaterial grain{.modulus = soil.modulus, .stiffness_ratio = soil.stiffness_ratio};
   const double mean_radius = 0.25 * (soil.size_minimum + soil.size_maximum);
@@ -47,7 +50,7 @@ double steps_per_evaluation(const SoilCase& soil, const EngineCase& engine, doub
          std::min(hold_steps, static_cast<double>(engine.hold_cap));
 }
 
-/// Packings of one pressure.
+/// Number of packings at one pressure.
 std::size_t packings(const PackingCase& recipe) {
   return recipe.file.empty() ? seeds_of(recipe).size() : std::size_t{1};
 }
@@ -88,7 +91,7 @@ CaseSize specimen_size(const BiaxialBvpCase& test, MaterialKind material, const 
   return size;
 }
 
-/// Grid, refinements and confirmation of a search.
+/// The size of a calibration: its grid, refinements and confirmation.
 CaseSize search_size(const CalibrateCase& search, const BiaxialCase& test, const SoilCase& given,
                      const PackingCase& recipe) {
   const SearchBox box(search, given);

@@ -1,6 +1,6 @@
 #pragma once
-/// The engine's reports as fem takes them. The sums run in the same order on whichever ranks the RVEs ran, so that the
-/// bits are the same.
+/// The engine's reports in the form that fem takes. The order of the sums does not depend on the ranks on which the
+/// RVEs ran, so that the bits are the same.
 
 #include <span>
 
@@ -11,7 +11,7 @@ namespace voussoir::host {
 
 [[nodiscard]] fem::Stress stress_of(const kernels::RveReport& report);
 
-/// The symmetric tangent [Pa]; fem is given this one.
+/// The symmetric tangent [Pa], which fem is given.
 [[nodiscard]] fem::Tangent tangent_of(const kernels::RveReport& r);
 
 /// The tangent with its antisymmetric part, which only loading tangents have: rows by stress, columns by strain [Pa].
@@ -22,7 +22,7 @@ namespace voussoir::host {
 void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
                   std::span<fem::Tangent> tangent);
 
-/// The report of a whole evaluation from those of its RVEs; `work` and `deferral_error` are the caller's to fill in.
+/// The report of a whole evaluation, made from the reports of its RVEs. The caller sets `work` and `deferral_error`.
 /// @param pressure_floor the engine's unbalanced ratios are relative to at least this pressure [Pa]
 [[nodiscard]] fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor);
 

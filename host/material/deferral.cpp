@@ -11,7 +11,8 @@ namespace voussoir::host {
 
 namespace {
 
-/// T of R sigma R^T = T sigma for (xx, yy, xy); R D R^T is T D T^T for engineering shears.
+/// The matrix T with R sigma R^T = T sigma for sigma = (xx, yy, xy). A tangent D for engineering shears turns into T D
+/// T^T.
 fem::Tangent turning(double angle) {
   const double c = std::cos(angle);
   const double s = std::sin(angle);
@@ -57,10 +58,10 @@ void Deferral::begin_increment() { std::fill(trial_.begin(), trial_.end(), Trial
 
 fem::Gradient Deferral::whole(std::size_t rve, const fem::Gradient& h) const {
   const fem::Gradient& before = rves_[rve].gradient;
-  return h + before + h * before;  // F_rel F - I without cancellation
+  return h + before + h * before;  // this is F_rel F - I, written without cancellation
 }
 
-/// Written so that a number that is none makes the grains run, and say so.
+/// The comparisons are false for NaN, so that the grains run and report the failure.
 bool Deferral::within_bound(const Committed& rve, double change) const {
   const double p = rve.grains.pressure();
   return rve.grains.status == kernels::RveStatus::converged && p > pressure_floor_ && change <= bound_ * rve.trust * p;
@@ -96,7 +97,7 @@ bool Deferral::commit(std::size_t rve, const fem::Gradient& h, const kernels::Rv
     ++at.commits;
     return true;
   }
-  constexpr double least_trust = 1e-3;  // so that it comes back within ten checks
+  constexpr double least_trust = 1e-3;  // with this bound the trust is back at 1 after ten passed checks
   const double error = trial_[rve].error;
   at.trust = error > bound_ ? std::max(0.5 * at.trust * bound_ / error, least_trust) : std::min(1.0, 2 * at.trust);
   at.gradient.setZero();

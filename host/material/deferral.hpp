@@ -50,12 +50,13 @@ class Deferral {
   [[nodiscard]] bool on() const { return bound_ > 0; }
   [[nodiscard]] double bound() const { return bound_; }
 
-  /// The part of an RVE's record that outlives an increment.
+  /// The part of an RVE's record that is kept from increment to increment.
   struct Committed {
-    fem::Gradient gradient = fem::Gradient::Zero();  ///< F - I since the grains ran, which they have not followed yet
-    kernels::RveReport grains;                       ///< of that run
+    fem::Gradient gradient = fem::Gradient::Zero();  ///< F - I since the last run of the grains, which have not
+                                                     ///< followed it yet
+    kernels::RveReport grains;                       ///< report of that run
     double trust = 1;                                ///< share of the bound that this RVE is granted
-    int commits = 0;                                 ///< since the grains ran
+    int commits = 0;                                 ///< commits since the grains ran
   };
 
   /// Begins with RVEs whose grains have all just run and gave these reports.
@@ -65,16 +66,17 @@ class Deferral {
   /// F - I since the grains' last run, if this increment's displacement gradient is `h`.
   [[nodiscard]] fem::Gradient whole(std::size_t rve, const fem::Gradient& h) const;
 
-  /// Writes a report of 0 steps in place of the grains' and returns true if the RVE may be deferred. Otherwise returns
-  /// false: its grains have to run with `whole`.
+  /// If the RVE may be deferred, writes a report of 0 steps in place of the grains' report and returns true. Otherwise
+  /// returns false: its grains have to run with `whole`.
   bool answer(std::size_t rve, const fem::Gradient& h, kernels::RveReport& report);
 
   [[nodiscard]] bool runs(std::size_t rve) const { return trial_[rve].runs; }
 
-  /// Takes the error from the grains' `report`, now that they have run. There is none if nothing was deferred before.
+  /// Takes the error of the answers before from `report`, the report of the grains' run. There is no error if nothing
+  /// was deferred.
   void check(std::size_t rve, const fem::Gradient& h, const kernels::RveReport& report);
 
-  /// Commits the increment. Returns true if the grains did not run: their committed state is to stay as it is.
+  /// Commits the increment. Returns true if the grains did not run and their committed state has to stay as it is.
   bool commit(std::size_t rve, const fem::Gradient& h, const kernels::RveReport& report);
 
   /// The largest error over pressure that the runs of the last evaluation have shown [-].
@@ -85,7 +87,7 @@ class Deferral {
 
  private:
   struct Trial {
-    bool runs = false;  ///< its grains, until the increment ends
+    bool runs = false;  ///< true once its grains have run within the increment
     double error = 0;
   };
 

@@ -20,7 +20,8 @@ void mirror(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) {
   }
 }
 
-/// x to -x, moved back into the mirrored cell: its first vector is the mirror image's, reversed.
+/// Mirrors x to -x and moves the grains back into the mirrored cell, whose first vector is the mirror image of the old
+/// one with the opposite sign.
 void mirror(io::RveSnapshot& rve) {
   const double a_x = rve.cell[0];
   const double a_y = -rve.cell[2];
@@ -58,12 +59,14 @@ std::vector<fem::PointField> MirroredBatch::fields() const {
   std::vector<fem::PointField> fields = batch_->fields();
   for (fem::PointField& field : fields) {
     const ResultField* row = find_result_field(field.name);
-    if (row == nullptr) throw std::logic_error("nobody knows the mirror image of the field " + field.name);
+    if (row == nullptr)
+      throw std::logic_error("the table of result fields has no row for the field " + field.name +
+                             ", so that it cannot be mirrored");
     if (row->mirror == Mirror::none) continue;
     const bool is_axis = row->mirror == Mirror::axis_from_x;
     for (std::size_t p = 0; p < field.values.size(); ++p) {
       if (!is_mirrored(p)) continue;
-      // The angles of an axis fill half a circle: the vertical one, pi/2, is its own mirror image.
+      // The angles of an axis fill half a circle, (-pi/2, pi/2]: the vertical axis, pi/2, is its own mirror image.
       if (!is_axis || field.values[p] < 0.5 * std::numbers::pi) field.values[p] = -field.values[p];
     }
   }

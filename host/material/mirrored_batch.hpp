@@ -1,8 +1,8 @@
 #pragma once
-/// Mirror images of one packing. A packing cloned everywhere biases tau_xy everywhere, and where the bias grows with
-/// depth, equilibrium tilts sigma_xx across the whole ground. Every second Gauss point of an element answers as the
-/// mirror image (x to -x) of its RVE, so that the bias cancels within each element. No RVE is changed: gradients go in
-/// mirrored, answers come out mirrored, exactly.
+/// Mirror images of one packing. One packing cloned to all points biases tau_xy at all of them, and where the bias
+/// grows with depth, equilibrium makes sigma_xx vary across the whole ground. Therefore every second Gauss point of an
+/// element answers as the mirror image (x to -x) of its RVE, so that the bias cancels within each element. No RVE is
+/// changed: its gradient is mirrored before the evaluation and its answer after it, without rounding.
 
 #include <memory>
 
@@ -15,7 +15,7 @@ class MirroredBatch final : public fem::MaterialBatch, public SnapshotSource {
  public:
   explicit MirroredBatch(std::unique_ptr<fem::MaterialBatch> batch) : batch_(std::move(batch)) {}
 
-  /// Gauss points 1 and 3 of each element: one of each row, one of each column.
+  /// True for the Gauss points 1 and 3 of each element, which are one of each row and one of each column.
   [[nodiscard]] static bool is_mirrored(std::size_t point) { return point % 2 == 1; }
 
   [[nodiscard]] std::size_t size() const override { return batch_->size(); }
@@ -27,7 +27,7 @@ class MirroredBatch final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<fem::PointField> fields() const override;
   [[nodiscard]] std::vector<std::byte> state() const override { return batch_->state(); }
   void set_state(std::span<const std::byte> bytes) override { batch_->set_state(bytes); }
-  /// Empty where the mirrored batch has no grains.
+  /// The list is empty where the mirrored batch has no grains.
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
  private:

@@ -17,7 +17,8 @@ namespace voussoir::host {
 
 namespace {
 
-/// An evaluation asking for this many times the frozen steps gets more after all: the predictor was far off.
+/// The number of steps is fixed at the first evaluation of an increment. An evaluation that needs more than this many
+/// times the fixed number gets the larger number, because the predictor was far off.
 constexpr int step_regret = 2;
 
 kernels::EngineSettings settings_of(const PoolOptions& options) {
@@ -28,7 +29,7 @@ kernels::EngineSettings settings_of(const PoolOptions& options) {
   return settings;
 }
 
-/// Next number of the series 1.25^k: counts on a coarse grid, so that a predictor's rounding does not change them.
+/// The next number of the series 1.25^k. On this coarse grid the rounding of a predictor does not change the count.
 int round_up(double steps) {
   return static_cast<int>(std::ceil(std::pow(1.25, std::ceil(std::log(steps) / std::log(1.25) - 1e-9))));
 }
@@ -52,7 +53,7 @@ RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n
           fmt::format("the packing of seed {} cannot start: {}", rve.seed, kernels::name_of(report.status)));
     }
     if (report.status == kernels::RveStatus::step_limit)
-      report.status = kernels::RveStatus::converged;  // no motion was asked
+      report.status = kernels::RveStatus::converged;  // no motion was asked for
   }
   deferral_.start(committed_reports_);
 }
@@ -62,8 +63,8 @@ void RvePool::begin_increment() {
   deferral_.begin_increment();
 }
 
-/// Steps that keep the target inertial number at the RVE's committed pressure. A rotation costs none, the path is rigid
-/// all the way.
+/// The number of steps with the target inertial number at the RVE's committed pressure. A pure rotation needs no steps,
+/// since it does not strain the grains.
 int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
   const double strain = kernels::symmetric_norm(kernels::log_of(f_rel));
   const double p = std::max(committed_reports_[rve].pressure(), settings_.pressure_floor);
@@ -73,7 +74,7 @@ int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
   return std::clamp(round_up(std::clamp(steps, 1.0, most)), engine_.minimum_steps, engine_.maximum_steps);
 }
 
-/// @param anew whatever the steps were before
+/// @param anew true: the number of steps before does not matter
 void RvePool::choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew) {
   kernels::StrainRequest& request = requests_[rve];
   request.f_rel = deformation_of(gradient);
@@ -82,7 +83,7 @@ void RvePool::choose_steps(std::size_t rve, const fem::Gradient& gradient, bool 
   request.hold_cap = engine_.hold_cap;
 }
 
-/// Grains run where they must, with all that was deferred.
+/// Runs the grains of the RVEs that may not be deferred, with the whole gradient since their last run.
 kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings) {
   running_.clear();
   increment_.assign(gradients.begin(), gradients.end());
@@ -102,7 +103,7 @@ kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients, co
   return work;
 }
 
-/// Without tangents the reports have eq. (4), which comes with the stress.
+/// Without tangents the reports have the tangent of eq. (4), which is computed together with the stress.
 kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients, bool with_tangents) {
   kernels::EngineSettings settings = settings_;
   if (!with_tangents) settings.tangent = kernels::TangentKind::contact;
@@ -215,7 +216,8 @@ std::string point_name(std::size_t point) { return fmt::format("point_{:05d}", p
 std::vector<io::RveSnapshot> RvePool::snapshots(std::span<const std::int64_t> points) const {
   std::vector<io::RveSnapshot> out;
   for (const std::int64_t point : points) {
-    if (point < 0 || point >= static_cast<std::int64_t>(size())) throw std::out_of_range("no such Gauss point");
+    if (point < 0 || point >= static_cast<std::int64_t>(size()))
+      throw std::out_of_range("there is no Gauss point of this number");
     out.push_back(snapshot(static_cast<std::size_t>(point)));
   }
   return out;

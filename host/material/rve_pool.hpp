@@ -12,18 +12,18 @@
 
 namespace voussoir::host {
 
-/// Settings of a pool; its packing and its size are given besides.
+/// Settings of a pool; the constructor takes the packing and the size.
 struct PoolOptions {
   EngineCase engine;
   kernels::TangentKind tangent = kernels::TangentKind::contact;
-  double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< of a static one [-]
-  double tangent_strain = 1.0e-6;                                          ///< of a loading tangent [-]
-  kernels::MicrostructureRequest microstructure = {};  ///< adds fields to fields(), which computes them at each call
+  double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< tolerance of a static tangent [-]
+  double tangent_strain = 1.0e-6;                                          ///< strain of a loading tangent [-]
+  kernels::MicrostructureRequest microstructure = {};  ///< fields to add to fields(), which computes them at each call
 };
 
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
-  /// `n` clones of `rve`.
+  /// Makes `n` clones of `rve`.
   RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n);
 
   [[nodiscard]] std::size_t size() const override { return batch_.size(); }
@@ -38,17 +38,18 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
   [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
-  [[nodiscard]] PackedRve packed(std::size_t rve) const;  ///< its grains as their last run left them; another pool may
-                                                          ///< start from there
+  [[nodiscard]] PackedRve packed(std::size_t rve) const;  ///< grains after their last run; another pool may start so
 
-  /// The rest is for a pool that is one rank's part of a larger pool, which needs the engine's own reports and the
-  /// states one by one. `advance` evaluates as `evaluate` does and leaves the answers in trial_reports(); without
-  /// `with_tangents` their tangents are those of eq. (4), which cost nothing.
+  /// The functions from here on are for a pool that is one rank's part of a larger pool, which needs the engine's own
+  /// reports and the states of single RVEs. `advance` evaluates as `evaluate` does and leaves the answers in
+  /// trial_reports(); without `with_tangents` their tangents are those of eq. (4), which cost nothing.
   kernels::Work advance(std::span<const fem::Gradient> gradients, bool with_tangents);
   [[nodiscard]] const std::vector<kernels::RveReport>& trial_reports() const { return trial_reports_; }
   [[nodiscard]] const std::vector<kernels::RveReport>& committed_reports() const { return committed_reports_; }
-  [[nodiscard]] double deferral_error() const { return deferral_.error(); }         ///< of the last evaluation [-]
-  [[nodiscard]] double pressure_floor() const { return settings_.pressure_floor; }  ///< of the reports' ratios [Pa]
+  [[nodiscard]] double deferral_error() const { return deferral_.error(); }  ///< of the last evaluation [-]
+  [[nodiscard]] double pressure_floor() const {
+    return settings_.pressure_floor;
+  }  ///< least pressure that the reports' ratios are relative to [Pa]
   [[nodiscard]] std::uint64_t identity() const;
   [[nodiscard]] std::vector<std::byte> state_of(std::size_t rve) const;
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
@@ -63,7 +64,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<kernels::RveReport> committed_reports_;
   Deferral deferral_;
   std::vector<int> running_;              ///< RVEs whose grains the evaluation needs; only where some may be deferred
-  std::vector<fem::Gradient> increment_;  ///< of the last evaluation; likewise
+  std::vector<fem::Gradient> increment_;  ///< of the last evaluation; only where some may be deferred
   bool steps_are_fixed_ = false;
 
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
@@ -72,7 +73,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] io::RveSnapshot snapshot(std::size_t rve) const;
 };
 
-/// Name of a point's snapshot.
+/// The name of a point's snapshot.
 [[nodiscard]] std::string point_name(std::size_t point);
 
 }  // namespace voussoir::host

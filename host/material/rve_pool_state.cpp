@@ -1,4 +1,4 @@
-// The committed state of a pool as bytes: all that an evaluation starts from, nothing derived from it.
+// The committed state of a pool as bytes: everything that an evaluation starts from, without what follows from it.
 #include <array>
 #include <numeric>
 #include <stdexcept>
@@ -12,8 +12,8 @@ namespace voussoir::host {
 
 namespace {
 
-/// Field by field: the padding of a struct is no state. A number that is missing here is 0 after a run has been
-/// resumed, as those of a report's tangent beyond `tangent` are: a field of the results must not be made of one.
+/// Transfers a report member by member, since the padding bytes of a struct are not part of the state. A member that is
+/// not transferred is 0 after a run has been resumed, as the members tangent_* are: no field of the results may use it.
 template <class Transfer, class Report>
 void transfer_report(Transfer& transfer, Report& r) {
   transfer(&r.status, 1);
@@ -26,7 +26,7 @@ void transfer_report(Transfer& transfer, Report& r) {
   transfer(&r.largest_overlap, 1);
 }
 
-/// What was deferred of one RVE; nothing where none is.
+/// Transfers the deferral's record of one RVE; nothing where no RVE may be deferred.
 template <class Transfer, class Deferral>
 void transfer_deferral(Transfer& transfer, Deferral& deferral, std::size_t rve) {
   if (!deferral.on()) return;
@@ -37,7 +37,8 @@ void transfer_deferral(Transfer& transfer, Deferral& deferral, std::size_t rve) 
   transfer(&at.commits, 1);
 }
 
-/// One order of the numbers for both directions; `count` comes first so that only used contacts are kept.
+/// Transfers an RVE, in one order of the numbers for writing and reading. The number of contacts comes before the
+/// contacts, so that only used contacts are kept.
 template <class Transfer, class States>
 void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t grains) {
   transfer(&s.position(rve, 0, 0), 2 * grains);
@@ -46,18 +47,18 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
   transfer(&s.contact_count(rve), 1);
   const int count = s.contact_count(rve);
   if (count < 0 || count > s.contact_capacity())
-    throw std::runtime_error("the checkpoint's contact count is impossible");
+    throw std::runtime_error("the checkpoint has an impossible number of contacts");
   transfer(&s.contact_key(rve, 0), static_cast<std::size_t>(count));
   transfer(s.histories_of(rve), s.history_size() * static_cast<std::size_t>(count));
   for (int c = 0; c < count; ++c) {
     const std::uint32_t key = s.contact_key(rve, c);
     if (kernels::first_of(key) >= kernels::second_of(key) || kernels::second_of(key) >= static_cast<int>(grains)) {
-      throw std::runtime_error("the checkpoint's contacts are impossible");
+      throw std::runtime_error("the checkpoint has a contact between impossible grains");
     }
   }
 }
 
-/// Raised when the bytes of a record mean something else than before.
+/// Version of a record; it must be raised when the meaning of the bytes changes.
 constexpr std::uint64_t record_version = 2;
 
 }  // namespace
@@ -81,7 +82,7 @@ std::uint64_t RvePool::identity() const {
 std::vector<std::byte> RvePool::state_of(std::size_t rve) const {
   std::vector<std::byte> bytes;
   const auto grains = static_cast<std::size_t>(batch_.packing(rve).size());
-  // 24 bytes a grain, 20 a contact, of which there are about two a grain; more makes the vector grow once.
+  // A grain takes 24 bytes and a contact 20; there are about two contacts a grain. With more, the vector grows once.
   bytes.reserve(256 + 72 * grains);
   io::ByteWriter write(bytes);
   transfer_report(write, committed_reports_[rve]);

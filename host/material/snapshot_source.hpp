@@ -1,5 +1,5 @@
 #pragma once
-/// A material whose points can be drawn grain by grain. A batch that has grains implements this interface besides
+/// A material that can show its points grain by grain. A batch with grains implements this interface in addition to
 /// fem::MaterialBatch.
 
 #include <cstdint>
@@ -13,7 +13,8 @@ namespace voussoir::host {
 class SnapshotSource {
  public:
   virtual ~SnapshotSource() = default;
-  /// The committed RVEs of these Gauss points, in full. Throws std::out_of_range on a point that does not exist.
+  /// The committed RVEs of these Gauss points with all grains and contacts. Throws std::out_of_range where a point does
+  /// not exist.
   [[nodiscard]] virtual std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const = 0;
 };
 

@@ -21,7 +21,8 @@ std::vector<std::byte> join_state(std::uint64_t identity, std::span<const StateR
 std::vector<StateRecord> split_state(std::span<const std::byte> bytes, std::uint64_t identity, std::size_t n) {
   io::ByteReader read(bytes, not_of_this_case);
   if (read.value<std::uint64_t>() != n) throw std::runtime_error("the checkpoint has another number of RVEs");
-  if (read.value<std::uint64_t>() != identity) throw std::runtime_error("the checkpoint's RVEs are of another packing");
+  if (read.value<std::uint64_t>() != identity)
+    throw std::runtime_error("the checkpoint's RVEs are made of another packing");
   std::vector<StateRecord> records(n);
   for (StateRecord& record : records) record = read.take(read.value<std::uint64_t>());
   if (!read.at_end()) throw std::runtime_error(not_of_this_case);

@@ -9,18 +9,18 @@ namespace voussoir::host {
 
 namespace {
 
-// A change of this test must raise recipe_version: biases are kept with the packings.
-constexpr double oedometric_end = 700.0e3;       ///< the deepest ground of the study [Pa]
+// Biases are stored with the packings, so that a change of this test must raise recipe_version (recipe.cpp).
+constexpr double oedometric_end = 700.0e3;       ///< vertical stress of the deepest ground of the study [Pa]
 constexpr double oedometric_increment = 1.0e-3;  ///< axial strain [-]
 constexpr int most_increments = 200;
-constexpr double bias_floor = 20.0e3;  ///< below it tau_xy is what consolidation left [Pa]
+constexpr double bias_floor = 20.0e3;  ///< at less pressure tau_xy comes from the consolidation [Pa]
 
 /// One increment of the oedometric test.
 struct OedometricPoint {
   double stress_yy, stress_xy;  ///< compression-positive stresses [Pa]
 };
 
-/// One curve per packing.
+/// Compresses all packings in one batch; returns one curve for each of them.
 std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const PackedRve> rves) {
   std::vector<std::vector<OedometricPoint>> curves(rves.size());
   if (rves.empty()) return curves;
@@ -29,7 +29,9 @@ std::vector<std::vector<OedometricPoint>> oedometric_tests(std::span<const Packe
   std::vector<kernels::RveReport> reports(rves.size());
   std::vector<char> ended(rves.size(), 0);
   for (int increment = 0; increment < most_increments && std::count(ended.begin(), ended.end(), 0) > 0; ++increment) {
-    const double strain = increment < 4 ? 0.25 * oedometric_increment : oedometric_increment;  // fine while it is soft
+    const double strain = increment < 4 ? 0.25 * oedometric_increment : oedometric_increment;  // small steps at first,
+                                                                                               // while the packing is
+                                                                                               // soft
     const std::vector<kernels::StrainRequest> requests(
         rves.size(), {.f_rel = {1, 0, 0, std::exp(-strain)}, .strain_steps = 1000, .hold_cap = 2000});
     kernels::advance(batch, std::span<const kernels::StrainRequest>(requests), settings, reports);

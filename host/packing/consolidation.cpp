@@ -10,16 +10,17 @@ namespace voussoir::host {
 
 namespace {
 
-constexpr int void_ratio_rounds = 8;           ///< of the bisection on the temporary friction
-constexpr double void_ratio_tolerance = 0.01;  ///< of a wanted void ratio [-]
+constexpr int void_ratio_rounds = 8;           ///< rounds of the bisection on the temporary friction
+constexpr double void_ratio_tolerance = 0.01;  ///< allowed difference from a wanted void ratio [-]
 
-/// Largest strain per step so that the inertial number stays at 1e-3 once the pressure has been reached; the limits
-/// keep packings of 100 Pa from taking forever and those of 1 MPa from closing on their overlaps.
+/// Largest strain per step with which the inertial number is 1e-3 once the pressure has been reached. The lower limit
+/// bounds the time that packings of 100 Pa take, the upper one the overlaps of packings of 1 MPa.
 double consolidation_rate(const kernels::Packing& packing, double pressure) {
   return std::clamp(1e-3 / packing.inertial_time(pressure), 2e-6, 2e-5);
 }
 
-/// All RVEs to rest under their isotropic pressure [Pa], each at `share` of its own rate, whoever is beside it.
+/// Brings all RVEs to rest under the isotropic pressure [Pa]. Each moves at `share` of its own rate, which does not
+/// depend on the other RVEs.
 std::vector<kernels::RveReport> consolidate(kernels::RveBatch& batch, double pressure, double share) {
   const kernels::ServoAxis axis{.stress_controlled = true, .target = -pressure};
   std::vector<kernels::ServoRequest> requests;
@@ -36,7 +37,7 @@ std::vector<kernels::RveReport> consolidate(kernels::RveBatch& batch, double pre
   return reports;
 }
 
-/// States and measures of a consolidated batch.
+/// Takes states and measures from a consolidated batch.
 void take_results(std::span<PackedRve> rves, const kernels::RveBatch& batch,
                   std::span<const kernels::RveReport> reports) {
   for (std::size_t k = 0; k < rves.size(); ++k) {

@@ -1,6 +1,6 @@
 #pragma once
-/// Isotropic consolidation: packings come to rest under a pressure, many side by side in one batch. What happens to one
-/// of them does not depend on the others.
+/// Isotropic consolidation: packings come to rest under a pressure, many side by side in one batch. The result of a
+/// packing does not depend on the others.
 
 #include <span>
 #include <vector>
@@ -9,15 +9,17 @@
 
 namespace voussoir::host {
 
-/// Brings RVEs to rest at `pressure` [Pa] with the friction that their grains have, and takes over states, measures and
-/// how it ended.
+/// Brings RVEs to rest at `pressure` [Pa] with the friction that their grains have, and stores
+/// states, measures and status in them.
 void rest_at(double pressure, std::span<PackedRve> rves);
 
-/// Loose packings to rest at `pressure` [Pa]: with each one's temporary friction, then with the working one.
+/// Brings loose packings to rest at `pressure` [Pa], first with the temporary friction of each, then with the friction
+/// of its grains.
 [[nodiscard]] std::vector<PackedRve> settle(std::span<const PackedRve> loose, double pressure);
 
-/// Each packing with the temporary friction that gives it the wanted void ratio, by bisection: more friction, looser
-/// packing. The nearest packing seen is taken; one that misses by more than 0.01 ends as step_limit.
+/// Finds for each packing the temporary friction that leads to the wanted void ratio, by bisection: more friction makes
+/// a looser packing. The nearest packing of all tries is taken; if it is off by more than 0.01, its status is
+/// step_limit.
 [[nodiscard]] std::vector<PackedRve> settle_at_void_ratio(std::vector<PackedRve> loose, double pressure,
                                                           double void_ratio);
 

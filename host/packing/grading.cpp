@@ -8,7 +8,7 @@ namespace voussoir::host {
 namespace {
 
 /// The grading curve as shares of the number of grains. Between two points of a curve by area the area is spread evenly
-/// over sizes, so the number of grains between d1 and d goes with 1/d1 - 1/d.
+/// over sizes, so that the number of grains between d1 and d is proportional to 1/d1 - 1/d.
 class GradingByNumber {
  public:
   explicit GradingByNumber(const SoilCase& soil)
@@ -23,7 +23,7 @@ class GradingByNumber {
     for (double& n : below_) n /= below_.back();
   }
 
-  /// The size that a share `u` of all grains, 0 <= u <= 1, is smaller than [m].
+  /// The size below which a share `u` of all grains lies, 0 <= u <= 1 [m].
   [[nodiscard]] double size_at(double u) const {
     std::size_t k = 1;
     while (k + 1 < below_.size() && below_[k] <= u) ++k;

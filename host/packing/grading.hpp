@@ -9,8 +9,8 @@
 
 namespace voussoir::host {
 
-/// Random numbers, uniform in [0, 1). The distributions of the standard library differ between implementations; the
-/// bits of its engine do not, so they are used directly.
+/// Random numbers, uniform in [0, 1). They are made from the bits of the standard library's engine, which are the same
+/// in all implementations; the library's distributions are not.
 class Uniform {
  public:
   explicit Uniform(std::int64_t seed) : engine_(static_cast<std::uint64_t>(seed)) {}

@@ -56,7 +56,7 @@ kernels::RveBatch batch_of(std::span<const PackedRve> rves) {
 void store_rve(const PackedRve& from, kernels::RveBatch& batch, std::size_t rve) {
   kernels::RveStates& to = batch.committed;
   if (static_cast<int>(from.contact_key.size()) > to.contact_capacity()) {
-    throw std::invalid_argument("a packing has more contacts than discs can have");
+    throw std::invalid_argument("a packing has more contacts than so many discs can have");
   }
   batch.candidates.skin[rve] = -1.0;
   std::copy(from.position.begin(), from.position.end(), &to.position(rve, 0, 0));

@@ -11,7 +11,7 @@
 
 namespace voussoir::host {
 
-/// A packing with the state of its one RVE and what was measured on it.
+/// A packing with the state of its one RVE and the values measured on this RVE.
 struct PackedRve {
   kernels::Packing packing;
   std::vector<double> position;  ///< (grain, 2) [m]
@@ -20,12 +20,12 @@ struct PackedRve {
   std::vector<std::uint32_t> contact_key;
   std::vector<double> contact_history;  ///< (contact, k), k as in the law's history_names [SI]
   std::int64_t seed = 0;
-  double consolidation_friction = 0;                          ///< temporary friction coefficient that made it [-]
-  double void_ratio = 0;                                      ///< area of voids / area of grains [-]
-  double pressure = 0;                                        ///< [Pa]
-  double coordination = 0;                                    ///< 2 contacts / grains [-]
-  double unbalanced = 0;                                      ///< [-]
-  double bias = std::numeric_limits<double>::quiet_NaN();     ///< see bias.hpp [-]; NaN: not measured
+  double consolidation_friction = 0;                       ///< temporary friction coefficient of its consolidation [-]
+  double void_ratio = 0;                                   ///< area of voids / area of grains [-]
+  double pressure = 0;                                     ///< [Pa]
+  double coordination = 0;                                 ///< 2 contacts / grains [-]
+  double unbalanced = 0;                                   ///< [-]
+  double bias = std::numeric_limits<double>::quiet_NaN();  ///< see bias.hpp [-]; NaN: not measured
   kernels::RveStatus status = kernels::RveStatus::converged;  ///< of the consolidation
 };
 
@@ -39,8 +39,8 @@ struct PackedRve {
 /// A batch of one RVE per packing, each in its packing's state.
 [[nodiscard]] kernels::RveBatch batch_of(std::span<const PackedRve> rves);
 
-/// Copies the state into a batch's committed states, and from there. store_rve throws std::invalid_argument if the RVE
-/// has more contacts than the batch has room for.
+/// Copy a state into the committed states of a batch, and out of them. store_rve throws std::invalid_argument if the
+/// RVE has more contacts than the batch has room for.
 void store_rve(const PackedRve& from, kernels::RveBatch& batch, std::size_t rve);
 void load_rve(const kernels::RveStates& from, std::size_t rve, PackedRve& to);
 

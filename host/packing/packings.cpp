@@ -40,7 +40,7 @@ std::optional<PackedRve> find(const SoilCase& soil, const PackingCase& recipe, s
   return rve && rve->packing.size() == recipe.grains ? rve : std::nullopt;
 }
 
-/// Bias of the packings that have none yet; kept with them.
+/// Measures the bias of the packings without one and stores it with them.
 void measure_bias(const SoilCase& soil, const PackingCase& recipe, std::vector<PackedRve>& rves) {
   std::vector<PackedRve> unknown;
   for (const PackedRve& rve : rves) {
@@ -68,7 +68,8 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
                                        std::span<const std::int64_t> seeds, const PackingNote& note, Bias bias) {
   if (recipe.file.extension() == ".h5") {
     auto rve = restored_packing(io::load_packing(recipe.file), soil);
-    if (!rve) throw std::runtime_error(recipe.file.string() + " is no packing of this program's grains");
+    if (!rve)
+      throw std::runtime_error(recipe.file.string() + " is not a complete packing of this program and its contact law");
     if (note) note("packing read:  " + table_line(*rve));
     return {std::move(*rve)};
   }
@@ -79,7 +80,7 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
           fmt::format("{} does not come to rest: {}", recipe.file.string(), kernels::name_of(rve.status)));
     }
     if (note)
-      note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe do not count)");
+      note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe are not used)");
     return {rve};
   }
   std::vector<std::int64_t> missing;
@@ -115,7 +116,7 @@ PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const 
   };
   PackedRve best = *std::min_element(all.begin(), all.end(), less_biased);
   if (note) {
-    note(fmt::format("packing of seed {} is used: largest |tau_xy|/sigma_yy in oedometric compression {:.4f}",
+    note(fmt::format("packing of seed {} is used: its largest |tau_xy|/sigma_yy in oedometric compression is {:.4f}",
                      best.seed, best.bias));
   }
   return best;

@@ -1,5 +1,5 @@
 #pragma once
-/// Packings of a case: made once, kept in the recipe's folder, chosen by least bias.
+/// The packings of a case. They are made once and kept in the recipe's folder; the one with the least bias is chosen.
 
 #include <functional>
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace voussoir::host {
 
-/// Receives a line for the log for each packing that is made or found; may be empty.
+/// A function that receives a line for the log for each packing that is made or found; it may be empty.
 using PackingNote = std::function<void(const std::string&)>;
 
-/// Whether a packing's bias is wanted: it costs as much as a biaxial test.
+/// Says whether the bias of packings is measured, which costs as much as a biaxial test.
 enum class Bias { measured, left };
 
 /// The packings of these seeds, in their order: found in the recipe's folder, or made side by side and stored there. A
-/// seed whose packing does not come to rest is noted and left out. If there are several packings and their bias is
-/// wanted, it is measured (bias.hpp). A recipe that names a file has that one packing. Throws std::runtime_error when
-/// no packing is left.
+/// seed whose packing does not come to rest is noted and left out. With Bias::measured the bias is measured (bias.hpp)
+/// where there are several packings. A recipe that names a file has only the packing in this file. Throws
+/// std::runtime_error when no packing is left.
 [[nodiscard]] std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& recipe,
                                                      std::span<const std::int64_t> seeds, const PackingNote& note = {},
                                                      Bias bias = Bias::measured);

@@ -15,7 +15,7 @@ namespace voussoir::host {
 
 namespace {
 
-constexpr int recipe_version = 2;  ///< raise when a change here or in the engine changes packings
+constexpr int recipe_version = 2;  ///< to be raised when a change here or in the engine changes packings
 constexpr double loose_solid_fraction = 0.45;
 constexpr int placement_tries = 20000;
 
@@ -30,7 +30,7 @@ bool overlaps(const PackedRve& rve, std::size_t placed, double x, double y, doub
   return false;
 }
 
-/// Random sequential placement in a square cell, largest first.
+/// Places the grains at random in a square cell, one after another, the largest first.
 void place_loose(PackedRve& rve, Uniform& uniform) {
   const double side = std::sqrt(rve.packing.solid_area() / loose_solid_fraction);
   rve.cell = {side, 0, 0, side};
@@ -44,7 +44,7 @@ void place_loose(PackedRve& rve, Uniform& uniform) {
       x = side * uniform();
       y = side * uniform();
     } while (overlaps(rve, i, x, y, side) && ++tries < placement_tries);
-    if (tries == placement_tries) throw std::runtime_error("no room to place the grains at random");
+    if (tries == placement_tries) throw std::runtime_error("the cell has no room left to place a grain at random");
     rve.position[2 * i] = x;
     rve.position[2 * i + 1] = y;
   }

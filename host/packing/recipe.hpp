@@ -1,6 +1,7 @@
 #pragma once
 /// Making packings from a recipe (method.md §3): loose random discs, isotropic consolidation with the temporary
-/// friction, then the working friction at the same pressure. Same recipe and seed: same packing, bit for bit.
+/// friction, then the working friction at the same pressure. The same recipe and seed give the same packing, bit for
+/// bit.
 
 #include <cstdint>
 #include <span>
@@ -12,17 +13,17 @@
 
 namespace voussoir::host {
 
-/// The packings of several seeds, side by side in one batch; each is the same whatever other seeds it is made with. One
-/// that does not come to rest says so in its status.
+/// Makes the packings of several seeds side by side in one batch. A packing does not depend on the other seeds. The
+/// status of a packing says whether it has come to rest.
 [[nodiscard]] std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe,
                                                    std::span<const std::int64_t> seeds);
 
-/// The packing of another code (`recipe.file`, see io::load_packing_csv) with this soil's grains: contacts are rebuilt
-/// from the overlaps, without history, then it comes to rest at `recipe.pressure`. Throws std::runtime_error on an
-/// unusable file.
+/// The packing of another code (`recipe.file`, see io::load_packing_csv) with this soil's grains: contacts are made
+/// from the overlaps, without history, and the packing comes to rest at `recipe.pressure`. Throws std::runtime_error on
+/// an unusable file.
 [[nodiscard]] PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe);
 
-/// Everything that decides the packing's numbers, as text; equal texts give equal packings.
+/// All values that decide a packing's numbers, as text. Equal texts give equal packings.
 [[nodiscard]] std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed);
 
 }  // namespace voussoir::host

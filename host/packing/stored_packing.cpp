@@ -8,7 +8,7 @@
 namespace voussoir::host {
 
 namespace {
-/// Of the law that the engine runs: packings of another law are not read.
+/// The history names of the engine's law. A packing with other names belongs to another law and is not read.
 std::vector<std::string> history_names() {
   constexpr auto& names = kernels::PlainEngineLaw::history_names;
   return {names.begin(), names.end()};

@@ -1,6 +1,6 @@
 #pragma once
-/// One RVE as a packing file of io (FORMAT.md), with its contacts' histories: read back, it is the same state bit for
-/// bit.
+/// One RVE as a packing file of io (FORMAT.md), with the histories of its contacts. An RVE that is read back has the
+/// same state, bit for bit.
 
 #include <optional>
 #include <string>
@@ -13,11 +13,11 @@ namespace voussoir::host {
 [[nodiscard]] io::Packing stored_packing(const PackedRve& rve, const std::string& recipe,
                                          const std::string& fingerprint);
 
-/// Grains and cell of a packing of any code, the grains made of `soil`; no contacts.
+/// Grains and cell of a packing of any code, without contacts. The grains get the materials of `soil`.
 [[nodiscard]] PackedRve grains_from(const io::Packing& file, const SoilCase& soil);
 
-/// The RVE of a stored packing, its grains made of `soil`; nothing where numbers are missing, impossible or of another
-/// law.
+/// The RVE of a stored packing, whose grains get the materials of `soil`. Nothing where numbers are missing or
+/// impossible, or where the histories are those of another law.
 [[nodiscard]] std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCase& soil);
 
 }  // namespace voussoir::host

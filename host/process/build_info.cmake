@@ -1,4 +1,4 @@
-# Writes OUTPUT, the definitions behind host/process/build_info.hpp. Run by the build, before every compilation of host.
+# Writes OUTPUT, the definitions of host/process/build_info.hpp. The build runs this script before every compilation of host.
 execute_process(COMMAND git -C "${SOURCE}" describe --always --dirty --abbrev=12
   OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 if(failed)

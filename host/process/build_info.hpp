@@ -1,10 +1,10 @@
 #pragma once
-/// What this program was built from; written into every result file. Defined by build_info.cmake.
+/// The sources and the compiler of this program, as every result file tells them. build_info.cmake writes the values.
 
 namespace voussoir::host {
 
 extern const char* const build_version;
-extern const char* const build_revision;  ///< git describe, "-dirty" where the tree had changes
+extern const char* const build_revision;  ///< as git describe says it, with "-dirty" where the tree had changes
 extern const char* const build_compiler;
 extern const char* const build_type;
 

@@ -17,7 +17,7 @@ extern "C" void voussoir_on_signal(int signal) {
 void catch_interrupts() {
   std::signal(SIGINT, voussoir_on_signal);
   std::signal(SIGTERM, voussoir_on_signal);
-  std::signal(SIGUSR1, voussoir_on_signal);  // what mpirun passes on without ending the run itself
+  std::signal(SIGUSR1, voussoir_on_signal);  // mpirun passes this signal on and does not end the ranks itself
 }
 
 bool interrupted() { return stop_requested != 0; }

@@ -29,11 +29,13 @@ struct Arguments {
 };
 
 void add_overrides(CLI::App& command, Arguments& arguments) {
-  command.add_option("--set", arguments.overrides, "table.key=value, instead of the case file's value; repeatable")
+  command
+      .add_option("--set", arguments.overrides,
+                  "table.key=value, which replaces the case file's value; may be repeated")
       ->allow_extra_args(false);
 }
 
-/// The commands with their options; `code` receives the exit code of the one that was obeyed.
+/// Describes the commands with their options; `code` receives the exit code of the command that was run.
 void describe(CLI::App& app, Arguments& a, const std::string& command_text, int& code) {
   app.require_subcommand(1);
   app.set_version_flag("--version",
@@ -41,31 +43,32 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, int&
 
   CLI::App* run = app.add_subcommand("run", "run a case");
   run->add_option("case", a.file, "case file (TOML)")->required();
-  run->add_option("-o,--output", a.output, "folder of the results; default out/NAME of the case");
+  run->add_option("-o,--output", a.output, "folder of the results; default: out/TITLE of the case");
   run->add_flag("--resume", a.resume, "go on behind the last checkpoint in the folder");
   run->add_flag("--replace", a.replace, "remove the results of an earlier run in the folder")->excludes("--resume");
-  run->add_option("--threads", a.threads, "threads; default all cores")->check(CLI::Range(1, 4096));
+  run->add_option("--threads", a.threads, "number of threads; default: all cores")->check(CLI::Range(1, 4096));
   add_overrides(*run, a);
   run->callback(
       [&] { code = command_run(a.file, a.overrides, {a.output, a.resume, a.replace, command_text, a.threads}); });
 
-  CLI::App* check = app.add_subcommand("check", "print every value of a case after defaults and --set, and its size");
+  CLI::App* check = app.add_subcommand(
+      "check", "print every value of a case after defaults and --set, and what the run will cost");
   check->add_option("case", a.file, "case file (TOML)")->required();
   add_overrides(*check, a);
   check->callback([&] { code = command_check(a.file, a.overrides); });
 
   CLI::App* sweep = app.add_subcommand("sweep", "run a base case with lists of overrides");
   sweep->add_option("sweep", a.file, "sweep file (TOML)")->required();
-  sweep->add_option("-o,--output", a.output, "folder of the results; default out/STEM of the sweep file");
-  sweep->add_option("-j", a.processes, "runs at a time")->check(CLI::Range(1, 1024));
+  sweep->add_option("-o,--output", a.output, "folder of the results; default: out/STEM of the sweep file");
+  sweep->add_option("-j", a.processes, "number of runs at a time")->check(CLI::Range(1, 1024));
   sweep->add_option("--threads", a.threads, "threads of each run")->check(CLI::Range(1, 4096));
-  sweep->add_flag("--resume", a.resume, "skip finished runs, go on with interrupted ones");
+  sweep->add_flag("--resume", a.resume, "skip finished runs and go on with interrupted ones");
   sweep->callback([&] {
     code = command_sweep(a.file,
                          {a.output, std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads, a.resume});
   });
 
-  CLI::App* info = app.add_subcommand("info", "where a result comes from, and its increments");
+  CLI::App* info = app.add_subcommand("info", "print where a result comes from, and its increments");
   info->add_option("result", a.file, "run.h5 of a result")->required();
   info->callback([&] { code = command_info(a.file); });
 }

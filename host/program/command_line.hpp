@@ -3,7 +3,7 @@
 
 namespace voussoir::host {
 
-/// Parses and obeys the command line; returns an exit code of exit_code.hpp. Never throws.
+/// Parses the command line and runs its command. Returns an exit code of exit_code.hpp and never throws.
 [[nodiscard]] int run_command_line(int argc, char** argv);
 
 }  // namespace voussoir::host

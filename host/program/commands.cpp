@@ -42,7 +42,7 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
   const Kokkos::ScopeGuard kokkos(settings);
   start_ranks(options.threads);
   options.threads = Kokkos::DefaultHostExecutionSpace().concurrency();
-  // Only a run of increments can end between two of them; a pack or an element test ends at once.
+  // Only a kind that advances in increments can stop between two of them; the others are ended by the signal itself.
   if (runs_on_a_mesh(input.kind)) catch_interrupts();
   return run_case(input, options);
 }
@@ -59,7 +59,7 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
 }
 
 int command_info(const std::filesystem::path& result_file) {
-  try {  // a file that cannot be read is wrong input here
+  try {  // for this command a file that cannot be read is wrong input
     const io::Provenance origin = io::read_provenance(result_file);
     std::printf(
         "kind %s, version %s (%s), %s, %d ranks, %d threads, begun %s\nbuild: %s, %s\ncommand: %s\nfingerprint: %s\n",

@@ -26,10 +26,12 @@ int answer(RunStatus status, const RunOptions& options) {
     case RunStatus::finished:
       return exit_ok;
     case RunStatus::interrupted:
-      std::fprintf(stderr, "stopped on request; `--resume` goes on from the last increment in %s\n", folder.c_str());
+      std::fprintf(stderr, "the run was stopped on request; `--resume` goes on from the last increment in %s\n",
+                   folder.c_str());
       return exit_interrupted;
     case RunStatus::failed:
-      std::fprintf(stderr, "no equilibrium found, see %s/run.log; the last good checkpoint stays\n", folder.c_str());
+      std::fprintf(stderr, "no equilibrium was found (see %s/run.log); the last good checkpoint is kept\n",
+                   folder.c_str());
       return exit_numerical;
   }
   return exit_machine;

@@ -1,5 +1,5 @@
 #pragma once
-/// From a case to its results: the function that runs its kind, and the exit code.
+/// The way from a case to its results: chooses the function that runs the kind of the case, and the exit code.
 
 #include "host/case/case.hpp"
 #include "host/record/folder.hpp"

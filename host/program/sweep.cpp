@@ -1,4 +1,4 @@
-// The command `voussoir sweep`: one process a run, so that a run behaves as it does alone.
+// The command `voussoir sweep`. Each run is a process of its own, so that it behaves as it does without a sweep.
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
@@ -33,7 +33,7 @@ struct SweepRun {
   std::string name;
   std::vector<std::string> overrides;
   std::filesystem::path folder;
-  int exit_code = -1;  ///< -1: not run
+  int exit_code = -1;  ///< -1 as long as the run has not ended
 };
 
 struct Sweep {
@@ -41,7 +41,7 @@ struct Sweep {
   std::vector<SweepRun> runs;
 };
 
-/// Whether a name can be a folder's, and a field of summary.csv as it stands.
+/// True where a name can be the name of a folder and, without quotes, a field of summary.csv.
 bool is_plain(const std::string& name) {
   constexpr const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
   return !name.empty() && name.front() != '.' && name.find_first_not_of(allowed) == std::string::npos;
@@ -55,8 +55,9 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
   std::set<std::string> names;
   for (const io::Table& table : text.root().tables("run")) {
     SweepRun run{table.text("name"), table.texts("set", std::vector<std::string>{}), {}};
-    if (!is_plain(run.name)) throw table.error("name", "must be of letters, digits and _ . - and not begin with a dot");
-    if (!names.insert(run.name).second) throw table.error("name", "names two runs");
+    if (!is_plain(run.name))
+      throw table.error("name", "must consist of letters, digits and _ . - and must not begin with a dot");
+    if (!names.insert(run.name).second) throw table.error("name", "is the name of two runs");
     run.folder = options.folder / run.name;
     check_folder({.folder = run.folder, .resume = options.resume, .command = {}},
                  load_case(sweep.base, run.overrides).fingerprint);
@@ -78,7 +79,7 @@ pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepO
 
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);  // run.log has it all
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);  // the same lines are in run.log
   pid_t process = 0;
   const int failure = posix_spawn(&process, words.front().c_str(), &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
@@ -103,8 +104,8 @@ const char* status_name(int exit_code) {
   }
 }
 
-/// Waits until one of the processes has ended and notes its exit code. A request to stop is passed on, once: as
-/// SIGUSR1, since a run that a terminal's Ctrl-C has reached already takes a second SIGINT or SIGTERM for insistence.
+/// Waits until one of the processes has ended and stores its exit code. A request to stop is passed on once, as
+/// SIGUSR1: a terminal sends Ctrl-C to all processes, and a second SIGINT or SIGTERM would end a run at once.
 void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
   int status = 0;
   pid_t process = 0;
@@ -115,11 +116,11 @@ void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  if (process < 0) throw std::system_error(errno, std::generic_category(), "waiting for a run");
+  if (process < 0) throw std::system_error(errno, std::generic_category(), "cannot wait for a run");
   const auto found = running.find(process);
   if (found == running.end()) return;
   SweepRun& run = *found->second;
-  // A kind that cannot end between increments is ended by the signal.
+  // The signal itself has ended a run whose kind cannot stop between increments.
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : passed_on ? exit_interrupted : exit_machine;
   fmt::print("{}: {}\n", run.name, status_name(run.exit_code));
   std::fflush(stdout);
@@ -137,7 +138,7 @@ void run_all(Sweep& sweep, const SweepOptions& options) {
   while (!running.empty()) wait_for_one(running, passed_on);
 }
 
-/// One row a run: its end, and the further columns of its last increment.
+/// Writes one row for each run: how it ended, and the further columns of its last increment.
 void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
   std::vector<std::vector<io::IncrementInfo>> tables;
   std::set<std::string> columns;
@@ -146,7 +147,7 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
     tables.push_back(has_results ? io::read_increments(run.folder / "run.h5") : std::vector<io::IncrementInfo>{});
     if (tables.back().empty()) continue;
     for (const auto& [name, value] : tables.back().back().extra) columns.insert(name);
-    columns.erase("volume_loss");  // it is the load parameter of the stage that loses volume
+    columns.erase("volume_loss");  // this column repeats the load parameter of the stage "volume_loss"
   }
   std::string text = "name,status,exit_code,stage,load_parameter,iterations,particle_steps,wall_s";
   for (const std::string& column : columns) text += "," + column;

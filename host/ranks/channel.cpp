@@ -17,13 +17,13 @@
 namespace voussoir::host {
 namespace {
 
-constexpr std::size_t piece = std::size_t{1} << 24;  ///< bytes of one MPI message: its count is an int
+constexpr std::size_t piece = std::size_t{1} << 24;  ///< bytes of one MPI message, whose length MPI takes as an int
 constexpr auto patience = std::chrono::microseconds(500);
 constexpr auto nap = std::chrono::microseconds(100);
 
 bool open = false;
 
-/// Whether a launcher's environment says that there are, or may be, several processes.
+/// True where the environment of a launcher says that there are, or may be, several processes.
 bool launched() {
   for (const char* size : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MPI_LOCALNRANKS"}) {
     if (const char* text = std::getenv(size)) return std::atoi(text) > 1;
@@ -106,7 +106,7 @@ Message receive_message(int rank) {
   try {
     message.resize(size);
   } catch (const std::bad_alloc&) {
-    abort_ranks(exit_machine, "out of memory for a message between ranks");
+    abort_ranks(exit_machine, "there is no memory left for a message between ranks");
   }
   for (std::size_t at = 0; at < size; at += piece) receive_bytes(rank, message.data() + at, std::min(piece, size - at));
   return message;

@@ -1,5 +1,5 @@
 #pragma once
-/// Messages between the ranks of a run: the only code that knows MPI. Messages may have any size. A failure of MPI ends
+/// Messages between the ranks of a run; the only code that calls MPI. Messages may have any size. A failure of MPI ends
 /// all ranks; no function here returns an error.
 
 #include <cstddef>
@@ -20,11 +20,11 @@ void close_channel();
 
 void send_message(int rank, std::span<const std::byte> message);
 
-/// Waits for the next message of a rank. It spins for half a millisecond and sleeps between looks from then on, so that
-/// a rank without work takes no core from a rank that has some.
+/// Waits for the next message of a rank. The wait is busy for half a millisecond; later it sleeps between two looks, so
+/// that a rank without work takes no core from a rank with work.
 [[nodiscard]] Message receive_message(int rank);
 
-/// Ends all ranks at once with this exit code, where a failure can no longer be reported in a reply.
+/// Ends all ranks at once with this exit code. It is called where a failure can no longer be reported in a reply.
 [[noreturn]] void abort_ranks(int exit_code, const char* sentence);
 
 }  // namespace voussoir::host

@@ -15,16 +15,16 @@ using io::ByteReader;
 using io::ByteWriter;
 
 enum class Command : std::uint8_t {
-  start,            ///< build's revision, threads -> host's name, threads
+  start,            ///< revision of the build, threads -> name of the host, threads
   make,             ///< recipe of the pool -> committed reports
   begin_increment,  ///< ->
-  evaluate,  ///< whether with tangents, gradients -> seconds, particle-steps, error of what was deferred, trial reports
-  commit,    ///< ->
-  fields,    ///< -> number of fields, then each
-  states,    ///< first, number of RVEs -> their records
-  set_states,  ///< first, records -> committed reports of all
-  forget,      ///< the pool is no longer needed -> peak memory
-  quit         ///< no reply
+  evaluate,         ///< tangents or not, gradients -> seconds, particle-steps, error of deferred answers, trial reports
+  commit,           ///< ->
+  fields,           ///< -> number of fields, the fields
+  states,           ///< first RVE, number of RVEs -> their records
+  set_states,       ///< first RVE, records -> committed reports of all RVEs
+  forget,           ///< the pool is no longer needed -> peak memory
+  quit              ///< no reply
 };
 
 inline Message message_of(Command command) { return {static_cast<std::byte>(command)}; }
@@ -37,7 +37,7 @@ Message message_of(Command command, const Values&... values) {
   return message;
 }
 
-/// Writes the packing and its state, which is all that a pool needs; how the packing was made is left out.
+/// Writes the packing and its state, since a pool needs nothing else; the values about its making are left out.
 inline void write_rve(ByteWriter& write, const PackedRve& rve) {
   write.list(rve.packing.radii);
   write.list(rve.packing.materials);
@@ -68,8 +68,9 @@ inline PackedRve read_rve(ByteReader& read) {
   return rve;
 }
 
-/// Writes or reads the options of a pool. Every member is bound to a name here, so that a new option does not compile
-/// until somebody decides whether it is sent. The preset's name is not: its values are in the other members.
+/// Writes or reads the options of a pool. Every member is bound to a name here, so that a new option does not
+/// compile until somebody decides whether it is sent. The preset's name is not sent, since the other members hold its
+/// values.
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
   auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure] = options;

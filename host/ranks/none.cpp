@@ -1,4 +1,4 @@
-// Ranks in a build without MPI.
+// The functions of session.hpp in a build without MPI.
 #include <stdexcept>
 
 #include "fem/material_batch.hpp"
@@ -16,7 +16,7 @@ std::string rank_library() { return "no MPI"; }
 void start_ranks(int) {}
 
 std::unique_ptr<fem::MaterialBatch> make_rank_pool(PackedRve, const PoolOptions&, std::size_t, PackingNote) {
-  throw std::logic_error("a pool of ranks in a build without MPI");
+  throw std::logic_error("a build without MPI has no pool of ranks");
 }
 
 }  // namespace voussoir::host

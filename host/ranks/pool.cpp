@@ -18,8 +18,9 @@ constexpr std::size_t records_a_message = 128;  ///< RVEs of 700 grains take 45 
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Sends rank r + 1 the message `message(r + 1)`, does `meanwhile` here and returns the replies. Throws what failed
-/// here, else what failed first elsewhere; every reply is taken first, so that the ranks stay in step.
+/// Sends each rank r > 0 the message `message(r)`, calls `meanwhile` on this rank and returns the replies. Throws the
+/// failure of this rank, or else that of the first other rank that failed. All replies are received before the throw,
+/// so that the next command meets no old reply.
 std::vector<Message> ask(std::size_t others, const std::function<Message(std::size_t)>& message,
                          const std::function<void()>& meanwhile = {}) {
   for (std::size_t r = 1; r <= others; ++r) send_message(static_cast<int>(r), message(r));
@@ -44,7 +45,8 @@ ByteReader values_of(const Message& reply) { return ByteReader(std::span(reply).
 
 void place(std::span<const kernels::RveReport> from, std::span<const std::size_t> points,
            std::vector<kernels::RveReport>& to) {
-  if (from.size() != points.size()) throw std::logic_error("a rank answers for other points than it has");
+  if (from.size() != points.size())
+    throw std::logic_error("a rank has answered for another number of points than it holds");
   for (std::size_t k = 0; k < points.size(); ++k) to[points[k]] = from[k];
 }
 
@@ -87,7 +89,7 @@ RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std
 RankPool::~RankPool() {
   try {
     describe_costs();
-  } catch (const std::exception&) {  // the log or a rank is gone; whoever unwinds says why
+  } catch (const std::exception&) {  // the log or a rank is gone; another exception, which is on its way, says why
   }
 }
 
@@ -197,10 +199,11 @@ std::vector<fem::PointField> RankPool::fields() const {
   for (std::size_t f = 0; f < all.size(); ++f) spread(f, 0, mine[f].values);
   for (std::size_t r = 1; r <= others(); ++r) {
     ByteReader read = values_of(replies[r - 1]);
-    if (read.value<std::uint64_t>() != all.size()) throw std::logic_error("a rank has other fields");
+    if (read.value<std::uint64_t>() != all.size())
+      throw std::logic_error("a rank has other fields than the first rank");
     for (std::size_t f = 0; f < all.size(); ++f) {
       if (read.text() != all[f].name || read.text() != all[f].unit || read.value<int>() != all[f].components) {
-        throw std::logic_error("a rank has other fields");
+        throw std::logic_error("a rank has other fields than the first rank");
       }
       spread(f, r, read.list<double>());
     }
@@ -208,7 +211,7 @@ std::vector<fem::PointField> RankPool::fields() const {
   return all;
 }
 
-/// Records of a rank's RVEs first, first + 1, ... [rank-local].
+/// The records of `n` RVEs of a rank from its RVE `first` on, counted within the rank.
 std::vector<std::vector<std::byte>> RankPool::records_of(std::size_t rank, std::size_t first, std::size_t n) const {
   std::vector<std::vector<std::byte>> records;
   if (rank == 0) {
@@ -262,12 +265,13 @@ void RankPool::set_state(std::span<const std::byte> bytes) {
   }
 }
 
-/// A pool of one RVE draws it from its record, wherever that is.
+/// A pool of one RVE is filled from the RVE's record, which another rank may hold, and makes the snapshot.
 std::vector<io::RveSnapshot> RankPool::snapshots(std::span<const std::int64_t> points) const {
   std::vector<io::RveSnapshot> out;
   RvePool one(rve_, options_, 1);
   for (const std::int64_t point : points) {
-    if (point < 0 || point >= static_cast<std::int64_t>(size())) throw std::out_of_range("no such Gauss point");
+    if (point < 0 || point >= static_cast<std::int64_t>(size()))
+      throw std::out_of_range("there is no Gauss point of this number");
     const auto p = static_cast<std::size_t>(point);
     for (std::size_t r = 0; r < points_.size(); ++r) {
       const auto found = std::lower_bound(points_[r].begin(), points_[r].end(), p);

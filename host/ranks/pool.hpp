@@ -10,13 +10,13 @@
 
 namespace voussoir::host {
 
-/// A rank as `start_ranks` found it.
+/// A rank, as `start_ranks` found it.
 struct RankInfo {
   std::string host;
   int threads = 1;
 };
 
-/// The points of each rank, ascending, out of `n`: dealt out in turn, in proportion to the ranks' threads.
+/// The points of each rank out of `n`, ascending. Points are dealt out in turn, in proportion to the ranks' threads.
 [[nodiscard]] std::vector<std::vector<std::size_t>> deal_points(std::size_t n, std::span<const RankInfo> ranks);
 
 class RankPool final : public fem::MaterialBatch, public SnapshotSource {
@@ -39,10 +39,10 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
   /// The cost of spreading the pool, for the log.
   struct Ledger {
     std::size_t evaluations = 0;
-    double bytes = 0;       ///< of the evaluations' messages
-    double evaluating = 0;  ///< [s]
-    double slowest = 0;     ///< sum over the evaluations of the rank that took longest [s]
-    double waiting = 0;     ///< of the first rank, for the others [s]
+    double bytes = 0;       ///< bytes of the evaluations' messages
+    double evaluating = 0;  ///< time of the evaluations [s]
+    double slowest = 0;     ///< time of the slowest rank, summed over the evaluations [s]
+    double waiting = 0;     ///< time that the first rank waited for the others [s]
   };
 
   [[nodiscard]] std::size_t others() const { return points_.size() - 1; }

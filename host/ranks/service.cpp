@@ -1,4 +1,4 @@
-// What a rank does that is not the first: it owns a part of the pool and answers.
+// The work of all ranks but the first: such a rank owns a part of the pool and answers commands.
 #include <Kokkos_Core.hpp>
 #include <chrono>
 #include <csignal>
@@ -19,7 +19,7 @@ namespace {
 
 class Service {
  public:
-  /// Adds the answer to `reply`. Throws what keeps it from answering.
+  /// Obeys a command and adds the answer to `reply`. Throws where the command fails.
   void obey(Command command, ByteReader& read, ByteWriter& reply) {
     switch (command) {
       case Command::start:
@@ -44,19 +44,19 @@ class Service {
       case Command::quit:
         return;
     }
-    throw std::logic_error("a command that this rank does not know");
+    throw std::logic_error("this rank does not know the command");
   }
 
  private:
   RvePool& pool() {
-    if (!pool_) throw std::logic_error("a command to a pool that does not exist");
+    if (!pool_) throw std::logic_error("this rank has no pool for the command");
     return *pool_;
   }
 
   void start(ByteReader& read, ByteWriter& reply) {
     const std::string theirs = read.text();
     if (theirs != build_revision) {
-      throw std::runtime_error("has another build of the program (" + std::string(build_revision) + " instead of " +
+      throw std::runtime_error("the program there is another build (" + std::string(build_revision) + " instead of " +
                                theirs + ")");
     }
     const int threads = read.value<int>();

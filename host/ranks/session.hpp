@@ -17,17 +17,17 @@ namespace voussoir::host {
 
 struct PoolOptions;
 
-/// `main` holds one for its whole time. MPI is started only where a launcher's environment says that there may be other
-/// ranks.
+/// `main` holds a session as long as the program runs. MPI is started only where the environment of a launcher says
+/// that there may be other ranks.
 class RankSession {
  public:
   RankSession();
-  ~RankSession();  ///< the first rank's tells the others to end
+  ~RankSession();  ///< on the first rank: tells the others to end
   RankSession(const RankSession&) = delete;
   RankSession& operator=(const RankSession&) = delete;
 
-  [[nodiscard]] bool serves() const;  ///< true on all ranks but the first: such a rank has only `serve` to call
-  /// Answers the first rank until the first rank ends, for whatever reason. Returns 0, since the first rank's exit code
+  [[nodiscard]] bool serves() const;  ///< true on all ranks but the first: they have to call `serve` only
+  /// Answers the first rank until the first rank ends. Returns 0, since the first rank's exit code
   /// says how the run ended. Ctrl-C, SIGTERM and SIGUSR1 are ignored here; the first rank obeys them.
   [[nodiscard]] int serve() const;
 };
@@ -37,12 +37,13 @@ class RankSession {
 /// The MPI library's name, or "no MPI" in a build without one.
 [[nodiscard]] std::string rank_library();
 
-/// Starts Kokkos on the other ranks; later calls do nothing. @param threads of each rank; with 0 each chooses its own
+/// Starts Kokkos on the other ranks; later calls do nothing.
+/// @param threads number of threads of each rank; with 0 each rank chooses its own
 void start_ranks(int threads);
 
 /// `n` clones of `rve`, spread over the ranks in proportion to their threads. They answer bit for bit as one pool on
-/// one rank does. To be called after start_ranks, and only where rank_count() > 1. `note` is told on which rank the
-/// RVEs are and, at the end, what the spreading cost.
+/// one rank does. To be called after start_ranks, and only where rank_count() > 1. `note` receives lines for the
+/// log: on which ranks the RVEs are and, at the end, how much time the spreading took.
 [[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_rank_pool(PackedRve rve, const PoolOptions& options,
                                                                  std::size_t n, PackingNote note);
 

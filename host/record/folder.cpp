@@ -13,12 +13,13 @@
 namespace voussoir::host {
 namespace {
 
-/// What a run leaves before it has a run.h5.
+/// Names that a run may leave before it has a run.h5.
 constexpr std::array<std::string_view, 4> first_names{"run.log", "increments", "checkpoints", "column"};
-/// What it leaves besides. run.h5 is last: as long as it is there, the folder is known for one of results.
+/// Further names that it may leave. run.h5 is removed last: while it exists, the folder is known as a folder of
+/// results.
 constexpr std::array<std::string_view, 5> further_names{"result.xdmf", "k0.csv", "path.csv", "probe.csv", "run.h5"};
 
-/// A run killed in its first moment has left this.
+/// True for an entry that a run leaves when it is killed before it has a run.h5.
 bool is_left_by_a_start(const std::filesystem::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
   return entry.path().extension() == ".tmp" ||
@@ -75,7 +76,7 @@ void check_folder(const RunOptions& options, const std::string& fingerprint) {
 void remove_earlier_run(const RunOptions& options) {
   namespace fs = std::filesystem;
   if (!fs::exists(options.folder / "run.h5") && !fs::exists(options.folder / "probe.csv"))
-    return;  // what a start left is overwritten by the next one
+    return;  // the next run overwrites the files that such a start left
   for (const std::string_view name : first_names) fs::remove_all(options.folder / name);
   if (fs::exists(options.folder / "probe.csv")) {
     std::vector<fs::path> ends;

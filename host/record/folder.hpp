@@ -1,5 +1,5 @@
 #pragma once
-/// The folder of a run, looked at before anything is written.
+/// Checks of a run's folder before anything is written there.
 
 #include <filesystem>
 #include <string>
@@ -7,7 +7,7 @@
 namespace voussoir::host {
 
 struct RunOptions {
-  std::filesystem::path folder;  ///< of the results
+  std::filesystem::path folder;  ///< folder of the results
   bool resume = false;           ///< go on from the last checkpoint
   bool replace = false;          ///< results of an earlier run may be removed
   std::string command;           ///< command line, which the provenance repeats

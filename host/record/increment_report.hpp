@@ -1,5 +1,5 @@
 #pragma once
-/// What an increment of a stage tells of itself. The reports stay structs with named members until a result file is
+/// The reports of an increment of a stage. They stay structs with named members until a result file is
 /// written; the tables below state the name and the unit of each column. A new column needs a member, a row in the
 /// table beside it, the line that sets the member, and its line in io/FORMAT.md.
 ///
@@ -15,7 +15,7 @@
 
 namespace voussoir::host {
 
-/// How the equilibrium of an increment was found, and what that took.
+/// How the equilibrium of an increment was found, and the effort that it took.
 struct EquilibriumReport {
   double largest_nodal_ratio = 0;  ///< as fem::NewtonReport::largest_nodal_ratio [-]
   /// The bound of the residual, over the same reference as the residual: the tolerance, and the noise floor that the
@@ -30,7 +30,7 @@ struct EquilibriumReport {
   std::optional<std::size_t> slowest_point = {};  ///< the RVE that took most steps; none for a continuum
   std::optional<int> slowest_steps = {};          ///< the steps that it took
   int relaxations = 0;                            ///< substeps of relaxations that were committed
-  double viscous_work = 0;                        ///< dissipated by these substeps [J/m]
+  double viscous_work = 0;                        ///< energy dissipated by these substeps [J/m]
   /// RVEs that answered by their tangent at the last iterate; none unless `engine.defer` lets RVEs do so.
   std::optional<std::size_t> deferred_points = {};
   /// Largest error of such answers that the grains have shown in this increment, over the RVE's pressure [-].
@@ -63,8 +63,8 @@ inline constexpr auto equilibrium_columns = std::to_array<Column<EquilibriumRepo
 });
 
 struct IncrementReport {
-  /// What every result file says of its increment. The recorder sets `index`; a stage adds columns of its own to
-  /// `extra`, the columns of the tables below are added where the report is written.
+  /// The part of the report that every result file has. The recorder sets `index`; a stage adds columns of its own to
+  /// `extra`; the columns of the tables below are added where the report is written.
   io::IncrementInfo info;
   double volume_loss = 0;  ///< V_l of the tunnel; 0 in stages and kinds that lose no volume [-]
   std::optional<EquilibriumReport> equilibrium = {};  ///< none for the state at the start of a stage
@@ -74,7 +74,7 @@ inline constexpr auto increment_columns = std::to_array<Column<IncrementReport>>
     {"volume_loss", "-", &IncrementReport::volume_loss},
 });
 
-/// The report as a result file has it.
+/// The report in the form that a result file has.
 [[nodiscard]] inline io::IncrementInfo row_of(const IncrementReport& report) {
   io::IncrementInfo row = report.info;
   add_columns(report, increment_columns, row.extra);

@@ -1,6 +1,6 @@
 #pragma once
-/// The log of a run: lines with their time in DIR/run.log, the same lines without it on standard output, and one live
-/// line at the foot of a terminal, which shows the progress and is never written to a file.
+/// The log of a run: lines with their time in DIR/run.log, the same lines without the time on standard output, and one
+/// live line at the foot of a terminal, which shows the progress and is never written to a file.
 
 #include <filesystem>
 #include <memory>

@@ -17,7 +17,7 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// What a reader of the log should know of an increment besides its residual.
+/// Remarks for the log about an increment, in addition to its residual.
 std::string remarks(const EquilibriumReport& found) {
   std::string text;
   if (found.relaxations > 0) text += fmt::format(", relaxed in {} substeps", found.relaxations);

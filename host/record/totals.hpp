@@ -1,5 +1,5 @@
 #pragma once
-/// The costs of a run, stage by stage. Checkpoints keep them, and the end of the log tells them.
+/// The costs of a run, stage by stage. Checkpoints keep them, and the log shows them at its end.
 
 #include <string>
 #include <vector>

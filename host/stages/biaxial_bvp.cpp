@@ -30,8 +30,8 @@ io::MeshData specimen_data(const fem::Mesh& mesh, const BiaxialBvpCase& test) {
   return data;
 }
 
-/// Table `gauss_histories` of io/FORMAT.md, gathered from the increments' own files: a resumed run has them all. A run
-/// may be resumed with other `output.fields`: what an increment's file lacks is not a number.
+/// Table `gauss_histories` of io/FORMAT.md. It is gathered from the files of the increments, which a resumed run has
+/// all. Since a run may be resumed with other `output.fields`, a file may lack a field; its values are NaN then.
 std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder) {
   struct Source {
     const char* field;
@@ -72,7 +72,7 @@ std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder
   return table;
 }
 
-/// Means of what the increments cost, by the record itself.
+/// A sentence with the mean costs of the increments, read from the run's own results.
 std::string cost_line(const std::filesystem::path& folder) {
   const std::vector<io::IncrementInfo> all = io::read_increments(folder / "run.h5");
   double evaluations = 0, work = 0, wall = 0;
@@ -87,7 +87,7 @@ std::string cost_line(const std::filesystem::path& folder) {
       all.size(), evaluations / n, work / n, wall / n);
 }
 
-/// `ground`, `test` and `specimen` must outlive the stage.
+/// The stage of the specimen. `ground`, `test` and `specimen` must outlive the stage.
 Stage specimen_stage(const Ground& ground, const BiaxialBvpCase& test, SpecimenState& specimen) {
   const fem::Mesh& mesh = ground.mesh;
   Stage stage;

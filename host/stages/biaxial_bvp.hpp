@@ -2,11 +2,12 @@
 /// The case kind "biaxial_bvp": a drained biaxial test as a boundary-value problem, with an RVE at every Gauss point of
 /// a rectangle of elements.
 ///
-/// Smooth platens: the base is held vertically with its left corner fixed, the top moves down by `strain_step` of the
-/// first height an increment and is free sideways. A constant pressure acts on both sides. Updated Lagrangian: the
-/// pressure follows the deformed sides, integrated on the coordinates at the start of each increment (of each substep
-/// of a relaxed one), the same on which the internal forces are. No imperfection is put in; what breaks the symmetry is
-/// the mirror image at every second point (packing.mirrored) or, without it, rounding.
+/// The platens are smooth: the base is held vertically with its left corner fixed; in each increment the top moves down
+/// by `strain_step` times the first height and is free sideways. A constant pressure acts on both sides. The
+/// formulation is updated Lagrangian: the pressure follows the deformed sides. It is integrated, like the internal
+/// forces, on the coordinates at the start of each increment, or of each substep where an increment is relaxed. The
+/// specimen has no imperfection; the mirror image at every second point (packing.mirrored) breaks its symmetry, or
+/// rounding without it.
 
 #include <array>
 
@@ -19,20 +20,20 @@
 
 namespace voussoir::host {
 
-/// Runs, or goes on with, the specimen in options.folder.
+/// Starts the specimen in options.folder, or goes on with it.
 [[nodiscard]] RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options);
 
-/// Smooth platens, the top's displacement increment [m] given.
+/// The supports of smooth platens, whose top moves by the displacement increment `top_increment` [m].
 [[nodiscard]] fem::Constraints platen_constraints(const fem::Mesh& mesh, double top_increment);
 
-/// The specimen as a whole; compression positive, logarithmic strains.
+/// The specimen as a whole; compression is positive, strains are logarithmic.
 struct SpecimenState {
   double axial_strain = 0;       ///< -ln(height / first height) [-]
   double volumetric_strain = 0;  ///< -ln(area / first area), contraction positive [-]
-  double axial_force = 0;        ///< of the top platen on the specimen [N/m]
-  double axial_stress = 0;       ///< axial_force over the top's width on which it was integrated [Pa]
-  double p = 0;                  ///< of the stress averaged over the area, eq. (7) [Pa]
-  double q = 0;                  ///< of the same, eq. (8) [Pa]
+  double axial_force = 0;        ///< force of the top platen on the specimen [N/m]
+  double axial_stress = 0;       ///< axial_force over the width of the top on which the force was integrated [Pa]
+  double p = 0;                  ///< mean stress of the area's average stress, eq. (7) [Pa]
+  double q = 0;                  ///< deviatoric stress of the same average, eq. (8) [Pa]
   double q_over_p = 0;           ///< 0 where p is [-]
 };
 [[nodiscard]] SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increment,

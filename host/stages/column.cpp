@@ -19,8 +19,8 @@
 namespace voussoir::host {
 namespace {
 
-/// Rows of Gauss points of a column one element wide: the points 0, 1 of an element are its lower row, 2, 3 its upper
-/// one.
+/// Rows of Gauss points of a column one element wide. The points 0 and 1 of an element are its lower row, the points 2
+/// and 3 its upper one.
 std::vector<ColumnRow> averaged_rows(const std::vector<fem::Stress>& stress) {
   std::vector<ColumnRow> rows;
   for (std::size_t p = 0; p + 1 < stress.size(); p += 2) {
@@ -49,7 +49,7 @@ K0Table fit(const std::vector<ColumnRow>& rows, double initial_stress) {
   return K0Table::fit(std::move(samples), initial_stress);
 }
 
-/// The fitted table as text, for a tunnel's user and for other programs.
+/// Writes the fitted table as text, for the user of a tunnel and for other programs.
 void write_k0(const std::filesystem::path& folder, const K0Table& k0) {
   std::string fitted = "vertical_stress_Pa,k0\n";
   for (std::size_t k = 0; k < k0.stress().size(); ++k) {
@@ -58,7 +58,7 @@ void write_k0(const std::filesystem::path& folder, const K0Table& k0) {
   io::write_text(folder / "k0.csv", fitted);
 }
 
-/// `mesh`, `setup` and `rows` must outlive the stage.
+/// The stage of the column. `mesh`, `setup` and `rows` must outlive the stage.
 Stage column_stage(const fem::Mesh& mesh, const ColumnSetup& setup, std::vector<ColumnRow>& rows) {
   Stage stage;
   stage.name = "column";

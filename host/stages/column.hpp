@@ -1,6 +1,6 @@
 #pragma once
-/// Stage "column": a rectangle of the same RVEs under gravity. Every point follows the same oedometric path, so that
-/// all rows at all load factors are samples of one K0 (sigma_yy).
+/// Stage "column": a rectangle of equal RVEs under gravity. Every point follows the same oedometric path, so that all
+/// rows at all load factors are samples of one function K0 (sigma_yy).
 
 #include <array>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace voussoir::host {
 
-/// Of a case what its column is made from.
+/// The parts of a case from which its column is made.
 struct ColumnSetup {
   ColumnCase column;
   GroundCase soil;
@@ -25,16 +25,16 @@ struct ColumnSetup {
 /// K0 (sigma_yy) of a material, measured on a column under its own weight.
 struct ColumnResult {
   RunStatus status = RunStatus::finished;
-  K0Table k0;                       ///< only where the column is finished
+  K0Table k0;                       ///< known only where the column is finished
   std::vector<StageTotals> totals;  ///< the column's costs
 };
 
-/// Runs, or goes on with, the column in options.folder, with its own results and checkpoints, the tables `k0` and
-/// `column_rows` of io/FORMAT.md, and k0.csv. `provenance` is that of the column's results.
+/// Starts the column in options.folder, or goes on with it. The column has results and checkpoints of its own, the
+/// tables `k0` and `column_rows` of io/FORMAT.md, and k0.csv. `provenance` goes into its results.
 [[nodiscard]] ColumnResult measure_k0(const ColumnSetup& setup, const RunOptions& options,
                                       const io::Provenance& provenance, RunLog& log);
 
-/// The case kind "column": runs, or goes on with, the column in options.folder.
+/// The case kind "column": starts the column in options.folder, or goes on with it.
 [[nodiscard]] RunStatus run_column(const Case& input, const RunOptions& options);
 
 /// Table `k0` of io/FORMAT.md.
@@ -44,10 +44,10 @@ struct ColumnResult {
 struct ColumnRow {
   double vertical = 0;    ///< vertical stress, compression positive [Pa]
   double ratio = 0;       ///< horizontal over vertical stress [-]
-  double deflection = 0;  ///< of the principal axis from the vertical, signed [rad]
+  double deflection = 0;  ///< angle of the principal axis from the vertical, signed [rad]
 };
 
-/// Table `column_rows`.
+/// Table `column_rows` of io/FORMAT.md.
 inline constexpr auto column_row_columns = std::to_array<Column<ColumnRow>>({
     {"vertical_stress", "Pa", &ColumnRow::vertical},
     {"ratio", "-", &ColumnRow::ratio},

@@ -11,10 +11,10 @@
 namespace voussoir::host {
 namespace {
 
-constexpr int bands = 20;         ///< rows of equal height
-constexpr double deep = 100.0e3;  ///< vertical stress from which the principal axis is held to its direction [Pa]
+constexpr int bands = 20;         ///< number of rows, which have equal heights
+constexpr double deep = 100.0e3;  ///< vertical stress from which deflection_deep counts [Pa]
 
-/// A Gauss point away from the opening; stresses with compression positive.
+/// A Gauss point away from the opening. Compression is positive.
 struct Point {
   double depth;       // [m]
   double volume;      // per metre [m2]

@@ -1,5 +1,5 @@
 #pragma once
-/// The ground after gravity against the state at rest.
+/// Comparison of the ground after gravity with the state at rest.
 
 #include <array>
 #include <string>
@@ -11,28 +11,28 @@
 
 namespace voussoir::host {
 
-/// A level band of the ground after gravity, means over its points weighted by their volume.
+/// A level band of the ground after gravity. Means are taken over its points, weighted by their volume.
 struct GeostaticRow {
-  double depth = 0;       ///< of its middle [m]
-  double vertical = 0;    ///< vertical stress, compression positive, brought to that depth by the unit weight [Pa]
+  double depth = 0;       ///< depth of the band's middle [m]
+  double vertical = 0;    ///< vertical stress, compression positive, corrected to this depth by the unit weight [Pa]
   double error = 0;       ///< mean of vertical stress - (unit weight * depth + surcharge) [Pa]
-  double scatter = 0;     ///< standard deviation of the same [Pa]
+  double scatter = 0;     ///< standard deviation of the same difference [Pa]
   double k0 = 0;          ///< horizontal over vertical stress [-]
-  double deflection = 0;  ///< of the principal axis from the vertical, without sign [rad]
+  double deflection = 0;  ///< angle of the principal axis from the vertical, without sign [rad]
 };
 
-/// How near the ground after gravity is to the state at rest; Gauss points farther than D/2 from the opening.
+/// How near the ground after gravity is to the state at rest. Gauss points within D/2 of the opening do not count.
 struct GeostaticCheck {
   double vertical_error = 0;  ///< largest |sigma_yy - (unit weight * depth + surcharge)| [Pa]
-  double vertical_ratio = 0;  ///< the same, over (5 % of the expected stress + 1 kPa) [-]; at most 1 is wanted
-  double row_ratio = 0;    ///< largest |error| of a row over (2 % of the expected stress + 0.5 kPa) [-]; at most 1 is
-                           ///< wanted
+  double vertical_ratio = 0;  ///< the same error over (5 % of the expected stress + 1 kPa) [-]; it should be at most 1
+  double row_ratio = 0;    ///< largest |error| of a row over (2 % of the expected stress + 0.5 kPa) [-]; it should be
+                           ///< at most 1
   double row_scatter = 0;  ///< largest scatter of a row over its vertical stress [-]
   double k0_minimum = 1;   ///< least horizontal over vertical stress [-]
-  double k0_maximum = 0;   ///< largest [-]
-  double deflection_mean = 0;  ///< of the principal axis from the vertical [rad]
-  double deflection_max = 0;   ///< [rad]
-  double deflection_deep = 0;  ///< largest where the vertical stress is 100 kPa or more [rad]; at most 1 deg is wanted
+  double k0_maximum = 0;   ///< largest horizontal over vertical stress [-]
+  double deflection_mean = 0;  ///< angle of the principal axis from the vertical, mean [rad]
+  double deflection_max = 0;   ///< the largest angle [rad]
+  double deflection_deep = 0;  ///< largest angle from a vertical stress of 100 kPa on [rad]; should be at most 1 deg
   std::vector<GeostaticRow> rows;  ///< from the surface down; rows without points are left out
 };
 [[nodiscard]] GeostaticCheck check_geostatic(const Ground& ground, const GroundCase& soil);
@@ -53,7 +53,7 @@ inline constexpr auto geostatic_columns = std::to_array<Column<GeostaticCheck>>(
     {"deflection_deep", "rad", &GeostaticCheck::deflection_deep},
 });
 
-/// Table `geostatic_rows`.
+/// Table `geostatic_rows` of io/FORMAT.md.
 inline constexpr auto geostatic_row_columns = std::to_array<Column<GeostaticRow>>({
     {"depth", "m", &GeostaticRow::depth},
     {"vertical_stress", "Pa", &GeostaticRow::vertical},

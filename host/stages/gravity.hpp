@@ -1,5 +1,5 @@
 #pragma once
-/// Stage "gravity": from the isotropic initial state to geostatic equilibrium on the fixed mesh.
+/// Stage "gravity" takes the ground from its isotropic initial state to geostatic equilibrium, on a fixed mesh.
 
 #include "host/stages/ground_run.hpp"
 #include "host/stages/k0_table.hpp"
@@ -7,7 +7,7 @@
 
 namespace voussoir::host {
 
-/// Goes on where the ground stands. The opening is held by the tractions of eqs. (15), (16).
+/// Goes on from the load factor that the ground has reached. The tractions of eqs. (15), (16) hold the opening.
 [[nodiscard]] RunStatus settle_under_gravity(GroundRun& run, const GroundCase& soil, const GravityCase& gravity,
                                              const K0Table& k0);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The ground in the middle of a run: what the stages change.
+/// The ground during a run: mesh, material and the state that the stages change.
 
 #include <vector>
 
@@ -13,11 +13,11 @@ namespace voussoir::host {
 struct Ground {
   const fem::Mesh& mesh;
   fem::MaterialBatch& material;
-  fem::MeshState state;                  ///< of the current stage
+  fem::MeshState state;                  ///< state of the current stage
   std::vector<fem::PlaneTensor> strain;  ///< sum of the increments' strains since the stage began, n_points [-]
 };
 
-/// Displacements and strains start from zero on the original coordinates; the material keeps its state.
+/// Sets displacements and strains to zero on the original coordinates; the material keeps its state.
 void begin_stage(Ground& ground);
 
 }  // namespace voussoir::host

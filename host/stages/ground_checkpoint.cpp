@@ -19,7 +19,7 @@ void put_list(io::Checkpoint& checkpoint, const std::string& name, const std::ve
 std::vector<double> get_sized(const io::Checkpoint& checkpoint, const std::string& name, std::size_t size) {
   std::vector<double> values = checkpoint.get_doubles(name);
   if (values.size() != size) {
-    throw std::runtime_error("the checkpoint's " + name + " has " + std::to_string(values.size()) + " numbers, " +
+    throw std::runtime_error("the checkpoint's " + name + " has " + std::to_string(values.size()) + " numbers, but " +
                              std::to_string(size) + " are needed");
   }
   return values;

@@ -1,5 +1,5 @@
 #pragma once
-/// The ground as a checkpoint holds it: everything that the next increment depends on.
+/// Ground to checkpoint and back. A checkpoint holds everything that the next increment depends on.
 
 #include "host/stages/ground.hpp"
 #include "io/checkpoint.hpp"
@@ -7,7 +7,7 @@
 namespace voussoir::host {
 
 void save(const Ground& ground, io::Checkpoint& checkpoint);
-/// Throws std::runtime_error on a checkpoint of another mesh.
+/// Throws std::runtime_error where the checkpoint belongs to another mesh.
 void restore(Ground& ground, const io::Checkpoint& checkpoint);
 
 }  // namespace voussoir::host

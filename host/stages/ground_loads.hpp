@@ -1,6 +1,6 @@
 #pragma once
-/// Loads and supports that the stages of the ground share: weight, surcharge, the tractions that hold the opening,
-/// supports (method.md, section 4).
+/// Loads and supports that several stages of the ground use: weight, surcharge, the tractions that hold the opening,
+/// and supports (method.md, section 4).
 
 #include <vector>
 
@@ -21,11 +21,11 @@ namespace voussoir::host {
 [[nodiscard]] Eigen::VectorXd opening_tractions(const fem::Mesh& mesh, const GroundCase& soil, const K0Table& k0,
                                                 double load_factor);
 
-/// Base fixed, sides and symmetry axis on rollers.
+/// The supports of the ground: the base is fixed; the sides and the axis of symmetry are on rollers.
 [[nodiscard]] fem::Constraints ground_supports(const fem::Mesh& mesh);
 
-/// Base, sides and axis as above. The opening follows the loss of volume between two values of V_l; its crown and
-/// invert stay on the axis of symmetry.
+/// The supports of the ground with a moving opening: it follows the loss of volume from one value of V_l to another.
+/// Its crown and invert stay on the axis of symmetry.
 [[nodiscard]] fem::Constraints volume_loss_constraints(const fem::Mesh& mesh, double from, double to);
 
 }  // namespace voussoir::host

@@ -49,7 +49,7 @@ void add_strain_fields(std::vector<io::Field>& fields, const std::vector<fem::Pl
                                [&](std::size_t p, double* out) { *out = fem::deviatoric_strain(strain[p]); }));
 }
 
-/// Current coordinates for a result file; empty where the mesh has not moved.
+/// The current coordinates for a result file; empty where the mesh has not moved.
 std::vector<double> moved_coordinates(const Ground& ground) {
   if (ground.state.coordinates == ground.mesh.coordinates) return {};
   return flat(ground.state.coordinates.reshaped());

@@ -1,5 +1,5 @@
 #pragma once
-/// The ground as result files show it (io/FORMAT.md).
+/// The ground in the form that result files have (io/FORMAT.md).
 
 #include <vector>
 
@@ -10,18 +10,18 @@
 
 namespace voussoir::host {
 
-/// The mesh with the names of its boundaries; without numbers about its geometry.
+/// The mesh with the names of its boundaries, but without numbers about its geometry.
 [[nodiscard]] io::MeshData mesh_data(const fem::Mesh& mesh);
 
 /// The mesh of ground under its own weight, with the numbers that figures need: the height of the surface, the loads
 /// and, where the mesh has an opening, the tunnel's diameter and depth.
 [[nodiscard]] io::MeshData mesh_data(const fem::Mesh& mesh, const GroundCase& soil);
 
-/// All nodal and Gauss-point fields. `reactions` as fem::Increment::reactions [N/m]; where it is empty there is no such
-/// field.
+/// All nodal and Gauss-point fields. `reactions` are those of fem::Increment::reactions [N/m]; where the vector is
+/// empty, the field `reaction` is left out.
 [[nodiscard]] std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd& reactions);
 
-/// Writes the ground as it stands as a result file, with the fields and the whole RVEs that `output` asks for.
+/// Writes the present state of the ground to a result file, with the fields and the whole RVEs that `output` asks for.
 void record_ground(const Ground& ground, const IncrementReport& increment, const Eigen::VectorXd& reactions,
                    const OutputCase& output, RunRecorder& recorder);
 

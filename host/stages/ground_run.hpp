@@ -14,7 +14,7 @@
 
 namespace voussoir::host {
 
-/// What every stage is told besides its loads: when an increment is in equilibrium, and what is recorded.
+/// Settings that all stages of a run have in common: the criteria of equilibrium, and the choice of output.
 struct StageSettings {
   NewtonCase newton;
   OutputCase output;
@@ -27,19 +27,20 @@ struct StageSettings {
 
 class GroundRun {
  public:
-  /// Starts the record in options.folder, or goes on with it. `mesh` and `log` must outlive the run.
+  /// Starts the record in options.folder, or goes on with the record there. `mesh` and `log` must outlive the run.
   GroundRun(const RunOptions& options, const io::Provenance& provenance, const fem::Mesh& mesh, io::MeshData mesh_data,
             StageSettings settings, RunLog& log);
 
-  /// Makes the material, and the ground of it: restored from the checkpoint that the record goes on from, else at the
-  /// beginning of its first stage. `note` is told what is done where that takes time.
+  /// Makes the material and the ground. The ground is restored from the checkpoint with which the record goes on;
+  /// without a checkpoint it stands at the beginning of its first stage. `note` receives lines for the log about slow
+  /// steps.
   void open_ground(const MaterialCase& material, const PackingNote& note);
 
   [[nodiscard]] bool finished() const { return recorder_.finished(); }  ///< an earlier process has finished this run
   /// Tells the log that a finished run has nothing left to do.
   void report_finished();
 
-  [[nodiscard]] Ground& ground() { return ground_.value(); }  ///< after open_ground
+  [[nodiscard]] Ground& ground() { return ground_.value(); }  ///< may be called only after open_ground
   [[nodiscard]] RunRecorder& recorder() { return recorder_; }
   [[nodiscard]] RunLog& log() { return recorder_.log(); }
   [[nodiscard]] const StageSettings& settings() const { return settings_; }

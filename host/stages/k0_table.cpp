@@ -28,7 +28,7 @@ std::vector<Knot> bin(std::vector<K0Sample>& samples, double initial_stress) {
   for (const K0Sample& sample : samples) {
     const double position = std::log(sample.vertical);
     const double index = std::floor((position - origin) / width);
-    if (index < 0 || sample.vertical <= initial_stress) continue;  // K0 = 1 there by construction
+    if (index < 0 || sample.vertical <= initial_stress) continue;  // K0 is set to 1 there
     if (knots.empty() || index != open_bin) {
       knots.push_back({0, 0, 0});
       open_bin = index;
@@ -70,7 +70,7 @@ void make_non_increasing(std::vector<Knot>& knots) {
 }
 
 /// Slopes that keep a cubic Hermite interpolant monotone: the weighted harmonic mean of the secants (Fritsch and
-/// Butland 1984), zero where they change sign; one-sided at the ends.
+/// Butland 1984), zero where the secants change sign. The slopes at the ends are one-sided.
 std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> slope(x.size(), 0.0);
   if (x.size() < 2) return slope;

@@ -13,18 +13,18 @@ struct K0Sample {
   double ratio = 1;     ///< horizontal over vertical stress [-]
 };
 
-/// A smooth, nowhere rising K0(sigma_yy): knots in the logarithm of the stress, monotone cubic in between
-/// (Fritsch and Carlson 1980), constant outside.
+/// A smooth function K0(sigma_yy) that rises nowhere: knots in the logarithm of the stress, a monotone cubic between
+/// them (Fritsch and Carlson 1980), constant outside.
 class K0Table {
  public:
-  /// K0 = 1 at every stress.
+  /// A table with K0 = 1 at every stress.
   K0Table() = default;
 
-  /// Fit to samples in any order: means over bins of equal width in log stress, then the nearest non-increasing
-  /// sequence (pool adjacent violators), with K0 = 1 at the initial stress [Pa] and below.
+  /// Fits a table to samples in any order: takes means over bins of equal width in log stress, then the nearest
+  /// non-increasing sequence (pool adjacent violators). K0 is 1 at the initial stress [Pa] and below.
   [[nodiscard]] static K0Table fit(std::vector<K0Sample> samples, double initial_stress);
 
-  /// A table with given knots [Pa], ascending, and their ratios (as a checkpoint stores them).
+  /// A table with given knots [Pa], ascending, and their ratios, as a checkpoint stores them.
   K0Table(std::vector<double> stress, std::vector<double> ratio);
 
   /// K0 at a vertical stress [Pa], compression positive.

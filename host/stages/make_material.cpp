@@ -11,11 +11,11 @@
 namespace voussoir::host {
 namespace {
 
-/// Of the static tangents that steer the mesh's iterates: some 32 iterations. Run out, they need no fewer evaluations
-/// (fem/README.md).
+/// Tolerance of the static tangents with which Newton iterates; they take some 32 iterations. A smaller tolerance does
+/// not save evaluations (fem/README.md).
 constexpr double newton_tangent_tolerance = 0.1;
 
-/// The chosen packing at all points.
+/// A pool with the chosen packing at all points.
 std::unique_ptr<fem::MaterialBatch> make_rve_pool(const MaterialCase& material, std::size_t n_points,
                                                   const PackingNote& note) {
   PackedRve rve = choose_packing(material.soil, material.packing, note);
@@ -23,7 +23,7 @@ std::unique_ptr<fem::MaterialBatch> make_rve_pool(const MaterialCase& material, 
                       .tangent = tangent_kind(material.tangent, material.engine),
                       .tangent_strain = material.tangent_strain,
                       .microstructure = material.microstructure};
-  // To a tenth, a loading tangent would be little else than the elastic one that it starts from.
+  // With a tolerance of a tenth, a loading tangent would hardly differ from the elastic tangent that it starts from.
   if (options.tangent != kernels::TangentKind::loading) options.tangent_tolerance = newton_tangent_tolerance;
   if (rank_count() > 1) return make_rank_pool(std::move(rve), options, n_points, note);
   return std::make_unique<RvePool>(rve, options, n_points);

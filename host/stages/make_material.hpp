@@ -1,5 +1,5 @@
 #pragma once
-/// The one place where a case's material becomes a batch.
+/// The one place that makes a batch of the material of a case.
 
 #include <cstddef>
 #include <memory>
@@ -10,22 +10,22 @@
 
 namespace voussoir::host {
 
-/// Of a case what its material is made from.
+/// The parts of a case from which its material is made.
 struct MaterialCase {
   MaterialKind kind = MaterialKind::grains;
   SoilCase soil;
   PackingCase packing;  ///< its `pressure` is the isotropic initial pressure of either material
   EngineCase engine;
   ElasticCase elastic;
-  TangentChoice tangent;                          ///< of the RVEs
-  double tangent_strain = 1.0e-6;                 ///< of a loading tangent, the strain it is the secant of [-]
-  kernels::MicrostructureRequest microstructure;  ///< of the contact network, what the batch's fields() shall hold
+  TangentChoice tangent;                          ///< tangent of the RVEs
+  double tangent_strain = 1.0e-6;                 ///< the strain whose secants make a loading tangent [-]
+  kernels::MicrostructureRequest microstructure;  ///< quantities of the contact network in the batch's fields()
 };
 
 [[nodiscard]] MaterialCase material_case(const Case& input);
 
 /// A batch of `n_points` points of the material, all at its isotropic initial pressure; grains are spread over the
-/// ranks where there are several. `note` is told what is done where that takes time.
+/// ranks where there are several. `note` receives lines for the log about slow steps.
 [[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_material(const MaterialCase& material, std::size_t n_points,
                                                                 const PackingNote& note = {});
 

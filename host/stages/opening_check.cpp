@@ -24,7 +24,7 @@ OpeningCheck check_opening(const Ground& ground, const GroundCase& soil, const K
   double held = 0;
   for (const int node : mesh.node_set("opening")) {
     for (const int dof : {2 * node, 2 * node + 1}) {
-      if (supports.contains(dof)) continue;  // crown and invert lean on the axis of symmetry as well
+      if (supports.contains(dof)) continue;  // crown and invert are also supported by the axis of symmetry
       difference += std::pow(unbalanced[dof] - tractions[dof], 2);
       held += std::pow(tractions[dof], 2);
     }

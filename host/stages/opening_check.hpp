@@ -1,5 +1,6 @@
 #pragma once
-/// The opening at V_l = 0: reactions of the opening that is now fixed, against the tractions that held it.
+/// The check of the opening at V_l = 0: the reactions of the opening, which is fixed now, are compared with the
+/// tractions that held it before.
 
 #include <array>
 
@@ -12,8 +13,8 @@ namespace voussoir::host {
 
 struct OpeningCheck {
   double difference = 0;      ///< |reactions - tractions| over the opening's free directions [N/m]
-  double relative = 0;        ///< the same, over |tractions| [-]
-  Eigen::VectorXd reactions;  ///< of all supports on the ground, n_dofs [N/m]
+  double relative = 0;        ///< the same difference over |tractions| [-]
+  Eigen::VectorXd reactions;  ///< forces of all supports on the ground, n_dofs [N/m]
 };
 [[nodiscard]] OpeningCheck check_opening(const Ground& ground, const GroundCase& soil, const K0Table& k0);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A stage of a run: its loads, and what it alone reports and remembers.
+/// A stage of a run: its loads, and the reports and checkpoint data that no other stage has.
 
 #include <functional>
 #include <string>
@@ -18,15 +18,16 @@ enum class RunStatus {
 };
 
 struct Stage {
-  std::string name;  ///< of io/FORMAT.md
+  std::string name;  ///< the stage's name in io/FORMAT.md
   fem::Kinematics kinematics = fem::Kinematics::fixed_mesh;
   fem::LoadPath path;
   std::vector<double> targets;  ///< load parameters of all its increments, ascending from 0
-  bool last = false;            ///< the whole run is finished with this stage
+  bool last = false;            ///< true where the whole run ends with this stage
 
-  std::function<void(const fem::ConvergedStep&)> on_step;  ///< sees every converged step, cut ones too; may be empty
-  std::function<void(IncrementReport&)> on_record;         ///< adds what the stage itself reports; may be empty
-  std::function<void(io::Checkpoint&)> on_checkpoint;      ///< adds what the stage itself remembers; may be empty
+  std::function<void(const fem::ConvergedStep&)> on_step;  ///< receives every converged step, also parts of a cut one;
+                                                           ///< may be empty
+  std::function<void(IncrementReport&)> on_record;         ///< adds the reports of the stage itself; may be empty
+  std::function<void(io::Checkpoint&)> on_checkpoint;      ///< adds the data that the stage itself keeps; may be empty
 };
 
 }  // namespace voussoir::host

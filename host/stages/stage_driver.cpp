@@ -19,7 +19,7 @@ fem::StepOptions step_options(const NewtonCase& newton) {
   return options;
 }
 
-/// What the log says at the end of a stage.
+/// Writes the lines at the end of a stage to the log.
 void report_totals(GroundRun& run, const std::string& stage) {
   run.log().line(fmt::format("{}: {}, peak memory {:.0f} MB", stage, run.recorder().disk_use(), peak_memory() * 1e-6));
   const StageTotals& totals = run.recorder().stage_totals();

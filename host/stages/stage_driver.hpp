@@ -1,5 +1,6 @@
 #pragma once
-/// Takes the ground through one stage: load increments to equilibrium, each of them recorded and checkpointed.
+/// Takes the ground through one stage. Each load increment is brought to equilibrium, recorded and kept in a
+/// checkpoint.
 
 #include "fem/newton.hpp"
 #include "host/stages/ground_run.hpp"
@@ -7,8 +8,8 @@
 
 namespace voussoir::host {
 
-/// Goes from the load parameter that the ground has reached through the targets beyond it. Numerical failure is a
-/// status; the log explains it, and nothing that did not converge is recorded.
+/// Starts at the load parameter that the ground has reached and goes through the targets beyond this value. A numerical
+/// failure is returned as a status and explained in the log; an increment that did not converge is not recorded.
 [[nodiscard]] RunStatus advance_stage(GroundRun& run, const Stage& stage);
 
 [[nodiscard]] fem::NewtonOptions newton_options(const NewtonCase& newton);

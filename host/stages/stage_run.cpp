@@ -20,7 +20,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A force over the reference that the tolerance is relative to.
+/// A force over the reference force of the tolerance.
 double relative(double force, const fem::NewtonReport& report, double tolerance) {
   const double reference = (report.residual_bound - report.noise_floor) / tolerance;
   return reference > 0 ? force / reference : force;
@@ -42,7 +42,7 @@ bool StageRun::converged(const fem::ConvergedStep& step) {
   }
   if (stage_.on_step) stage_.on_step(step);
   if (!step.target) return true;
-  const bool stop = interrupted();  // asked once: a run that stops here must have written its checkpoint
+  const bool stop = interrupted();  // looked at only once, so that a run that stops here has written its checkpoint
   finish_increment(step, stop);
   return !stop;
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// One stage as it runs: what the load stepper tells about its steps becomes reports of increments, which are recorded,
-/// and totals of the stage.
+/// One stage while it runs. From the steps of the load stepper it makes the reports of increments, which are recorded,
+/// and the totals of the stage.
 
 #include <chrono>
 
@@ -12,25 +12,25 @@ namespace voussoir::host {
 
 class StageRun {
  public:
-  /// Keeps references to both.
+  /// Keeps references to the run and to the stage.
   StageRun(GroundRun& run, const Stage& stage);
 
-  /// Targets of the stage that the ground has reached.
+  /// The number of targets of the stage that the ground has reached.
   [[nodiscard]] int done() const { return done_; }
 
-  /// Takes a converged step over. At a target the increment is recorded; false where the run shall stop there.
+  /// Accepts a converged step. At a target the increment is recorded. Returns false where the run has to stop there.
   [[nodiscard]] bool converged(const fem::ConvergedStep& step);
 
   /// Counts and logs a step that did not converge.
   void failed(const fem::FailedStep& step);
 
-  /// Counts the wall time since the last increment, which went into steps that led to none.
+  /// Adds the wall time since the last increment to the totals: it went into steps that did not complete an increment.
   void end();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// What has been done since the last target: steps that were cut, and several steps to one target, are summed.
+  /// The effort since the last target, summed over the steps to the next one and over steps that were cut.
   struct Effort {
     int iterations = 0;
     int evaluations = 0;

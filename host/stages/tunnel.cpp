@@ -14,19 +14,19 @@
 namespace voussoir::host {
 namespace {
 
-/// The column of a tunnel: a run of its own in the folder `column`.
+/// Runs the column of a tunnel, which is a run of its own in the folder `column`.
 ColumnResult run_own_column(const Case& input, const RunOptions& options, RunLog& log) {
   RunOptions own = options;
   own.folder /= "column";
   ColumnSetup setup = column_setup(input);
-  setup.settings.output.rves.clear();  // they are points of the tunnel's mesh
+  setup.settings.output.rves.clear();  // these numbers are points of the tunnel's mesh
   return measure_k0(setup, own, provenance_of(own, input, "column"), log);
 }
 
-/// Gravity and volume loss, as far as they go.
+/// Runs gravity and, where it succeeds, the volume loss.
 RunStatus run_stages(const Case& input, const K0Table& k0, GroundRun& run) {
   run.recorder().set_table("k0", k0_columns(k0));
-  // The column has told the terminal about the packing already.
+  // The lines about the packing go to the file only, since the column has written them to the terminal already.
   run.open_ground(material_case(input), [&run](const std::string& text) { run.log().detail(text); });
   const bool losing = run.recorder().resumed_stage() == "volume_loss";
   if (!losing) {
@@ -56,8 +56,8 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
     run.report_finished();
     return RunStatus::finished;
   }
-  log.line(fmt::format("{}: {} elements, {} points of {}", input.name, mesh.n_elements(), mesh.n_points(),
-                       to_string(input.material)));
+  log.line(fmt::format("{}: the mesh has {} elements and {} points of the material {}", input.name, mesh.n_elements(),
+                       mesh.n_points(), to_string(input.material)));
   if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
 
   const ColumnResult column = run_own_column(input, options, log);

@@ -1,5 +1,6 @@
 #pragma once
-/// The case kind "tunnel": a tunnel that loses volume. Column, gravity, volume loss (method.md, section 4).
+/// The case kind "tunnel": a tunnel that loses volume, in the stages column, gravity and volume loss (method.md,
+/// section 4).
 
 #include "fem/mesh.hpp"
 #include "host/case/case.hpp"
@@ -11,8 +12,8 @@ namespace voussoir::host {
 /// The half domain of the case. Throws std::invalid_argument where its sizes make no mesh.
 [[nodiscard]] fem::Mesh tunnel_mesh(const GroundCase& soil);
 
-/// Runs, or goes on with, the tunnel of the case in options.folder; the column's own results are in its folder
-/// `column`.
+/// Starts the tunnel of the case in options.folder, or goes on with it. The column has its results in the folder
+/// `column` there.
 [[nodiscard]] RunStatus run_tunnel(const Case& input, const RunOptions& options);
 
 }  // namespace voussoir::host

@@ -17,7 +17,7 @@ namespace {
 
 double settlement(const Ground& ground, int node) { return 0.0 - ground.state.displacement[2 * node + 1]; }
 
-/// Area lost by the opening over its original area [-].
+/// The area that the opening has lost, over its original area [-].
 double area_loss(const Ground& ground) {
   const std::vector<fem::Edge>& opening = ground.mesh.edge_set("opening");
   fem::Coordinates moved = ground.mesh.coordinates;
@@ -27,7 +27,7 @@ double area_loss(const Ground& ground) {
   return 1.0 - fem::area_left_of(moved, opening) / fem::area_left_of(ground.mesh.coordinates, opening);
 }
 
-/// The state at V_l = 0, with the reactions of the opening that is now fixed, as the stage's increment 0.
+/// Records the state at V_l = 0 as increment 0 of the stage, with the reactions of the opening, which is fixed now.
 void record_start(GroundRun& run, const GroundCase& soil, const K0Table& k0) {
   const Ground& ground = run.ground();
   const GeostaticCheck at_rest = check_geostatic(ground, soil);

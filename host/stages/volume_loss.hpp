@@ -10,15 +10,15 @@
 
 namespace voussoir::host {
 
-/// Goes on where the ground stands, or starts the stage unless `resumed`: the opening is then fixed where it stands,
-/// and the state at V_l = 0 is checked against the state at rest and recorded.
+/// Goes on from the V_l that the ground has reached. Unless `resumed`, the stage is started first: the opening is fixed
+/// in its place, and the state at V_l = 0 is compared with the state at rest and recorded.
 [[nodiscard]] RunStatus lose_volume(GroundRun& run, const GroundCase& soil, const VolumeLossCase& loss,
                                     const K0Table& k0, bool resumed);
 
-/// What the tunnel does to the ground.
+/// The effect of the tunnel on the ground.
 struct TunnelReport {
   double crown_settlement = 0;    ///< [m]
-  double surface_settlement = 0;  ///< the largest of the surface [m]
+  double surface_settlement = 0;  ///< largest settlement of the surface [m]
   double area_loss = 0;           ///< area that the opening has lost, over its original area [-]
 };
 [[nodiscard]] TunnelReport tunnel_report(const Ground& ground);

@@ -16,7 +16,7 @@ Path("probe.toml").write_text('kind = "probe"\n')
 probe = [PROGRAM, "run", "probe.toml", "-o", str(fresh("probed"))]
 for setting in PACK:
     probe += ["--set", setting]
-check("6 tests, about" in run([PROGRAM, "check", "probe.toml"]).stdout, "`check` says nothing of a probe's cost")
+check("6 tests take about" in run([PROGRAM, "check", "probe.toml"]).stdout, "`check` says nothing of a probe's cost")
 run(probe)
 first = Path("probed/probe.csv").read_bytes()
 check("--replace" in run(probe, code=2).stderr, "a probe's folder does not say what to do")
@@ -90,7 +90,7 @@ check(
 )
 check((tests / "run.h5").stat().st_mtime_ns == before, "finished biaxial tests were done again")
 foretold = run([PROGRAM, "check", str(ROOT / "cases/biaxial/case.toml")]).stdout
-check("tests, about" in foretold, "`check` says nothing of the cost of biaxial tests")
+check("tests take about" in foretold, "`check` says nothing of the cost of biaxial tests")
 
 # Every field that a run writes can be asked for by its name, and then the others are not written.
 GROUND = [

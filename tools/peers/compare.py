@@ -1,4 +1,4 @@
-"""Runs the peers on the benchmark's packing and sets their rates beside ours: compare.py BENCHMARK.json
+"""Runs the peers on the benchmark's packing and compares their rates with ours: compare.py BENCHMARK.json
 PACKING_FOLDER."""
 
 import json
@@ -31,7 +31,7 @@ def grain_count(path):
 
 
 def read_packing(folder, grains):
-    """The packing of that many grains that the benchmark made last (wide gradings have one of their own)."""
+    """The last packing of this number of grains that the benchmark made (wide gradings have packings of their own)."""
     path = max(
         (p for p in Path(folder).glob("packing_*.h5") if grain_count(p) == grains), key=lambda p: p.stat().st_mtime
     )
@@ -54,7 +54,7 @@ def our_rates(path):
 
 
 def yade(packing):
-    """(particle-steps/s, contacts per grain, how)."""
+    """(particle-steps/s, contacts per grain, settings as text)."""
     with tempfile.TemporaryDirectory() as folder:
         settings = {"settle": 5000, "steps": 4000, "repetitions": 5}
         (Path(folder) / "packing.json").write_text(json.dumps(asdict(packing) | settings))
@@ -73,8 +73,8 @@ def yade(packing):
 
 
 def main():
-    if os.getloadavg()[0] > 1.5:  # the benchmark before this is one of them
-        print(f"the machine is not idle (load {os.getloadavg()[0]:.1f}): no rate below is to be trusted")
+    if os.getloadavg()[0] > 1.5:  # 1.0 of this load comes from the benchmark before
+        print(f"the machine is not idle (load {os.getloadavg()[0]:.1f}): do not trust the rates below")
     ours = our_rates(sys.argv[1])
     packing = read_packing(sys.argv[2], ours["alike/float"][2])
     rates = {"float": ours["alike/float"], "double": ours["alike/double"]}

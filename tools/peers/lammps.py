@@ -1,4 +1,4 @@
-"""LAMMPS on a packing: one input script per run, rates from its own "Loop time"."""
+"""Runs LAMMPS on a packing, with one input script for each run. The rates come from the "Loop time" that LAMMPS prints."""
 
 import re
 import shutil
@@ -56,7 +56,7 @@ def run(packing, skin, newton, steps, repetitions):
     kn = MODULUS * mean
     lightest = (
         4.0 / 3.0 * 3.14159265 * min(packing.radius) ** 3 * DENSITY
-    )  # discs weigh as spheres here; no rate depends on it
+    )  # discs have the weight of spheres here, which changes no rate
     dt = 0.1 * (lightest / kn) ** 0.5
     eta = 0.2 * (lightest * kn) ** 0.5
     with tempfile.TemporaryDirectory() as folder:
@@ -98,7 +98,7 @@ def run(packing, skin, newton, steps, repetitions):
 
 
 def best(packing):
-    """(particle-steps/s, contacts per grain, how) with the best of the skins and newton settings."""
+    """(particle-steps/s, contacts per grain, settings as text) with the best of the skins and newton settings."""
     tries = [
         (statistics.median(run(packing, skin, newton, 3000, 3)[0]), skin, newton)
         for skin in (0.03, 0.06, 0.1, 0.2)

@@ -1,1 +1,1 @@
-"""What each knob of the grain engine costs and buys."""
+"""A study of what each knob of the grain engine costs and buys."""

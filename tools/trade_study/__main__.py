@@ -12,11 +12,11 @@ from trade_study.report import write
 def main():
     parser = argparse.ArgumentParser(prog="tools/trade", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="two packings at 100 kPa")
-    parser.add_argument("--seeds", type=int, default=8, help="packings (8)")
+    parser.add_argument("--seeds", type=int, default=8, help="number of packings (8)")
     parser.add_argument(
         "--pressures", type=int, nargs="+", choices=list(PRESSURES), default=list(PRESSURES), help="kPa (1 100 800)"
     )
-    parser.add_argument("--knobs", nargs="+", help="only these knobs (all)")
+    parser.add_argument("--knobs", nargs="+", help="run only these knobs (default: all)")
     parser.add_argument("-j", "--processes", type=int, default=2)
     parser.add_argument("-o", "--output", type=Path, default=Path("out/trade"))
     parser.add_argument("--program", type=Path, default=Path("build/openmp/host/voussoir"))

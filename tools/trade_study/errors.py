@@ -1,12 +1,12 @@
 """From the tables of the runs to errors in percent of the pressure: root mean squares, medians and the worst of all
-samples. They differ where a packing snaps: one whose next rearrangement falls before the end with one setting and after
-it with another one is off by more than all others together.
+samples. These measures differ where a packing rearranges suddenly: if the rearrangement comes before the end with one
+setting and after the end with another one, the difference is larger than that of all other packings together.
 
-Of an evaluation (one increment from a given state): e = |sigma - sigma_ref| / (sqrt(2) P), with |.| the tensor's norm
-and P the larger pressure of before and after, so that an isotropic error of P is 100 %. sigma_ref is the mean of the
-reference solution's replicas, the same seed, state and direction. Of the tangent (eq. (4)) after that evaluation: |D -
-D_ref| / |D_ref|, with the norm of fourth-order tensors (`TANGENT_NORM`). Of a path: e = q/p - (q/p)_ref at the same
-axial strain, as the mean of replicas.
+The error of an evaluation (one increment from a given state) is e = |sigma - sigma_ref| / (sqrt(2) P), with |.| the
+tensor's norm and P the larger pressure of before and after, so that an isotropic error of P is 100 %. sigma_ref is the
+mean of the reference solution's replicas, the same seed, state and direction. The error of the tangent of eq. (4) after
+the evaluation is |D - D_ref| / |D_ref|, with the norm of fourth-order tensors (`TANGENT_NORM`). The error of a path is
+e = q/p - (q/p)_ref at the same axial strain, as the mean of replicas.
 """
 
 import csv
@@ -17,9 +17,9 @@ DIRECTIONS = ("xx", "yy", "xy", "-xx", "-yy")
 NORM = np.sqrt(np.array([1.0, 1.0, 2.0]) / 2)  # (xx, yy, xy): |.| / sqrt(2)
 TANGENT_NORM = np.sqrt(
     np.array([1.0, 2.0, 4.0, 1.0, 4.0, 4.0])
-)  # xxxx xxyy xxxy yyyy yyxy xyxy: how often each stands in the sum
+)  # xxxx xxyy xxxy yyyy yyxy xyxy: the number of times that each occurs in the sum
 TANGENT = tuple(f"tangent_after_{name}_Pa" for name in ("xxxx", "xxyy", "xxxy", "yyyy", "yyxy", "xyxy"))
-STRAINS = 0.005 * np.arange(1, 6)  # axial; all increment sizes of the plan meet there
+STRAINS = 0.005 * np.arange(1, 6)  # axial strains that the increments of every size in the plan reach
 
 
 def read(file):
@@ -80,9 +80,9 @@ def pressure(stress):
 
 
 def evaluation_error(ours, reference):
-    """Errors over all seeds and directions, in percent of P; of those that came to rest. The others say so by their
-    status (`flagged`: their share): a packing that collapses or opens within the increment goes on moving when the hold
-    ends."""
+    """Errors over all seeds and directions that came to rest, in percent of P. `flagged` is the share of the others,
+    whose status says that they are not at rest: a packing that collapses or opens within the increment still moves when
+    the hold ends."""
     total, bias, along, scatter, tangents, steps, flagged = [], [], [], [], [], [], []
     for key, (stress, _, count, _, at_rest, tangent) in ours.items():
         if key not in reference:
@@ -99,7 +99,7 @@ def evaluation_error(ours, reference):
         bias.append(np.linalg.norm(off.mean(axis=0)))
         step = their_change.mean(axis=0) * NORM / p
         along.append(off.mean(axis=0) @ step / max(np.linalg.norm(step), 1e-12))
-        if their_tangent.any():  # an open packing has none
+        if their_tangent.any():  # a packing without contacts has no tangent
             tangents.append(tangent_error(tangent, their_tangent.mean(axis=0)))
         scatter.append(rms(np.linalg.norm((theirs - mean) * NORM / p, axis=1)))
     if not total:
@@ -180,8 +180,8 @@ def path_error(ours, reference):
 
 
 def path_scatter(curves):
-    """Of one setting: chaos (replicas of a seed) and packings (seeds), percent of p; means over seeds at the path's
-    end."""
+    """The scatter of one setting, in percent of p: by chaos (replicas of a seed) and between packings (seeds); and
+    means over seeds at the path's end."""
     chaos = rms([rms(c["ratio"] - c["ratio"].mean(axis=0)) for c in curves.values()])
     means = np.array([c["ratio"].mean(axis=0) for c in curves.values()])
     volumes = np.array([c["volume"].mean(axis=0)[-1] for c in curves.values()])
@@ -196,9 +196,9 @@ def path_scatter(curves):
 
 
 def noise_share(ours, at_rest):
-    """Error of a stress component that an early end of the hold leaves, over unbalanced ratio x pressure: what the pool
-    of RVEs assumes when it tells Newton how noisy its stresses are (host/rve_pool.cpp). `at_rest`: the same evaluations
-    held longer."""
+    """The error of a stress component after an early end of the hold, over unbalanced ratio x pressure. The pool of
+    RVEs assumes this share when it reports the noise of its stresses to Newton (host/material/answers.cpp). `at_rest`
+    are the same evaluations with a longer hold."""
     off, expected = [], []
     for key, (stress, _, _, unbalanced, *_) in ours.items():
         if key in at_rest:

@@ -1,4 +1,4 @@
-"""What is run: one knob at a time around the preset `standard`, beside a reference solution, as cases of kind
+"""The runs of the study: one knob at a time around the preset `standard`, and a reference solution, as cases of kind
 `probe`."""
 
 import json
@@ -9,14 +9,17 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 
-# At 1 kPa a path costs thirty times its steps at 100 kPa: only the presets are run with every packing there.
-FEWER_SEEDS_AT = {1: 4}  # one packing of so many, for the other knobs
-REPLICAS = {True: 8, False: 2}  # of a path, which may be chaotic, and of an evaluation, which is hardly
+# At 1 kPa a path takes thirty times its steps at 100 kPa, so that only the presets are run with every packing there.
+FEWER_SEEDS_AT = {1: 4}  # for the other knobs: one packing in so many
+REPLICAS = {
+    True: 8,
+    False: 2,
+}  # True: of a path, which may be chaotic; False: of a single evaluation, which is hardly so
 PRESSURES = {1: "1 kPa", 100: "100 kPa", 800: "800 kPa"}
 PROBE_STRAIN = {1: 1e-4, 100: 1e-3, 800: 1e-3}
 PATH_STRAIN = 0.025  # axial, at constant lateral stress: a shear strain of 4 to 6 %
 INCREMENTS = 25
-# Far beyond the preset of that name, which is one of the settings measured.
+# The reference solution is far more exact than the preset `reference`, which is one of the measured settings.
 REFERENCE = {
     "precision": "double",
     "inertial_number": 1e-5,
@@ -43,13 +46,13 @@ class Setting:
 
     @property
     def is_of_the_engine(self):
-        """Whether single evaluations depend on it, and the packings do not."""
+        """True where single evaluations depend on the setting and the packings do not."""
         return self.knob not in ("increments", "modulus", "grains")
 
 
 def settings():
-    """The presets, and around `standard` each knob by itself. A bound on steps shows where it binds: the least number
-    in small increments, the largest in big ones."""
+    """The presets, and around `standard` each knob by itself. A bound on steps has its effect where it binds: the lower
+    bound in small increments, the upper one in large increments."""
     every = [Setting("preset", name, {"preset": name}) for name in ("fast", "standard", "reference")]
     knobs = {
         "inertial_number": (3e-3, 1e-3, 3e-4, 1e-4, 3e-5),
@@ -107,7 +110,8 @@ def case_text(setting, kpa, seed, packings, *, path, file=None):
 
 
 class Study:
-    """Runs cases below one folder, several at a time; what is there of the same case text is not run again."""
+    """Runs cases below one folder, several at a time. A case whose results are there with the same text is not
+    repeated."""
 
     def __init__(self, program, folder, seeds, pressures, processes):
         self.program, self.folder = Path(program), Path(folder)
@@ -121,7 +125,7 @@ class Study:
         return self.seeds[: max(1, len(self.seeds) // every)]
 
     def seeds_needed(self, chosen, kpa):
-        """Of the reference solution: no more than those of what it is compared with."""
+        """The seeds of the reference solution: no more than the runs have that are compared with it."""
         return {seed for setting in chosen for seed in self.seeds_of(setting, kpa)}
 
     def path_folders(self, setting, kpa):
@@ -154,7 +158,7 @@ class Study:
         return f"{folder.relative_to(self.folder)}" + (f" ({done.stderr.strip()})" if done.returncode else "")
 
     def packing_jobs(self, chosen):
-        """Each packing once, before processes that would both make it."""
+        """Makes each packing once, before the processes that need it start, since two of them would both make it."""
         jobs = {}
         for kpa in self.pressures:
             for setting in (self.reference(kpa), *chosen):
@@ -175,7 +179,7 @@ class Study:
                     yield folder, self.text(setting, kpa, seed, path=True)
 
     def probe_jobs(self, chosen):
-        """From the isotropic packing, and from the end of the reference solution's path."""
+        """Runs evaluations from the isotropic packing and from the end of the reference solution's path."""
         for setting, kpa in self.with_reference(chosen):
             ends = self.path_folders(self.reference(kpa), kpa)
             isotropic, sheared = (self.probe_folders(setting, kpa, state) for state in ("isotropic", "sheared"))

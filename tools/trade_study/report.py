@@ -9,8 +9,8 @@ from .errors import STRAINS, evaluation_error, noise_share, path, path_error, pa
 from .plan import INCREMENTS, PRESSURES, Setting, settings
 
 STATES = ("isotropic", "sheared")
-# Knobs whose paths have the reference solution's increments: the search for sigma_xx is then the same, and its error
-# cancels.
+# Knobs whose paths have the increments of the reference solution. The search for sigma_xx is then the same in both, so
+# that its error cancels.
 LINES = {"inertial_number": ("C0", "o"), "hold_tolerance": ("C1", "s"), "hold_cap": ("C2", "v")}
 PRESETS = {"fast": ("C3", "X"), "standard": ("black", "P"), "reference": ("C5", "D")}
 
@@ -20,7 +20,7 @@ class Findings:
 
     def __init__(self, study):
         self.study = study
-        self.chosen = settings()  # of all knobs: a study made in parts shows what is there
+        self.chosen = settings()  # settings of all knobs, so that a study made in parts shows all its results
         self.evaluation, self.paths, self.scatter, self.curves = {}, {}, {}, {}
         for kpa in study.pressures:
             reference = study.reference(kpa)
@@ -128,7 +128,8 @@ def table_of_scatter(findings):
 
 
 def table_of_knob(findings, knob):
-    """Medians: a single packing that snaps would hide what the knob does to all others."""
+    """A table of medians: in a mean, one packing that rearranges suddenly would hide what the knob does to all
+    others."""
     text = head(
         [
             f"`{knob}`",
@@ -156,7 +157,7 @@ def table_of_knob(findings, knob):
 
 
 def table_of_matter(findings, knob):
-    """Knobs that change the material itself: not an error, but another answer."""
+    """A table of the knobs that change the material itself: their differences are not errors."""
     text = head(
         [
             f"`{knob}`",
@@ -197,7 +198,7 @@ def table_of_noise(findings):
 
 
 def tables(findings):
-    """Of what was run."""
+    """All tables of the settings that were run."""
     done = {s.knob for s in findings.chosen if any(s.name in findings.paths[kpa] for kpa in findings.study.pressures)}
     parts = [("Presets", table_of_presets(findings))] if "preset" in done else []
     parts.append(("Scatter", table_of_scatter(findings)))
@@ -290,7 +291,7 @@ def draw_knobs(axis, findings, measure):
 
 
 def draw_paths(findings, file):
-    """The first packing's path under each preset, and what all packings span under the reference solution."""
+    """The first packing's path with each preset, and the range of all packings with the reference solution."""
     pressures = findings.study.pressures
     figure, axes = plt.subplots(2, len(pressures), figsize=(4.1 * len(pressures), 6.2), sharex=True, squeeze=False)
     for column, kpa in enumerate(pressures):

@@ -12,8 +12,8 @@ from . import points
 from .result import Increment, Missing, Result, Snapshot
 from .style import percent, save
 
-STRONG = 1.0  # a contact is strong from this share of the mean normal force on (C1 of the study's pictures)
-STRONGEST = 2.0  # C2
+STRONG = 1.0  # a contact with at least this multiple of the mean normal force is strong (C1 of the study's pictures)
+STRONGEST = 2.0  # the same for the strongest contacts (C2)
 
 
 def normal_forces(snapshot: Snapshot) -> np.ndarray:
@@ -24,8 +24,8 @@ def normal_forces(snapshot: Snapshot) -> np.ndarray:
 
 
 def rows(result: Result, increment: Increment) -> list[tuple[str, str]]:
-    """(label, snapshot) of the RVEs that were written: those within D/4 of a point that is followed, by its name, then
-    the others."""
+    """(label, snapshot) of the RVEs that were written. An RVE within D/4 of a followed point has the name of this
+    point; such RVEs come first."""
     numbers = {name: int(found[1]) for name in increment.snapshots if (found := re.search(r"(\d+)$", name))}
     if not numbers:
         raise Missing("no RVE was written grain by grain (output.rves)")
@@ -66,7 +66,7 @@ def draw(result: Result, path: Path) -> None:
 
 def _draw_rve(axis: Axes, snapshot: Snapshot) -> None:
     cell, position = snapshot["cell"], np.column_stack([snapshot["x"], snapshot["y"]])
-    # Into the cell: positions are stored anywhere.
+    # The grains are moved into the cell, because positions are stored without regard to it.
     inside = position - (cell @ np.floor(np.linalg.solve(cell, position.T))).T
     diameter = 2 * snapshot["radius"]
     axis.add_collection(

@@ -1,4 +1,4 @@
-"""Several tunnels beside one another: the study compares covers and soils."""
+"""Compares several tunnels, as the study compares covers and soils."""
 
 import itertools
 from collections.abc import Sequence
@@ -88,7 +88,7 @@ def _inflection(result: Result) -> tuple[np.ndarray, np.ndarray]:
 
 
 def depth_dependence(results: Sequence[Result]) -> trends.Trend:
-    """K varies less with depth for shallow tunnels: largest less least K from the surface to z/C = 0.75."""
+    """K varies less with depth for shallow tunnels: measured is the largest minus the least K, z/C from 0 to 0.75."""
     chosen = sorted((r for r in results if r.soil == "dense sand"), key=cover_ratio)
     if len({round(cover_ratio(r), 2) for r in chosen}) < 2:
         raise Missing("needs two covers of dense sand")
@@ -169,7 +169,7 @@ def gravel_is_stronger(results: Sequence[Result]) -> trends.Trend:
 
 
 def looser_is_less_connected(results: Sequence[Result]) -> trends.Trend:
-    """Z_m is lower in medium dense sand early only."""
+    """Z_m is lower in medium dense sand only at first."""
     dense, loose = pair(results, "medium dense sand")
     loss, field = common_loss((dense, loose)), "gauss/mechanical_coordination"
     early, late = [], []
@@ -187,7 +187,7 @@ def looser_is_less_connected(results: Sequence[Result]) -> trends.Trend:
 
 
 def gravel_is_as_connected(results: Sequence[Result]) -> trends.Trend:
-    """Z_m of gravel is that of dense sand, its strong network is better connected."""
+    """Z_m of gravel equals that of dense sand, but the strong network of gravel is better connected."""
     dense, gravel = pair(results, "gravel")
     means = {}
     for field in ("mechanical_coordination", "strong_coordination_1", "strong_coordination_2"):

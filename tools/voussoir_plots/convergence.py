@@ -1,4 +1,4 @@
-"""How the increments converged, and what they cost."""
+"""The convergence of the increments and their cost."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -62,7 +62,7 @@ def draw(result: Result, path: Path) -> None:
 
 
 def _draw_times(axis: Axes, index: np.ndarray, increments: Sequence[Increment], wall: np.ndarray) -> None:
-    """Wall time so far, by part where the run says so; the output of an increment stands with the next one."""
+    """Draws the wall time so far, by part where parts are recorded; an increment's output counts with the next one."""
     parts = [
         ("time_grains", "grains and tangents", "C0"),
         ("time_solve", "solution", "C1"),

@@ -21,14 +21,14 @@ def last_increment(result: Result) -> Increment:
 
 
 def state(increment: Increment) -> str:
-    """What the picture shows, for its title."""
+    """The state that a picture shows, as text for its title."""
     if increment["volume_loss"] > 0:
         return f"$V_l$ = {percent(increment['volume_loss'])}"
     return f"stage {increment['stage']}, load parameter {increment['load_parameter']:.3g}"
 
 
 def magnification(result: Result, displacement: np.ndarray) -> float:
-    """1 where the deformation can be seen, else a round factor that brings it to about 2 % of the width."""
+    """1 where the deformation is visible, else a round factor that enlarges it to about 2 % of the width."""
     largest, width = np.max(np.linalg.norm(displacement, axis=1)), np.ptp(result.coordinates[:, 0])
     if largest == 0 or largest > 0.005 * width:
         return 1
@@ -40,7 +40,7 @@ def magnification(result: Result, displacement: np.ndarray) -> float:
 def canvas(result: Result, increment: Increment) -> tuple[Figure, Axes, np.ndarray, str]:
     """Figure with deformed element edges; returns (figure, axis, deformed coordinates, line on magnification).
 
-    The line, empty or not, goes below the title's first one, beside the key of the arrows.
+    The line, which may be empty, goes below the first line of the title, beside the key of the arrows.
     """
     displacement = increment.field("node/displacement")
     factor = magnification(result, displacement)
@@ -76,7 +76,7 @@ def draw_displacement(result: Result, path: Path) -> None:
 
 
 def _add_arrows(axis: Axes, result: Result, deformed: np.ndarray, displacement: np.ndarray) -> None:
-    """Arrows at about one node per square of a coarse grid, so that fine parts of the mesh stay readable."""
+    """Draws arrows at about one node per square of a coarse grid, so that fine parts of the mesh stay readable."""
     spacing = np.ptp(result.coordinates[:, 0]) / 22
     cells = np.floor(result.coordinates / spacing).astype(int)
     _, chosen = np.unique(cells, axis=0, return_index=True)
@@ -109,7 +109,7 @@ def _draw_points(
     symmetric: bool = False,
     factor: float = 1.0,
 ) -> None:
-    """A Gauss-point field, one patch per point."""
+    """Draws a Gauss-point field with one patch per point."""
     increment = last_increment(result)
     values = factor * increment.field(name)
     figure, axis, deformed, note = canvas(result, increment)

@@ -1,4 +1,4 @@
-"""Fields over the deformed mesh at several volume losses: what localises, and whether it does so together."""
+"""Fields over the deformed mesh at several volume losses: which of them localise, and whether in the same places."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ def since_start(result: Result, name: str, increment: Increment) -> np.ndarray:
 
 
 def limits(values: np.ndarray, symmetric: bool) -> tuple[float, float]:
-    """Of the colours: all but the most extreme hundredth of a per cent, so that one RVE does not dim the rest."""
+    """Limits of the colours, without the most extreme 0.01 % of the values: one RVE must not dim the others."""
     finite = values[np.isfinite(values)]
     low, high = np.quantile(finite, [0.0, 0.999])
     if symmetric:

@@ -1,4 +1,4 @@
-"""What the RVEs at Aa, Ab, Ac and B go through: stress ratio, volume, void ratio, and the contact network where it was
+"""The paths of the RVEs at Aa, Ab, Ac and B: stress ratio, volume, void ratio, and the contact network where it was
 written."""
 
 from pathlib import Path
@@ -23,7 +23,7 @@ NETWORK = [
 ]
 
 
-LEAST_PRESSURE = 500.0  # below it [Pa] an RVE is about to open, and q/p is noise over noise
+LEAST_PRESSURE = 500.0  # [Pa]; with less pressure an RVE is about to lose its contacts, and q/p is only noise
 
 
 def stress_ratio(result: Result, point: points.Point) -> np.ndarray:
@@ -80,7 +80,7 @@ def draw(result: Result, path: Path) -> None:
 def draw_network(result: Result, path: Path) -> None:
     first = result.loss_increments[-1]
     present = [(name, label) for name, label in NETWORK if name in first.names]
-    if len(present) < 2:  # the plain coordination is always there
+    if len(present) < 2:  # the coordination number is always written
         raise Missing("the contact network was not written (output.microstructure)")
     rows = -(-len(present) // 3)
     figure, axes = plt.subplots(rows, 3, figsize=(15.5, 4.2 * rows), squeeze=False)

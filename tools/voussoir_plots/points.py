@@ -38,7 +38,7 @@ def nearest(result: Result, name: str, x: float, y: float) -> Point:
 
 
 def above_crown(result: Result) -> list[Point]:
-    """Aa, Ab, Ac; those that would lie above the surface are left out."""
+    """The points Aa, Ab, Ac, without those that would lie above the surface."""
     (diameter,) = result.need("diameter")
     heights = [k for k in result.settings.above_crown if k * diameter <= result.cover * (1 + 1e-9)]
     return [
@@ -47,10 +47,10 @@ def above_crown(result: Result) -> list[Point]:
 
 
 def in_the_band(result: Result) -> Point:
-    """B: the point of the largest deviatoric strain at the end, away from the axis and above the crown.
+    """The point B: the point of the largest deviatoric strain at the end, away from the axis and above the crown.
 
-    The study's words do not exclude the opening's wall, where the strain is largest; but RVEs there come apart, and B
-    is to be in the shear band.
+    The study's words do not exclude the wall of the opening, where the strain is largest. But RVEs there lose their
+    contacts, and B has to be in the shear band.
     """
     (diameter,) = result.need("diameter")
     points = original_points(result)
@@ -84,7 +84,7 @@ def crown_element(result: Result) -> int:
 
 
 def on_level(result: Result, y: float, width: float = np.inf) -> np.ndarray:
-    """Gauss points of the elements that a level line crosses, one row of them: indices by ascending x."""
+    """Indices of one row of Gauss points in the elements that a level line crosses, by ascending x."""
     points = original_points(result)
     nodes = result.coordinates[result.connectivity]
     crossed = np.flatnonzero((nodes[..., 1].min(axis=1) <= y) & (nodes[..., 1].max(axis=1) > y))
@@ -127,7 +127,7 @@ def on_axis(result: Result) -> np.ndarray:
     """Gauss points next to the axis of symmetry above the crown: indices by ascending height."""
     points = original_points(result)
     on_left = np.abs(result.coordinates[result.connectivity][..., 0]) < 1e-9
-    touching = np.flatnonzero(on_left.sum(axis=1) >= 3)  # a whole edge of the element
+    touching = np.flatnonzero(on_left.sum(axis=1) >= 3)  # a whole edge of the element lies there
     chosen = []
     for element in touching:
         if result.coordinates[result.connectivity[element], 1].mean() < result.crown_height:

@@ -18,7 +18,7 @@ def above(result: Result, increment: Increment) -> tuple[np.ndarray, np.ndarray,
 
 
 def beside(result: Result, increment: Increment) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Distance from the axis [m] and the same at the height of the tunnel's axis, out to 4 D."""
+    """Distance from the axis [m], sigma_xx and sigma_yy at the height of the tunnel's axis, out to 4 D."""
     (diameter,) = result.need("diameter")
     line = remembered(
         result,

@@ -38,7 +38,7 @@ def gauss_coordinates(coordinates: np.ndarray, connectivity: np.ndarray) -> np.n
 def gauss_patches(coordinates: np.ndarray, connectivity: np.ndarray) -> np.ndarray:
     """The quarter of an element around each Gauss point, as a polygon; (element, 4, 4, 2).
 
-    A quarter is drawn in one colour: each is one RVE, and smoothing would hide how localised a field is.
+    A quarter is drawn in one colour, because each point is one RVE and smoothing would hide how localised a field is.
     """
     nodes = coordinates[connectivity]
     centre = np.einsum("n,enk->ek", shape(0.0, 0.0), nodes)
@@ -48,8 +48,8 @@ def gauss_patches(coordinates: np.ndarray, connectivity: np.ndarray) -> np.ndarr
 
 
 def gauss_weights(local: npt.ArrayLike) -> np.ndarray:
-    """Weights of an element's four Gauss points (n, 4) at local coordinates (n, 2): bilinear between them, and held
-    beyond, since fields of RVEs do not bear extrapolation."""
+    """Weights of an element's four Gauss points (n, 4) at local coordinates (n, 2): bilinear between the points,
+    constant outside, because fields of RVEs must not be extrapolated."""
     a = np.clip(np.asarray(local) * np.sqrt(3), -1, 1)
     return 0.25 * (1 + a[:, :1] * CORNERS[:, 0]) * (1 + a[:, 1:] * CORNERS[:, 1])
 
@@ -77,7 +77,7 @@ def sample(coordinates: np.ndarray, connectivity: np.ndarray, values: np.ndarray
 
 
 def local_coordinates(nodes: np.ndarray, point: np.ndarray, tolerance: float = 1e-6) -> np.ndarray | None:
-    """Inverse of an element's map (nodes (8, 2)) by Newton; None outside."""
+    """Inverse of an element's map (nodes (8, 2)) by Newton; None where the point is outside."""
     local: np.ndarray = np.zeros(2)
     for _ in range(20):
         step = 1e-6

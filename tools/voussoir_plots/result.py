@@ -19,11 +19,11 @@ T = TypeVar("T")
 
 
 class Missing(Exception):
-    """The result does not hold what a figure needs; the message says what."""
+    """The result lacks data that a figure needs; the message names these data."""
 
 
 class Increment:
-    """One increment's file, read when asked."""
+    """One increment's file, whose data are read when they are needed."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -56,12 +56,12 @@ class Increment:
 
 
 class Result:
-    """Mesh and increments of a run; `settings` say where and when it is looked at."""
+    """Mesh and increments of a run; `settings` hold the places and volume losses that figures show."""
 
     def __init__(self, folder: Path | str, settings: Settings | None = None) -> None:
         self.folder = Path(folder)
         self.settings = settings or Settings()
-        # The folder, not run.h5's links: a killed run may have one increment more than its index.
+        # The folder's files are read, not the links of run.h5: a killed run may have one increment more than its index.
         paths = [p for p in (self.folder / "increments").glob("*.h5") if re.fullmatch(r"\d+", p.stem)]
         self.increments = [Increment(p) for p in sorted(paths, key=lambda p: int(p.stem))]
         with h5py.File(self.folder / "run.h5", "r") as file:
@@ -104,7 +104,7 @@ class Result:
 
     @cached_property
     def loss_increments(self) -> list[Increment]:
-        """Increments of the volume loss, from V_l = 0 on where that was written; at least one with V_l > 0."""
+        """Increments of the volume loss, with the one at V_l = 0 where it was written; at least one has V_l > 0."""
         found = self.stage("volume_loss")
         if found[-1]["volume_loss"] <= 0:
             raise Missing("no increment has a volume loss")
@@ -122,8 +122,8 @@ class Result:
         return self._histories[name]
 
     def nearest(self, losses: Iterable[float]) -> list[Increment]:
-        """Increments of the volume loss whose V_l lie nearest to those wanted [-], each once, V_l > 0; none that is
-        farther away than the increments are apart."""
+        """The increments whose V_l > 0 lie nearest to the wanted ones [-], each of them once. An increment that is
+        farther away than two increments are from each other is left out."""
         found = [i for i in self.loss_increments if i["volume_loss"] > 0]
         values = np.array([i["volume_loss"] for i in found])
         apart = np.max(np.diff(values, prepend=0))
@@ -132,7 +132,7 @@ class Result:
 
     @cached_property
     def losses(self) -> list[Increment]:
-        """Increments to draw troughs and profiles for: four of them unless some were asked for."""
+        """The increments for which troughs and profiles are drawn: four of them, unless an option names others."""
         wanted = self.settings.losses or tuple(self.volume_loss[-1] * np.array([0.25, 0.5, 0.75, 1]))
         found = self.nearest(wanted)
         if not found:
@@ -174,7 +174,7 @@ class Result:
 
 
 def remembered(result: Result, what: str, make: Callable[[], T]) -> T:
-    """What several figures compute from a result: it is made once, then kept with the result by the name `what`."""
+    """A value that several figures need: it is computed once and kept with the result under the name `what`."""
     kept = result.__dict__.setdefault("_remembered", {})
     if what not in kept:
         kept[what] = make()

@@ -12,7 +12,7 @@ from .style import colours, percent, save
 
 
 def line(result: Result) -> np.ndarray:
-    """Gauss points of the line, those of the elements that it crosses, out to 3 D."""
+    """Gauss points of the elements that the line crosses, out to 3 D."""
     (diameter,) = result.need("diameter")
     return points.on_level(result, result.crown_height + result.settings.line * diameter, 3 * diameter)
 
@@ -25,7 +25,7 @@ def stress_angles(result: Result, increment: Increment) -> tuple[np.ndarray, np.
 
 
 def fabric_angles(result: Result, increment: Increment) -> np.ndarray:
-    """The direction of most contact normals from the vertical [rad]; it is written from the horizontal."""
+    """Angle of most contact normals from the vertical [rad]; files have the angle from the horizontal."""
     return tensors.axis_angle(increment.field("gauss/fabric_direction").ravel()[line(result)] - np.pi / 2)
 
 
@@ -59,7 +59,7 @@ def draw(result: Result, path: Path) -> None:
 
 
 def _add(axis: Axes, x: np.ndarray, angle: np.ndarray, marker: str, colour: np.ndarray, label: str) -> None:
-    """Symbols, joined but where the axis passes through +-90 deg, which is one direction."""
+    """Draws symbols and joins them, except where the axis passes through +-90 deg, which is one direction."""
     degrees = np.degrees(angle)
     axis.plot(x, degrees, marker, color=colour, markersize=3.5, label=label)
     cuts = np.flatnonzero(np.abs(np.diff(degrees)) > 90) + 1

@@ -1,5 +1,5 @@
-"""Where and when a run is looked at. The study gives these in figures only; every one is an option of
-tools/figures.py."""
+"""The places and volume losses that the figures show. The study gives them only in its figures; each of them is an
+option of tools/figures.py."""
 
 import argparse
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ class Settings:
     depths: tuple = (0.0, 0.25, 0.5, 0.75, 1.0)  # z/C of troughs and settlements
     above_crown: tuple = (0.25, 1.0, 2.0)  # heights of Aa, Ab, Ac above the crown, in D
     aside: float = 0.25  # B is the most sheared point with x beyond this, in D
-    aside_above: float = 0.0  # and at least this height above the crown, in D: RVEs at the opening's wall come apart
+    aside_above: float = 0.0  # and at least this height above the crown, in D: RVEs at the wall lose their contacts
     line: float = 0.5  # height of the line of stress rotations above the crown, in D
     range_of_k: tuple = (0.25, 0.45)  # Mair and Taylor's range of K for cohesionless soils
 

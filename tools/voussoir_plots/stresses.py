@@ -16,7 +16,7 @@ def after_gravity(result: Result) -> Increment:
 
 
 def far_from_opening(result: Result, points: np.ndarray) -> np.ndarray:
-    """True farther than D/2 from the opening; everywhere where there is none."""
+    """True for points farther than D/2 from the opening, and for all points where there is no opening."""
     if "diameter" not in result.geometry:
         return np.ones(points.shape[:-1], dtype=bool)
     axis_depth, diameter, surface_y = result.need("axis_depth", "diameter", "surface_y")
@@ -94,7 +94,7 @@ def _draw_fit(axis: Axes, result: Result) -> None:
     if "k0" not in result.tables:
         return
     k0 = result.tables["k0"]
-    # Straight between knots; the program's own curve is a monotone cubic through them.
+    # The line is straight between knots; the program itself uses a monotone cubic through them.
     axis.plot(k0["vertical_stress"] / 1e3, k0["ratio"], "-", color="black", linewidth=1, label="fitted to the column")
     axis.legend()
 

@@ -31,7 +31,7 @@ def use_style() -> None:
 
 
 def colours(name: str, count: int) -> np.ndarray:
-    """Colours of a sequence, without a map's palest end."""
+    """Colours of a sequence, without the palest end of the colour map."""
     return plt.get_cmap(name)(np.linspace(0.0, 0.87, max(count, 2)))[:count]
 
 

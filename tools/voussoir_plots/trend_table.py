@@ -38,7 +38,7 @@ def write(result: Result, path: Path) -> None:
 
 
 def _solution(result: Result) -> str:
-    """How the increments were found, in a sentence: a trend is worth no more than they are."""
+    """A sentence about the convergence of the increments, on which the trends rest."""
     found = result.increments
 
     def number(name: str) -> np.ndarray:
@@ -60,7 +60,7 @@ def describe(result: Result, point: points.Point) -> str:
 
 
 def table(result: Result) -> list[trends.Trend]:
-    """All trends of a tunnel's run; one that lacks something says so."""
+    """All trends of a tunnel's run. A trend whose data are missing says so."""
     rows = []
     for make in (_settlements, _bands, _troughs, _stresses, _reaction, _paths, _rotation, _localisation):
         try:

@@ -1,4 +1,4 @@
-"""The trends that the study reports (method.md, section 5), each computed from a run and stated seen or not.
+"""The trends that the study reports (method.md, section 5). Each is computed from a run and has a verdict: seen or not.
 
 A trend is judged by a pure function of arrays (tests/regression/trends_test.py has their known answers); `table` takes
 the arrays from a run. "Not applicable" says that the study reports the trend of another soil or cover; its numbers are
@@ -35,7 +35,7 @@ def not_reached(statement: str, wanted: float, last: float) -> Trend:
 
 
 def at_the_end(statement: str, holds: bool | np.bool, text: str, loss: np.ndarray) -> Trend:
-    """A trend that what follows may still break: where it holds in a run that ends before 20 %, nothing is known."""
+    """A trend that a longer run may still break. If it holds in a run that ends before 20 %, nothing is known."""
     if holds and loss[-1] < 0.199:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
     return Trend(statement, verdict(holds), text)
@@ -50,7 +50,7 @@ def numbers(values: Iterable[float], form: str = "{:.3g}") -> str:
 
 
 def slope(x: np.ndarray, y: np.ndarray, low: float, high: float) -> float:
-    """Of the straight line through the points with low <= x <= high; NaN where there are fewer than two."""
+    """Slope of the straight line through the points with low <= x <= high; NaN where there are fewer than two."""
     inside = (x >= low - 1e-9) & (x <= high + 1e-9)
     return np.polyfit(x[inside], y[inside], 1)[0] if inside.sum() > 1 else np.nan
 
@@ -60,7 +60,7 @@ def at(x: np.ndarray, y: np.ndarray, where: float) -> float:
 
 
 def settlement_slows(loss: np.ndarray, settlements: Mapping[float, np.ndarray], diameter: float) -> Trend:
-    """settlements: {z/C: S [m]}; the crown's own (z/C = 1) is prescribed and does not count."""
+    """settlements: {z/C: S [m]}; the settlement of the crown (z/C = 1) is prescribed and does not count."""
     statement = "Settlement above the crown grows more slowly with V_l below 10 %"
     if loss[-1] < 0.0999:
         return not_reached(statement, 0.10, loss[-1])
@@ -197,7 +197,7 @@ def reaction(loss: np.ndarray, ratio: np.ndarray, soil: str) -> Trend:
 
 
 def falls_linearly(loss: np.ndarray, ratios: Mapping[str, np.ndarray], until: float = 0.02) -> Trend:
-    """ratios: {point: q/p}; a straight line from V_l = 0 on, until 2 %, explains 95 % and descends."""
+    """ratios: {point: q/p}. The trend is seen where a straight line from V_l = 0 to 2 % descends and explains 95 %."""
     statement = "q/p falls linearly for V_l < 2 % (unloading)"
     if loss[-1] < until - 1e-9:
         return not_reached(statement, until, loss[-1])
@@ -222,9 +222,9 @@ def falls_linearly(loss: np.ndarray, ratios: Mapping[str, np.ndarray], until: fl
 
 
 def peak_after_unloading(loss: np.ndarray, ratio: np.ndarray) -> tuple[float, float, bool]:
-    """V_l and value of the first peak of q/p after its minimum: the first maximum from which it falls by 5 % of itself;
-    the largest value where it never does. With it, whether it did. Where q/p is NaN (hardly compressed) it is passed
-    over."""
+    """V_l and value of the first peak of q/p after its minimum: the first maximum after which q/p falls by 5 %, or the
+    largest value where q/p never falls so much. The third value is True where q/p falls. Where q/p is NaN (the point is
+    hardly compressed) it is left out."""
     loss, ratio = loss[np.isfinite(ratio)], ratio[np.isfinite(ratio)]
     start = int(np.argmin(ratio))
     best = start

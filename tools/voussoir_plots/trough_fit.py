@@ -6,9 +6,10 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-# alpha = 0.5 is the Gauss curve itself; larger is flatter at the bottom, with steeper flanks. Towards 0 the curve
-# becomes S_max / (1 + (x/i)^2 / 3), the heaviest tails that eq. (20) has: a trough that is more pointed still, with a
-# wider foot, leaves alpha at the lower end, where it means nothing more. i stays the inflection of the best such curve.
+# With alpha = 0.5 the curve is the Gauss curve; a larger alpha makes it flatter at the bottom, with steeper flanks.
+# Towards alpha = 0 it becomes S_max / (1 + (x/i)^2 / 3), the curve of eq. (20) with the widest foot. For a trough that
+# is still more pointed, the fit leaves alpha at its lower end, where its value has no meaning; i is the inflection of
+# the best such curve.
 ALPHA_RANGE = (0.02, 20.0)
 
 Number = TypeVar("Number", float, np.ndarray)
@@ -35,13 +36,14 @@ class TroughFit:
 
     @property
     def good(self) -> bool:
-        """The trough has the family's shape: alpha within its range and a misfit below 3 % of S_max. A plug with a wide
-        foot has not: its fit follows the one or the other, and i jumps between them."""
+        """True where the trough has the shape of eq. (20): alpha is within its range and the misfit below 3 % of S_max.
+        A plug with a wide foot has another shape: its fit follows either the plug or the foot, and i jumps between
+        them."""
         return not self.at_bound and self.misfit < 0.03
 
     @property
     def at_bound(self) -> bool:
-        """alpha lies at an end of its range: the trough is not of the family's shape."""
+        """True where alpha lies at an end of its range, so that the trough does not have the shape of eq. (20)."""
         return not 1.05 * ALPHA_RANGE[0] < self.alpha < 0.95 * ALPHA_RANGE[1]
 
     @property
@@ -55,8 +57,8 @@ class TroughFit:
 def fit(x: npt.ArrayLike, settlement: npt.ArrayLike) -> TroughFit:
     """Least squares weighted by length, so that a finer mesh at the axis does not count more.
 
-    S_max is linear and solved for; (ln i, ln alpha) are found on a grid that is refined around its best point: no start
-    value to guess and no local minimum to fall into.
+    S_max is linear and solved for; (ln i, ln alpha) are found on a grid that is refined around its best point,
+    which needs no first guess and does not end in a local minimum.
     """
     order = np.argsort(x)
     x, settlement = np.asarray(x)[order], np.asarray(settlement)[order]

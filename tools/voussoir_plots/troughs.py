@@ -29,13 +29,13 @@ COLUMNS = (
 
 
 class Line:
-    """A level line of the ground as it was before the loss; where in the elements it runs is found once."""
+    """A level line of the ground as it was before the loss. Its places in the elements are searched only once."""
 
     def __init__(self, result: Result, depth: float) -> None:
         (surface_y,) = result.need("surface_y")
         x, y = result.coordinates.T
         on_surface = np.flatnonzero(np.abs(y - surface_y) < 1e-9 * surface_y) if depth == 0 else np.array([], dtype=int)
-        # The surface's own nodes; elsewhere points in the elements.
+        # At the surface the line has the nodes, below it points in the elements.
         self.x = np.sort(x[on_surface]) if depth == 0 else np.linspace(0, x.max(), 81)
         line = np.column_stack([self.x, np.full_like(self.x, surface_y - depth)])
         self.nodes, self.weights = q8.locate(result.coordinates, result.connectivity, line)
@@ -50,7 +50,7 @@ class Line:
 
 
 class Trough:
-    """The settlements of a line at one V_l, and their curve."""
+    """The settlements of a line at one V_l, and the curve fitted to them."""
 
     def __init__(self, result: Result, increment: Increment, ratio: float) -> None:
         axis_depth, diameter = result.need("axis_depth", "diameter")
@@ -104,7 +104,7 @@ def mirrored(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def draw(result: Result, path: Path) -> None:
-    """One picture a depth, the chosen volume losses in each; all numbers in a table beside."""
+    """Draws one picture for each depth with the chosen volume losses, and writes all numbers to a table."""
     (diameter,) = result.need("diameter")
     troughs, depths = all_troughs(result), result.settings.depths
     columns = min(3, len(depths))
