@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "fem/mesh_rectangle.hpp"
@@ -18,12 +19,18 @@ class Steps : public testing::Test {
  protected:
   void SetUp() override {
     std::filesystem::remove_all(options_.folder);
-    log_.emplace(open_log(options_));
+    std::filesystem::create_directories(options_.folder);
+    log_.emplace(options_.folder / "run.log", false);
     Case input;
     input.fingerprint = "host_stage_run_test";
-    run_.emplace(options_, provenance_of(options_, input, "test"), mesh_, mesh_data(mesh_),
-                 StageSettings{.defer = 0.01}, *log_);
-    run_->open_ground({.kind = MaterialKind::linear_elastic}, {});
+    StageSettings settings;
+    settings.defer = 0.01;
+    run_.emplace(options_, provenance_of(options_, input, "test"), mesh_, mesh_data(mesh_), settings, *log_);
+    MaterialCase material;
+    material.kind = MaterialKind::linear_elastic;
+    run_->open_ground(material, {});
+    stage_.name = "test";
+    stage_.targets = {1, 2};
     run_->recorder().begin_stage(stage_.name, 0, 2);
     stage_.on_record = [&](IncrementReport& report) { recorded_.push_back(report); };
     increment_.gradients.assign(static_cast<std::size_t>(mesh_.n_points()), fem::Gradient::Zero());
@@ -38,7 +45,7 @@ class Steps : public testing::Test {
   fem::Mesh mesh_ = fem::make_rectangle(1, 1, 1, 1);
   std::optional<RunLog> log_;
   std::optional<GroundRun> run_;
-  Stage stage_{.name = "test", .targets = {1, 2}};
+  Stage stage_;
   fem::Increment increment_;
   std::vector<IncrementReport> recorded_;
 };
