@@ -32,7 +32,7 @@ struct GrainClassCase {
 /// How the entries of `passing` count grains.
 enum class GradingMeasure { number, area };
 
-/// [soil] The grains and their contacts (method.md, section 3).
+/// [soil] The grains and their contacts.
 struct SoilCase {
   double size_minimum = 2.0e-3;   ///< smallest grain diameter [m]
   double size_maximum = 4.75e-3;  ///< largest grain diameter [m]
@@ -81,7 +81,7 @@ struct EngineCase {
   double defer = 0;  ///< change of stress over pressure up to which an RVE answers by its tangent [-]; 0: never
 };
 
-/// [ground] The half domain: symmetry axis at x = 0, base at y = 0 (method.md, section 4).
+/// [ground] The half domain: symmetry axis at x = 0, base at y = 0.
 struct GroundCase {
   double unit_weight = 20.0e3;     ///< gamma [N/m3]
   double surcharge = 1.0e3;        ///< pressure on the surface [Pa]; must equal the RVEs' initial pressure
@@ -121,7 +121,7 @@ struct VolumeLossCase {
 /// tangent_kind (engine.hpp) chooses.
 using TangentChoice = std::optional<kernels::TangentKind>;
 
-/// [newton] The criteria of convergence (design.md, The continuum), and how the solver reaches them.
+/// [newton] The criteria of convergence, and how the solver reaches them.
 struct NewtonCase {
   double tolerance = 1.0e-3;               ///< bound of the free residual, relative to the external force [-]
   double displacement_tolerance = 1.0e-2;  ///< bound of the last correction, relative to the increment [-]
@@ -199,7 +199,7 @@ struct CalibrationTarget {
   double value = 0, tolerance = 0;
 };
 
-/// [calibrate] Search of the grains' open parameters (method.md §3) for the strength that the tests of [biaxial] show.
+/// [calibrate] Search of the grains' open parameters for the strength that the tests of [biaxial] show.
 /// A parameter whose list is empty keeps the value of [soil]; a list of one value fixes the parameter at this value.
 /// Classes of grains keep their ratios to [soil].
 struct CalibrateCase {

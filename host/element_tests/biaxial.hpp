@@ -1,5 +1,5 @@
 #pragma once
-/// Drained biaxial tests of packings (method.md §3); strength.hpp reads strength and dilatancy from their curves.
+/// Drained biaxial tests of packings; strength.hpp reads strength and dilatancy from their curves.
 
 #include <cmath>
 #include <cstdint>

@@ -11,7 +11,7 @@
 
 namespace voussoir::host {
 
-/// The open parameters of method.md §3, which are keys of [soil]; classes of grains keep their ratios to [soil].
+/// The grains' open parameters, which are keys of [soil]; classes of grains keep their ratios to [soil].
 struct Parameter {
   enum Index : std::size_t { rolling_stiffness, rolling_limit, thickness, count };
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// Strength and dilatancy from the curves of drained biaxial tests (method.md §3).
+/// Strength and dilatancy from the curves of drained biaxial tests.
 
 #include <span>
 

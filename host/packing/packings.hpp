@@ -27,7 +27,7 @@ enum class Bias { measured, left };
 [[nodiscard]] std::vector<std::int64_t> seeds_of(const PackingCase& recipe);
 
 /// The packing with the least bias of those of the recipe's candidate seeds. One packing cloned to all points biases
-/// tau_xy at all of them (method.md §4).
+/// tau_xy at all of them.
 [[nodiscard]] PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note = {});
 
 }  // namespace voussoir::host

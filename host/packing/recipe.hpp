@@ -1,5 +1,5 @@
 #pragma once
-/// Making packings from a recipe (method.md §3): loose random discs, isotropic consolidation with the temporary
+/// Making packings from a recipe: loose random discs, isotropic consolidation with the temporary
 /// friction, then the working friction at the same pressure. The same recipe and seed give the same packing, bit for
 /// bit.
 

@@ -1,6 +1,6 @@
 #pragma once
 /// Loads and supports that several stages of the ground use: weight, surcharge, the tractions that hold the opening,
-/// and supports (method.md, section 4).
+/// and supports.
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// K0, the ratio of horizontal to vertical stress at rest, as a function of the vertical stress (method.md, section 4).
+/// K0, the ratio of horizontal to vertical stress at rest, as a function of the vertical stress.
 
 #include <cstddef>
 #include <string>

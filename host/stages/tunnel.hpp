@@ -1,6 +1,5 @@
 #pragma once
-/// The case kind "tunnel": a tunnel that loses volume, in the stages column, gravity and volume loss (method.md,
-/// section 4).
+/// The case kind "tunnel": a tunnel that loses volume, in the stages column, gravity and volume loss.
 
 #include "fem/mesh.hpp"
 #include "host/case/case.hpp"

@@ -57,7 +57,7 @@ struct Contact {
 using Voigt = std::array<double, 3>;
 using VoigtMatrix = std::array<std::array<double, 3>, 3>;
 
-/// k_n [N/m], k_t [N/m], k_r [N m/rad] of a pair, method.md §3.
+/// k_n [N/m], k_t [N/m], k_r [N m/rad] of a pair of grains.
 struct PairStiffness {
   double normal, tangential, rolling;
 };
@@ -74,11 +74,11 @@ Mobility mobility(const Material& material, double radius, double largest_radius
 /// state is not changed. Ordered by (i, j).
 std::vector<Contact> contacts(const Rve& rve);
 
-/// Love-Weber stress, method.md (3), before symmetrisation [Pa].
+/// Love-Weber stress, eq. (3), before symmetrisation [Pa].
 Mat2 love_weber(const Rve& rve, const std::vector<Contact>& contacts);
 /// The same, symmetrised, Voigt [Pa].
 Voigt stress(const Rve& rve);
-/// Contact tangent, method.md (4), minor symmetries imposed, no spin terms [Pa].
+/// Contact tangent, eq. (4), minor symmetries imposed, no spin terms [Pa].
 VoigtMatrix tangent(const Rve& rve);
 /// p = -tr(sigma)/2 [Pa].
 double pressure(const Voigt& stress);

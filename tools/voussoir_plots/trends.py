@@ -1,4 +1,4 @@
-"""The trends that the study reports (method.md, section 5). Each is computed from a run and has a verdict: seen or not.
+"""The trends that the study reports. Each is computed from a run and has a verdict: seen or not.
 
 A trend is judged by a pure function of arrays (tests/regression/trends_test.py has their known answers); `table` takes
 the arrays from a run. "Not applicable" says that the study reports the trend of another soil or cover; its numbers are

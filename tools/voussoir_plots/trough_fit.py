@@ -1,4 +1,4 @@
-"""The modified Gauss curve of settlement troughs (Vorster et al.), method.md eqs. (20), (21)."""
+"""The modified Gauss curve of settlement troughs (Vorster et al.), eqs. (20), (21)."""
 
 from dataclasses import dataclass
 from typing import TypeVar

@@ -51,7 +51,7 @@ TEST(Grading, ByAreaFollowsFullersCurve) {
     EXPECT_NEAR(area_below(radii, soil.sizes[k]), soil.passing[k], 0.015) << soil.sizes[k];
   }
   const auto coarse = std::count_if(radii.begin(), radii.end(), [](double r) { return 2 * r > 19e-3; });
-  EXPECT_NEAR(static_cast<double>(coarse), 35, 5);  // method.md section 3
+  EXPECT_NEAR(static_cast<double>(coarse), 35, 5);
 }
 
 TEST(Grading, ByNumberCountsGrains) {
