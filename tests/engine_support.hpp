@@ -37,6 +37,7 @@ inline void fill(RveStates& states, std::size_t rve, const reference::Rve& from)
   }
   const double cell[4] = {from.cell.xx, from.cell.xy, from.cell.yx, from.cell.yy};
   for (std::size_t k = 0; k < 4; ++k) states.cell(rve, k) = cell[k];
+  static_assert(history_size<PlainEngineLaw> == 2, "the oracle remembers the two numbers of the linear law");
   int count = 0;
   for (const auto& [pair, history] : from.histories) {
     states.contact_key(rve, count) = pair_key(pair.first, pair.second);

@@ -44,6 +44,7 @@ struct SofteningOptions {
   double too_stiff = 1;          ///< the tangent returned is this times the elastic one
   double usable_strain = 1e300;  ///< a larger increment |F_rel - I| is not usable
   double noise = 0;              ///< reported as stress_noise [Pa]
+  double unsettled = 0;          ///< reported as unsettled_stress [Pa]
 };
 
 /// Path-independent: stress from the total strain, the sum of the increments' sym(F_rel - I).
@@ -62,6 +63,7 @@ class SofteningMaterial : public fem::MaterialBatch {
     report.work = size();
     report.lane_steps = 3 * size();
     report.stress_noise = options_.noise;
+    report.unsettled_stress = options_.unsettled;
     for (std::size_t i = 0; i < size(); ++i) {
       const fem::Gradient& h = gradients[i];
       trial_[i] = committed_[i] + Eigen::Vector3d(h(0, 0), h(1, 1), h(0, 1) + h(1, 0));

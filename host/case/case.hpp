@@ -25,7 +25,8 @@ enum class LossGeometry { updated_lagrangian, fixed_mesh };
 /// value of [soil] holds.
 struct GrainClassCase {
   double size_to = 0;  ///< largest diameter of the class [m]
-  double modulus = 0, stiffness_ratio = 0, friction = 0, rolling_stiffness = 0, rolling_limit = 0;  ///< as in SoilCase
+  double modulus = 0, stiffness_ratio = 0, friction_angle = 0, rolling_stiffness = 0, rolling_limit = 0;  ///< as in
+                                                                                                          ///< SoilCase
 };
 
 /// How the entries of `passing` count grains.
@@ -41,7 +42,7 @@ struct SoilCase {
   std::vector<GrainClassCase> classes;               ///< by ascending size; empty: all grains are of one class
   double modulus = 3.0e9;                            ///< contact modulus E [Pa]
   double stiffness_ratio = 0.5;                      ///< k_t / k_n [-]
-  double friction = 0.43633231299858238;             ///< contact friction angle [rad], 25 deg
+  double friction_angle = 0.43633231299858238;       ///< contact friction angle [rad], 25 deg
   double rolling_stiffness = 1.0;  ///< beta, k_r = beta k_t r1 r2 [-]; 0 with rolling_limit = 0: no rolling resistance
   double rolling_limit = 0.6;      ///< eta, |M| <= eta r f_n [-]
   double damping = 0.3;            ///< local damping [-]

@@ -40,13 +40,14 @@ void read_classes(const io::Table& table, SoilCase& soil) {
     GrainClassCase grains{.size_to = 0,
                           .modulus = soil.modulus,
                           .stiffness_ratio = soil.stiffness_ratio,
-                          .friction = soil.friction,
+                          .friction_angle = soil.friction_angle,
                           .rolling_stiffness = soil.rolling_stiffness,
                           .rolling_limit = soil.rolling_limit};
     grains.size_to = entry.quantity("size_to", Dimension::length, {.positive = true});
     read_quantity(entry, "modulus", Dimension::pressure, grains.modulus, {.positive = true});
     read_quantity(entry, "stiffness_ratio", Dimension::none, grains.stiffness_ratio, {.at_least = "0", .at_most = "2"});
-    read_quantity(entry, "friction", Dimension::angle, grains.friction, {.at_least = "0 deg", .at_most = "80 deg"});
+    read_quantity(entry, "friction", Dimension::angle, grains.friction_angle,
+                  {.at_least = "0 deg", .at_most = "80 deg"});
     read_quantity(entry, "rolling_stiffness", Dimension::none, grains.rolling_stiffness, {.at_least = "0"});
     read_quantity(entry, "rolling_limit", Dimension::none, grains.rolling_limit, {.at_least = "0"});
     if (!soil.classes.empty() && grains.size_to <= soil.classes.back().size_to)
@@ -75,7 +76,7 @@ SoilCase read_soil(const io::Table& table) {
   }
   read_quantity(table, "modulus", Dimension::pressure, soil.modulus, {.positive = true});
   read_quantity(table, "stiffness_ratio", Dimension::none, soil.stiffness_ratio, {.at_least = "0", .at_most = "2"});
-  read_quantity(table, "friction", Dimension::angle, soil.friction, {.at_least = "0 deg", .at_most = "80 deg"});
+  read_quantity(table, "friction", Dimension::angle, soil.friction_angle, {.at_least = "0 deg", .at_most = "80 deg"});
   read_quantity(table, "rolling_stiffness", Dimension::none, soil.rolling_stiffness, {.at_least = "0"});
   read_quantity(table, "rolling_limit", Dimension::none, soil.rolling_limit, {.at_least = "0"});
   read_quantity(table, "damping", Dimension::none, soil.damping, {.at_least = "0", .at_most = "0.9"});

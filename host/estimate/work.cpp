@@ -33,7 +33,8 @@ constexpr double specimen_evaluations = 5.0;  ///< cases/biaxial_bvp took 7, mos
 constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the strain of the specimen, without change of
                                          ///< volume
 
-/// Steps to a strain at an inertial number, for a grain of the mean radius.
+/// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)). The mass m is the scaled one that
+/// the engine's law gives a grain of the mean radius.
 double inertial_steps(const SoilCase& soil, double strain, double pressure, double inertial_number) {
   const kernels::GrainMaterial grain{.modulus = soil.modulus, .stiffness_ratio = soil.stiffness_ratio};
   const double mean_radius = 0.25 * (soil.size_minimum + soil.size_maximum);

@@ -12,7 +12,8 @@ namespace voussoir::host {
 
 namespace {
 
-/// Transfers a report member by member, since the padding bytes of a struct are not part of the state.
+/// Transfers a report member by member, since the padding bytes of a struct are not part of the state. A member that is
+/// not transferred is 0 after a run has been resumed, as the members tangent_* are: no field of the results may use it.
 template <class Transfer, class Report>
 void transfer_report(Transfer& transfer, Report& r) {
   transfer(&r.status, 1);
@@ -71,7 +72,7 @@ std::uint64_t RvePool::identity() const {
     add(p.class_of);
     add(std::array{p.thickness, p.local_damping});
     for (const kernels::GrainMaterial& m : p.materials) {
-      add(std::array{m.modulus, m.stiffness_ratio, m.friction, m.rolling_stiffness, m.rolling_limit});
+      for (const kernels::MaterialNumber& n : kernels::material_numbers) add(std::array{m.*n.number});
     }
   }
   if (deferral_.on()) add(std::array{deferral_.bound()});

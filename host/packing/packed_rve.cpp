@@ -11,7 +11,7 @@ std::vector<kernels::GrainMaterial> grain_materials(const SoilCase& soil) {
   const auto material = [](const auto& from) {
     return kernels::GrainMaterial{.modulus = from.modulus,
                                   .stiffness_ratio = from.stiffness_ratio,
-                                  .friction = std::tan(from.friction),
+                                  .friction = std::tan(from.friction_angle),
                                   .rolling_stiffness = from.rolling_stiffness,
                                   .rolling_limit = from.rolling_limit};
   };

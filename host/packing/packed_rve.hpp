@@ -18,7 +18,7 @@ struct PackedRve {
   std::vector<double> rotation;  ///< (grain) [rad]
   kernels::Mat2 cell;            ///< columns are the periodic vectors [m]
   std::vector<std::uint32_t> contact_key;
-  std::vector<double> contact_history;  ///< (contact, 2): tangential force [N], rolling moment [N m]
+  std::vector<double> contact_history;  ///< (contact, k), k as in the law's history_names [SI]
   std::int64_t seed = 0;
   double consolidation_friction = 0;                       ///< temporary friction coefficient of its consolidation [-]
   double void_ratio = 0;                                   ///< area of voids / area of grains [-]

@@ -85,8 +85,7 @@ std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::in
                                  recipe.consolidation_friction, recipe.pressure, seed);
   if (recipe.void_ratio > 0) text += fmt::format(" e {}", recipe.void_ratio);
   for (const kernels::GrainMaterial& m : grain_materials(soil)) {
-    text += fmt::format(" E {} kt/kn {} mu {} beta {} eta {}", m.modulus, m.stiffness_ratio, m.friction,
-                        m.rolling_stiffness, m.rolling_limit);
+    for (const auto& [name, number] : kernels::material_numbers) text += fmt::format(" {} {}", name, m.*number);
   }
   for (const GrainClassCase& grains : soil.classes) text += fmt::format(" to {}", grains.size_to);
   for (std::size_t k = 0; k < soil.sizes.size(); ++k) text += fmt::format(" {}:{}", soil.sizes[k], soil.passing[k]);

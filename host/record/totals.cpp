@@ -58,8 +58,8 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
     checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
     checkpoint.put_doubles(fmt::format("totals_lane_steps_{}", k), {&t.lane_steps, 1});
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
-    checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.unsettled);
-    checkpoint.put_doubles(fmt::format("totals_unsettled_share_{}", k), t.unsettled_share);
+    checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.step_limit_points);
+    checkpoint.put_doubles(fmt::format("totals_unsettled_share_{}", k), t.unsettled);
     if (!t.deferral_error.empty()) checkpoint.put_doubles(fmt::format("totals_deferral_{}", k), t.deferral_error);
   }
   checkpoint.put_text("totals", names);
@@ -74,8 +74,8 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
     StageTotals t;
     t.stage = names.substr(begin, end - begin);
     t.evaluations = checkpoint.get_doubles(fmt::format("totals_evaluations_{}", totals.size()));
-    t.unsettled = checkpoint.get_doubles(fmt::format("totals_unsettled_{}", totals.size()));
-    t.unsettled_share = checkpoint.get_doubles(fmt::format("totals_unsettled_share_{}", totals.size()));
+    t.step_limit_points = checkpoint.get_doubles(fmt::format("totals_unsettled_{}", totals.size()));
+    t.unsettled = checkpoint.get_doubles(fmt::format("totals_unsettled_share_{}", totals.size()));
     const std::string deferral = fmt::format("totals_deferral_{}", totals.size());
     if (checkpoint.has(deferral)) t.deferral_error = checkpoint.get_doubles(deferral);
     const std::string lanes = fmt::format("totals_lane_steps_{}", totals.size());
@@ -92,16 +92,17 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
 }
 
 std::string unsettled_line(const StageTotals& stage, std::size_t points) {
-  const auto increments = std::count_if(stage.unsettled.begin(), stage.unsettled.end(), [](double n) { return n > 0; });
+  const auto increments = std::count_if(stage.step_limit_points.begin(), stage.step_limit_points.end(),
+                                        [](double n) { return n > 0; });
   if (increments == 0) return {};
   return fmt::format(
       "{}: {} of {} increments ended with RVEs at the step limit, up to {} of {}: their grains are not at rest. If "
       "their stresses were off by as much as their pressure, the residual would be off by {:.2g} of its tolerance at "
       "the "
       "most",
-      stage.stage, increments, stage.unsettled.size(),
-      *std::max_element(stage.unsettled.begin(), stage.unsettled.end()), points,
-      *std::max_element(stage.unsettled_share.begin(), stage.unsettled_share.end()));
+      stage.stage, increments, stage.step_limit_points.size(),
+      *std::max_element(stage.step_limit_points.begin(), stage.step_limit_points.end()), points,
+      *std::max_element(stage.unsettled.begin(), stage.unsettled.end()));
 }
 
 std::string deferral_line(const StageTotals& stage, double bound) {

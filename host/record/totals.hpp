@@ -11,12 +11,12 @@ namespace voussoir::host {
 
 struct StageTotals {
   std::string stage;
-  std::vector<double> evaluations;      ///< evaluations of each increment, those of tries that were cut included
-  std::vector<double> unsettled;        ///< EquilibriumReport::step_limit_points of each increment
-  std::vector<double> unsettled_share;  ///< EquilibriumReport::unsettled of each increment [-]
-  std::vector<double> deferral_error;   ///< EquilibriumReport::deferral_error of each increment; empty without deferral
-  int cuts = 0;                         ///< tries that did not converge
-  double particle_steps = 0;            ///< steps of grains
+  std::vector<double> evaluations;        ///< evaluations of each increment, those of tries that were cut included
+  std::vector<double> step_limit_points;  ///< EquilibriumReport::step_limit_points of each increment
+  std::vector<double> unsettled;          ///< EquilibriumReport::unsettled of each increment [-]
+  std::vector<double> deferral_error;  ///< EquilibriumReport::deferral_error of each increment; empty without deferral
+  int cuts = 0;                        ///< tries that did not converge
+  double particle_steps = 0;           ///< steps of grains
   double lane_steps = 0;  ///< steps of lanes, as fem::BatchReport::lane_steps; not a number where a checkpoint of an
                           ///< earlier version did not say how many there were
   fem::PartTimes parts;   ///< wall time of material, assembly and solution

@@ -151,8 +151,8 @@ void StageRun::add_to_totals(const IncrementReport& increment) {
   StageTotals& totals = run_.recorder().stage_totals();
   const EquilibriumReport& found = increment.equilibrium.value();
   totals.evaluations.push_back(increment.info.evaluations);
-  totals.unsettled.push_back(static_cast<double>(found.step_limit_points));
-  totals.unsettled_share.push_back(found.unsettled);
+  totals.step_limit_points.push_back(static_cast<double>(found.step_limit_points));
+  totals.unsettled.push_back(found.unsettled);
   if (found.deferral_error) totals.deferral_error.push_back(*found.deferral_error);
   totals.wall += increment.info.wall_s;
 }

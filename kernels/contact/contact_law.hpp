@@ -22,6 +22,11 @@
 ///     stiffness(overlap, history, elastic_share)   these derivatives without the springs that have yielded
 ///     step(overlap, history, closing, sliding, rolling)   the changes of the forces by a small motion
 ///
+/// The engine relies on two properties that no compiler checks. The normal force is a function of the overlap alone:
+/// `secant` and `springs` see no history, and a law whose f_n remembers needs a history as their argument. A call
+/// without motion changes neither forces nor history: lanes that have come to rest, `finish` and `committed_contacts`
+/// repeat the call.
+///
 /// Overlaps are given over R = r_i + r_j, because the sweep has that number at no cost: a law that is not linear in
 /// delta takes its powers from overlap and keeps the power of R in its Pair.
 
@@ -40,6 +45,22 @@ struct GrainMaterial {
   double rolling_stiffness = 1.0;  ///< beta in k_r = beta k_t r1 r2 [-]
   double rolling_limit = 0.6;      ///< eta in |m| <= eta r f_n [-]
 };
+
+/// One number of a material, and its name in the recipes of stored packings.
+struct MaterialNumber {
+  std::string_view name;
+  double GrainMaterial::* number;
+};
+
+/// All numbers of a material. The recipe of a stored packing and the identity of a checkpoint hold them in this order,
+/// so that neither is taken for grains of another material.
+inline constexpr std::array<MaterialNumber, 5> material_numbers{{{"E", &GrainMaterial::modulus},
+                                                                 {"kt/kn", &GrainMaterial::stiffness_ratio},
+                                                                 {"mu", &GrainMaterial::friction},
+                                                                 {"beta", &GrainMaterial::rolling_stiffness},
+                                                                 {"eta", &GrainMaterial::rolling_limit}}};
+static_assert(sizeof(GrainMaterial) == material_numbers.size() * sizeof(double),
+              "material_numbers must hold every member of GrainMaterial, once");
 
 /// Relative motion at a contact during one step. The overlap is given as a ratio to each of two lengths, R = r_i + r_j
 /// and the distance |b| of the centres: caps follow the first ratio, and f_n/|b| is the secant stiffness times the

@@ -79,7 +79,7 @@ template <class V>
 struct SweepSums {
   V stress_xx = V(0), stress_xy = V(0), stress_yx = V(0), stress_yy = V(0);  ///< sum P_i b_j [N m]
   V force_squared = V(0);                                                    ///< sum |f|^2 over grains [N^2]
-  V largest_overlap = V(0);                                                  ///< largest e = -g/R^2 over contacts [-]
+  V largest_measure = V(0);                                                  ///< largest e = -g/R^2 over contacts [-]
 };
 
 inline constexpr int pairs_ahead = 2;  ///< a sweep fetches the grain of the pair that is this many places ahead in the

@@ -78,7 +78,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_pair(Homogenised<V>& out, const RestingPair
     out.tangent[c] = pair.tangential.added_to(c, pair.normal.added_to(c, out.tangent[c]));
   }
   out.contacts = out.contacts + pair.weight;
-  out.sums.largest_overlap = larger(out.sums.largest_overlap, pair.overlap);
+  out.sums.largest_measure = larger(out.sums.largest_measure, pair.overlap);
 }
 
 }  // namespace voussoir::kernels

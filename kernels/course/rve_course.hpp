@@ -137,7 +137,7 @@ KOKKOS_INLINE_FUNCTION Outcome judge(RveCourse<Drive>& course, int step, const E
                                      const SweepSums<V>& sums, std::size_t l, const Mat2& reference,
                                      const RunScales& scales, Measurement& seen) {
   if (guards(settings, step)) {
-    course.overlap = relative_overlap(static_cast<double>(sums.largest_overlap[l]));
+    course.overlap = relative_overlap(static_cast<double>(sums.largest_measure[l]));
     if (!(course.overlap <= settings.overlap_limit)) {
       course.status = RveStatus::overlap_limit;
       return Outcome::lost;

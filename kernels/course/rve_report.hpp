@@ -30,7 +30,7 @@ KOKKOS_INLINE_FUNCTION void fill_report(const RveCourse<Drive>& course, const Ho
   report.stress[3] = h.sums.stress_yy[l] / volume;
   for (int k = 0; k < 6; ++k) report.tangent[k] = static_cast<double>(h.tangent[k][l]) / volume;
   report.contacts = static_cast<int>(h.contacts[l]);
-  report.largest_overlap = relative_overlap(static_cast<double>(h.sums.largest_overlap[l]));
+  report.largest_overlap = relative_overlap(static_cast<double>(h.sums.largest_measure[l]));
   const double p = Kokkos::max(report.pressure(), settings.pressure_floor);
   report.inertial_number = course.drive.strain_rate() * inertial_time(scales.mean_mobility, scales.thickness, p);
   double all = volume;

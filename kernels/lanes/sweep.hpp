@@ -61,7 +61,7 @@ VOUSSOIR_OWN_SYMBOL void sweep_pairs(GroupState<Law>& group, SweepSums<V>& sums)
       gj.torque = gj.torque + action.torque_j;
       if constexpr (mode == Sweep::measure) {
         add_stress(sums, action, at);
-        sums.largest_overlap = larger(sums.largest_overlap, overlap_measure(at, *shape));
+        sums.largest_measure = larger(sums.largest_measure, overlap_measure(at, *shape));
       }
     }
     if constexpr (mode == Sweep::measure) sums.force_squared = fused(fx, fx, fused(fy, fy, sums.force_squared));

@@ -36,13 +36,13 @@ KOKKOS_FUNCTION void homogenise_team(const Run& run) {
     at.springs(p) = {pair.normal, pair.tangential, pair.weight};
     return pair.weight[0] > 0;
   });
-  const real overlap = largest_overlap(run);
+  const real overlap = largest_measure(run);
   each(run, 11, [&](int q) {
     if (q < 4) set_stress(out.sums, q, stress_sum(run, q));
     if (q >= 4 && q < 10) out.tangent[q - 4] = tangent_sum(run, q - 4);
     if (q == 10) {
       out.contacts = V(static_cast<real>(contacts));
-      out.sums.largest_overlap = V(overlap);
+      out.sums.largest_measure = V(overlap);
     }
   });
 }

@@ -78,9 +78,9 @@ KOKKOS_FORCEINLINE_FUNCTION void set_stress(SweepSums<V>& sums, int q, const V& 
   if (q == 3) sums.stress_yy = value;
 }
 
-/// The largest overlap of the listed pairs.
+/// The largest measure of overlap of the listed pairs.
 template <class Run>
-[[nodiscard]] KOKKOS_FUNCTION typename Run::real largest_overlap(const Run& run) {
+[[nodiscard]] KOKKOS_FUNCTION typename Run::real largest_measure(const Run& run) {
   using real = typename Run::real;
   return largest<real>(run, run.listed(), [&](int p) { return static_cast<real>(run.at.branches(p).overlap); });
 }
@@ -92,10 +92,10 @@ KOKKOS_FUNCTION void sum_step(const Run& run) {
   using real = typename Run::real;
   const auto& at = run.at;
   SweepSums<V>& sums = run.shared().sums;
-  const real overlap = largest_overlap(run);
+  const real overlap = largest_measure(run);
   each(run, 6, [&](int q) {
     if (q < 4) set_stress(sums, q, stress_sum(run, q));
-    if (q == 5) sums.largest_overlap = V(overlap);
+    if (q == 5) sums.largest_measure = V(overlap);
     if (q != 4) return;
     V sum(0);
     for (int i = 0; i < run.grains; ++i)

@@ -189,6 +189,24 @@ TEST(Newton, NoiseFloorsWidenTheBoundsAndCanBeSwitchedOff) {
   EXPECT_GT(noisy.correction_bound, 1.001e-2 * noisy.increment_norm);
 }
 
+/// Points at their step limit keep an increment from converging only where it shall settle, and only where a stress
+/// error as large as theirs would show beside the tolerance.
+TEST(Newton, UnsettledPointsCountWhereTheLoadAsksForIt) {
+  const auto solve = [](double unsettled, bool settle) {
+    Block block({.unsettled = unsettled});
+    NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {});
+    IncrementLoad load = block.load(0.01, 0);
+    load.settle = settle;
+    Increment increment;
+    return solver.solve_increment(block.state, load, increment);
+  };
+  const NewtonReport one = solve(1.0, false);                         // 1 Pa: the force is a multiple of the stress
+  const double limit = 1e-3 * one.reference() / one.unsettled_force;  // [Pa]
+  EXPECT_EQ(solve(1.01 * limit, false).status, NewtonStatus::converged);
+  EXPECT_EQ(solve(0.99 * limit, true).status, NewtonStatus::converged);
+  EXPECT_EQ(solve(1.01 * limit, true).status, NewtonStatus::max_iterations);
+}
+
 /// A law that is a fixed but rough function of the gradient, as an RVE's is: independent errors at every new gradient.
 class RoughMaterial final : public SofteningMaterial {
  public:

@@ -64,7 +64,7 @@ TEST(Case, DefaultsAreThoseOfTheDeclarations) {
   EXPECT_EQ(input.kind, CaseKind::tunnel);
   EXPECT_EQ(input.material, MaterialKind::grains);
   EXPECT_EQ(input.soil.size_minimum, declared.soil.size_minimum);
-  EXPECT_NEAR(input.soil.friction, 25 * std::numbers::pi / 180, 1e-15);
+  EXPECT_NEAR(input.soil.friction_angle, 25 * std::numbers::pi / 180, 1e-15);
   EXPECT_EQ(input.packing.grains, declared.packing.grains);
   EXPECT_EQ(input.engine.inertial_number, declared.engine.inertial_number);
   EXPECT_EQ(input.volume_loss.total, declared.volume_loss.total);
@@ -104,7 +104,7 @@ TEST(Case, UnitsBecomeSi) {
       {"soil.friction=30 deg", "engine.precision=double"});
   EXPECT_DOUBLE_EQ(input.ground.unit_weight, 18e3);
   EXPECT_DOUBLE_EQ(input.volume_loss.total, 0.1);
-  EXPECT_NEAR(input.soil.friction, std::numbers::pi / 6, 1e-15);
+  EXPECT_NEAR(input.soil.friction_angle, std::numbers::pi / 6, 1e-15);
   EXPECT_EQ(input.engine.precision, kernels::Precision::float64);
 }
 
@@ -128,7 +128,7 @@ TEST(Case, FingerprintFollowsWhatDecidesTheNumbers) {
 TEST(Case, ResolvedCaseGivesTheSameCase) {
   const Case input = load_case(write("kind = 'tunnel'\n"), {"ground.cover_ratio=3", "soil.friction=31 deg"});
   const Case again = load_case(write(input.resolved));
-  EXPECT_EQ(input.soil.friction, again.soil.friction);
+  EXPECT_EQ(input.soil.friction_angle, again.soil.friction_angle);
   EXPECT_EQ(input.ground.cover_ratio, again.ground.cover_ratio);
   EXPECT_EQ(input.engine.inertial_number, again.engine.inertial_number);
   EXPECT_EQ(input.packing.pressure, again.packing.pressure);

@@ -1,4 +1,5 @@
-// Packings: the recipe's targets, the same bits whoever is made beside them, the cache and its damage.
+// Packings: the recipe's targets, the same bits whoever is made beside them, the cache and its damage, and the numbers
+// of the material that tell stored states apart.
 
 #include "host/packing/packings.hpp"
 
@@ -7,8 +8,10 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
+#include "host/case/load_case.hpp"
 #include "host/material/rve_pool.hpp"
 #include "host/packing/recipe.hpp"
 #include "tests/throws.hpp"
@@ -45,7 +48,7 @@ TEST_F(HostPacking, RestsAtItsPressureWithTheRecipesGrains) {
     EXPECT_GE(r, 1.0e-3);
     EXPECT_LE(r, 2.375e-3);
   }
-  EXPECT_NEAR(rve.packing.materials[0].friction, std::tan(input_.soil.friction), 1e-15) << "the working friction";
+  EXPECT_NEAR(rve.packing.materials[0].friction, std::tan(input_.soil.friction_angle), 1e-15) << "the working friction";
 }
 
 TEST_F(HostPacking, AWantedVoidRatioIsFoundThroughTheTemporaryFriction) {
@@ -56,7 +59,7 @@ TEST_F(HostPacking, AWantedVoidRatioIsFoundThroughTheTemporaryFriction) {
     EXPECT_EQ(rve.status, kernels::RveStatus::converged);
     EXPECT_NEAR(rve.void_ratio, 0.25, 0.01);
     EXPECT_GT(rve.consolidation_friction, 0.01);
-    EXPECT_NEAR(rve.packing.materials[0].friction, std::tan(input_.soil.friction), 1e-15);
+    EXPECT_NEAR(rve.packing.materials[0].friction, std::tan(input_.soil.friction_angle), 1e-15);
   }
   input_.packing.grains = 40;
   input_.packing.void_ratio = 0.02;  // no packing is that dense
@@ -126,11 +129,76 @@ TEST_F(HostPacking, APoolsStateGoesThroughBytesBitForBit) {
   };
   load(straight, 1e-4);
   restarted.set_state(straight.state());
+  const std::vector<fem::PointField> fields = straight.fields(), fields_again = restarted.fields();
+  ASSERT_EQ(fields.size(), fields_again.size());
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    EXPECT_EQ(fields[k].values, fields_again[k].values) << fields[k].name << " is made of a number that is not stored";
+  }
   EXPECT_EQ(load(straight, 2e-4), load(restarted, 2e-4));
   EXPECT_EQ(straight.state(), restarted.state());
   std::vector<std::byte> bytes = straight.state();
   bytes.pop_back();
   expect_throws<std::runtime_error>([&] { restarted.set_state(bytes); }, "not those of this case");
+}
+
+/// A case in which every number of the grains' material differs from its default, in [soil] and in a class.
+Case case_of_other_grains() {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() /
+                                     ("voussoir_other_grains_" + std::to_string(getpid()) + ".toml");
+  std::ofstream(file) << R"(kind = "pack"
+[soil]
+modulus = "2 GPa"
+stiffness_ratio = 0.4
+friction = "20 deg"
+rolling_stiffness = 0.9
+rolling_limit = 0.5
+[[soil.class]]
+size_to = "3 mm"
+modulus = "1 GPa"
+stiffness_ratio = 0.3
+friction = "15 deg"
+rolling_stiffness = 0.8
+rolling_limit = 0.4
+[[soil.class]]
+size_to = "4.75 mm"
+)";
+  Case input = load_case(file);
+  std::filesystem::remove(file);
+  return input;
+}
+
+/// A number that a new law brings along must be a key of the case file, in [soil] and in its classes.
+TEST(GrainMaterialNumbers, ComeFromTheCaseFile) {
+  const std::vector<kernels::GrainMaterial> materials = grain_materials(case_of_other_grains().soil);
+  ASSERT_EQ(materials.size(), 2U);
+  for (const auto& [name, number] : kernels::material_numbers) {
+    const double usual = kernels::GrainMaterial{}.*number, of_class = materials[0].*number,
+                 of_soil = materials[1].*number;
+    EXPECT_NE(of_soil, usual) << name << " has no key in [soil]";
+    EXPECT_NE(of_class, of_soil) << name << " has no key in [[soil.class]]";
+    EXPECT_NE(of_class, usual) << name;
+  }
+}
+
+/// Packings that are stored, and checkpoints, must not be taken for those of another material.
+TEST(GrainMaterialNumbers, AreInRecipesAndIdentities) {
+  Case input;
+  EXPECT_EQ(recipe_text(input.soil, input.packing, 7),
+            "recipe 2 d 0.002 0.00475 damping 0.3 t 0.1 grains 700 mu_t 0 p 1000 seed 7 E 3000000000 kt/kn 0.5 mu "
+            "0.4663076581549986 beta 1 eta 0.6 by area");
+  input.packing.grains = 60;
+  input.packing.pressure = 1.0e4;
+  const std::int64_t seed[] = {1};
+  PackedRve rve = make_packings(input.soil, input.packing, seed).front();
+  const std::uint64_t identity = RvePool(rve, {input.engine}, 1).identity();
+  for (const auto& [name, number] : kernels::material_numbers) {
+    double& value = rve.packing.materials[0].*number;
+    const double before = value;
+    value *= 0.99;
+    EXPECT_NE(RvePool(rve, {input.engine}, 1).identity(), identity) << name;
+    value = before;
+  }
+  EXPECT_EQ(RvePool(rve, {input.engine}, 1).identity(), identity);
 }
 
 }  // namespace

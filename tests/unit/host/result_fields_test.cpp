@@ -1,4 +1,4 @@
-// The table of fields against the fields that a run writes, of grains and without any.
+// The table of fields against the fields that a run writes, of grains and without any, and against io/FORMAT.md.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 
 #include "host/case/result_fields.hpp"
 #include "host/stages/biaxial_bvp.hpp"
+#include "tests/format_page.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -66,6 +67,42 @@ TEST(ResultFields, ARunOfGrainsWritesNoNetworkUnlessAskedFor) {
 TEST(ResultFields, ARunWithoutGrainsWritesTheMeshesFieldsAlone) {
   const Case input = one_element(MaterialKind::linear_elastic, "elastic");
   expect_rows(written_by(input), [](const ResultField& row) { return !row.of_grains; });
+}
+
+/// Such as "gauss, Pa, 1, asked for by fabric".
+std::string described(const std::string& where, const std::string& unit, int components, const std::string& request) {
+  return where + ", " + unit + ", " + std::to_string(components) +
+         (request.empty() ? std::string() : ", asked for by " + request);
+}
+
+std::string request_of(const ResultField& row) {
+  for (const char* name : {"fabric", "coordination", "strong_networks"}) {
+    kernels::MicrostructureRequest request;
+    EXPECT_TRUE(ask_for(name, request)) << name;
+    if (row.request != nullptr && is_asked_for(row, request)) return name;
+  }
+  EXPECT_EQ(row.request, nullptr) << row.name;
+  return {};
+}
+
+TEST(ResultFields, AreThoseOfFormatMd) {
+  Descriptions page, program;
+  for (const auto& row : rows_below("| name | where | unit | components |")) {
+    for (const std::string& name : split(row.at(0), ", ")) {
+      page[unquoted(name)] = described(row.at(1), row.at(2), std::stoi(row.at(3)), "");
+    }
+  }
+  for (const auto& row : rows_below("| asked for | name | where | unit | what |")) {
+    for (const std::string& name : split(row.at(1), ", ")) {
+      page[unquoted(name)] = described(row.at(2), row.at(3), 1, unquoted(row.at(0)));
+    }
+  }
+  for (const ResultField& row : result_field_table) {
+    const char* where = row.location == io::FieldLocation::node ? "node" : "gauss";
+    program[row.name] = described(where, row.unit, row.components, request_of(row));
+  }
+  EXPECT_EQ(program.size(), result_field_table.size());
+  EXPECT_EQ(disagreements(page, program), "");
 }
 
 TEST(ResultFields, NamesAreUniqueAndFound) {

@@ -23,8 +23,8 @@ std::vector<StageTotals> two_stages() {
   loss.stage = "volume_loss";
   loss.evaluations = {5, 9, 4};
   loss.deferral_error = {0, 2e-3, 5e-4};
-  loss.unsettled = {0, 2, 1};
-  loss.unsettled_share = {0, 0.02, 0.7};
+  loss.step_limit_points = {0, 2, 1};
+  loss.unsettled = {0, 0.02, 0.7};
   loss.cuts = 2;
   return {gravity, loss};
 }
@@ -40,8 +40,8 @@ TEST(RunTotals, ComeBackFromACheckpoint) {
     EXPECT_EQ(read[k].stage, written[k].stage);
     EXPECT_EQ(read[k].evaluations, written[k].evaluations);
     EXPECT_EQ(read[k].deferral_error, written[k].deferral_error);
+    EXPECT_EQ(read[k].step_limit_points, written[k].step_limit_points);
     EXPECT_EQ(read[k].unsettled, written[k].unsettled);
-    EXPECT_EQ(read[k].unsettled_share, written[k].unsettled_share);
     EXPECT_EQ(read[k].cuts, written[k].cuts);
     EXPECT_EQ(read[k].particle_steps, written[k].particle_steps);
     EXPECT_EQ(read[k].lane_steps, written[k].lane_steps);

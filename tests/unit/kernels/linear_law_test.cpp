@@ -164,6 +164,32 @@ TEST(Combination, TwoClassesByHand) {
   EXPECT_EQ(c.friction, swapped.friction);
 }
 
+/// The caps of a pair's springs follow the overlap over R = r1 + r2, so that they are mu and the arm times f_n.
+TEST(Combination, CapsAreOfTheSumOfTheRadii) {
+  const GrainMaterial sand;
+  const GrainMaterial gravel{.modulus = 5e9, .friction = 1.2, .rolling_limit = 0.8};
+  struct Expected {
+    GrainMaterial first, second;
+    double r1, r2, normal_stiffness, arm;
+  };
+  const Expected pairs[] = {{sand, sand, 1e-3, 1e-3, 3e6, 6e-4},
+                            {gravel, sand, 1e-2, 1e-3, 2 * 50e6 * 3e6 / 53e6, 6e-4},
+                            {sand, gravel, 1e-3, 1e-2, 2 * 50e6 * 3e6 / 53e6, 6e-4}};
+  for (const Expected& e : pairs) {
+    const Law::Pair pair = Law::combine(e.first, e.r1, e.second, e.r2);
+    const double sum = e.r1 + e.r2;
+    EXPECT_DOUBLE_EQ(pair.tangential_cap, sand.friction * e.normal_stiffness * sum);
+    EXPECT_DOUBLE_EQ(pair.moment_cap, e.arm * e.normal_stiffness * sum);
+    // Far beyond both caps, at an overlap of a hundredth of R: mu f_n, and the arm times f_n.
+    const double branch = 0.99 * sum, force = e.normal_stiffness * 0.01 * sum;
+    Law::History history{V(0), V(0)};
+    const ContactForce<V> f = Law(pair)({V(0.01), V(0.01 * sum / branch), V(1.0), V(10.0)}, history);
+    EXPECT_DOUBLE_EQ(f.normal_to_branch[0] * branch, force);
+    EXPECT_DOUBLE_EQ(f.tangential[0], sand.friction * force);
+    EXPECT_DOUBLE_EQ(f.moment[0], e.arm * force);
+  }
+}
+
 TEST(Combination, TheSmallestArmIsNotAlwaysTheSmallestGrain) {
   const GrainMaterial slick{.rolling_limit = 0.1};
   EXPECT_NEAR(combine(slick, 2e-3, GrainMaterial{}, 1e-3).rolling_arm, 2e-4, 1e-18);
