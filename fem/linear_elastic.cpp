@@ -72,7 +72,7 @@ void LinearElastic::committed(std::span<Stress> stress, std::span<Tangent> tange
 
 std::vector<std::byte> LinearElastic::state() const {
   std::vector<std::byte> bytes(size() * sizeof(Stress));
-  std::memcpy(bytes.data(), committed_.data(), bytes.size());
+  std::memcpy(bytes.data(), static_cast<const void*>(committed_.data()), bytes.size());
   return bytes;
 }
 

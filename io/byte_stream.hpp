@@ -56,7 +56,7 @@ class ByteReader {
   }
   template <class T>
   [[nodiscard]] T value() {
-    T v;
+    T v{};
     (*this)(&v, 1);
     return v;
   }

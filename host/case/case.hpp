@@ -3,6 +3,7 @@
 /// keys and units; this header says what the values mean. The default of each member is the default of its key.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -191,7 +192,7 @@ struct BiaxialBvpCase {
   double strain = 0.10;         ///< the top's displacement at the end, over the height [-]
   double strain_step = 1.0e-3;  ///< the top's displacement in one increment, over the height [-]
 
-  [[nodiscard]] int increments() const { return static_cast<int>(strain / strain_step + 0.5); }
+  [[nodiscard]] int increments() const { return static_cast<int>(std::lround(strain / strain_step)); }
 };
 
 /// A target of a calibration: the wanted value, and the difference from it that adds 1 to the misfit [rad, or -].

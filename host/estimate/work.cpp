@@ -82,7 +82,7 @@ CaseSize biaxial_size(const BiaxialCase& test, const SoilCase& soil, const Packi
 CaseSize specimen_size(const BiaxialBvpCase& test, MaterialKind material, const SoilCase& soil,
                        const PackingCase& recipe, const EngineCase& engine) {
   CaseSize size;
-  size.points = static_cast<std::size_t>(4 * test.columns * test.rows);
+  size.points = 4 * static_cast<std::size_t>(test.columns) * static_cast<std::size_t>(test.rows);
   size.increments = static_cast<std::size_t>(test.increments());
   if (material != MaterialKind::grains) return size;
   size.grains = static_cast<double>(size.points) * recipe.grains;
@@ -122,7 +122,7 @@ CaseSize ground_size(const Case& input) {
   const bool with_tunnel = input.kind == CaseKind::tunnel;
   const std::size_t gravity = gravity_targets(input.ground, input.gravity).size();
   const auto loss = with_tunnel ? static_cast<std::size_t>(input.volume_loss.increments) : std::size_t{0};
-  size.column_points = static_cast<std::size_t>(4 * input.column.elements);
+  size.column_points = 4 * static_cast<std::size_t>(input.column.elements);
   size.points = with_tunnel ? static_cast<std::size_t>(tunnel_mesh(input.ground).n_points()) : size.column_points;
   size.increments = with_tunnel ? 2 * gravity + loss : gravity;
   if (input.material != MaterialKind::grains) return size;

@@ -40,6 +40,7 @@ class GroundRun {
   /// Tells the log that a finished run has nothing left to do.
   void report_finished();
 
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): value() itself checks, and throws.
   [[nodiscard]] Ground& ground() { return ground_.value(); }  ///< may be called only after open_ground
   [[nodiscard]] RunRecorder& recorder() { return recorder_; }
   [[nodiscard]] RunLog& log() { return recorder_.log(); }

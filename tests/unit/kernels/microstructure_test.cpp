@@ -130,7 +130,8 @@ TEST(Microstructure, OfAHexagonalLattice) {
 TEST(Microstructure, OfASquareLatticeAndOfRows) {
   reference::Rve rve;
   for (int k = 0; k < 36; ++k) {
-    rve.positions.push_back({(k % 6) * 1.999e-3 + 1e-4, (k / 6) * 1.999e-3 + 1e-4});
+    const int column = k % 6, row = k / 6;
+    rve.positions.push_back({column * 1.999e-3 + 1e-4, row * 1.999e-3 + 1e-4});
     rve.radii.push_back(1e-3);
     rve.rotations.push_back(k < 18 ? 0.25 : 0.5);
   }
@@ -150,17 +151,17 @@ TEST(Microstructure, OfASquareLatticeAndOfRows) {
 class OfAPacking : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    rve_ = reference::consolidated_packing(60, 4, 1e5, 0.1, reference::Material{});
-    strain(rve_, {1.004, 0.006, 0, 0.99}, {.steps = 6000, .hold_steps = 500});
+    sheared = reference::consolidated_packing(60, 4, 1e5, 0.1, reference::Material{});
+    strain(sheared, {1.004, 0.006, 0, 0.99}, {.steps = 6000, .hold_steps = 500});
   }
-  static inline reference::Rve rve_;
+  static inline reference::Rve sheared;
 };
 
 TEST_F(OfAPacking, ForcesAreTheOracles) {
-  const RveBatch batch = clones(rve_, 1);
+  const RveBatch batch = clones(sheared, 1);
   std::vector<CommittedContact> contacts;
   committed_contacts(batch, 0, contacts);
-  const auto expected = reference::contacts(rve_);
+  const auto expected = reference::contacts(sheared);
   ASSERT_EQ(contacts.size(), expected.size());
   double largest = 0, slid = 0;
   for (const auto& c : expected) largest = std::max(largest, c.normal_force);
@@ -176,12 +177,12 @@ TEST_F(OfAPacking, ForcesAreTheOracles) {
 }
 
 TEST_F(OfAPacking, ForcesGiveTheReportedStress) {
-  RveBatch batch = clones(rve_, 1);
+  RveBatch batch = clones(sheared, 1);
   const RveReport report = run(batch, {StrainRequest{}}, in_double()).front();
   commit(batch);
   std::vector<CommittedContact> contacts;
   committed_contacts(batch, 0, contacts);
-  const double volume = reference::det(rve_.cell) * rve_.material.thickness;
+  const double volume = reference::det(sheared.cell) * sheared.material.thickness;
   double stress[4] = {};
   for (const CommittedContact& c : contacts) {
     stress[0] += c.force_x() * c.branch_x / volume;
@@ -193,15 +194,15 @@ TEST_F(OfAPacking, ForcesGiveTheReportedStress) {
 }
 
 TEST_F(OfAPacking, AShearedOneHasMoreContactsAlongTheCompression) {
-  const Microstructure m = of_committed(clones(rve_, 1))[0];
+  const Microstructure m = of_committed(clones(sheared, 1))[0];
   EXPECT_GT(m.fabric_anisotropy, 0.05);
   EXPECT_GT(std::abs(m.fabric_direction), 0.25 * pi) << "y is compressed";
   EXPECT_GE(m.mechanical_coordination, m.coordination);
-  EXPECT_NEAR(m.grain_rotation, reference::mean_rotation(rve_), 1e-15);
+  EXPECT_NEAR(m.grain_rotation, reference::mean_rotation(sheared), 1e-15);
 }
 
 TEST_F(OfAPacking, SameBitsAnywhereInTheBatch) {
-  const auto all = of_committed(clones(rve_, 37));
+  const auto all = of_committed(clones(sheared, 37));
   for (const Microstructure& m : all) {
     EXPECT_EQ(m.fabric_anisotropy, all[0].fabric_anisotropy);
     EXPECT_EQ(m.strong_coordination, all[0].strong_coordination);
@@ -235,8 +236,8 @@ Compression compress(const reference::Rve& rve, const MicrostructureRequest& wan
 
 TEST_F(OfAPacking, RecordedAlongAPathItIsTheSameAndChangesNothing) {
   for (const Precision precision : {Precision::float32, Precision::float64}) {
-    const Compression with = compress(rve_, everything, precision), without = compress(rve_, {}, precision);
-    const Microstructure start = of_committed(clones(rve_, 1))[0];
+    const Compression with = compress(sheared, everything, precision), without = compress(sheared, {}, precision);
+    const Microstructure start = of_committed(clones(sheared, 1))[0];
     const auto end = of_committed(with.batch);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto &a = with.traces[k], &b = without.traces[k];
