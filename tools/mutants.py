@@ -235,11 +235,14 @@ def passes(test: str, limit: float) -> bool:
 
 
 def unit_tests(pattern: str) -> list[str]:
-    """The tests whose names contain a match of the regular expression."""
-    shown = subprocess.run(
-        ["ctest", "--test-dir", BUILD, "-N", "-L", "^unit$"], check=True, capture_output=True, text=True
-    )
-    return [test for test in re.findall(r"Test +#\d+: (\S+)", shown.stdout) if re.search(pattern, test)]
+    """The tests whose names contain a match of the regular expression, and which are programs of the same name."""
+    commands: list[list[str | Path]] = [
+        ["ctest", "--test-dir", BUILD, "-N", "-L", "^unit$"],
+        ["cmake", "--build", BUILD, "--target", "help"],
+    ]
+    shown, targets = (subprocess.run(words, check=True, capture_output=True, text=True).stdout for words in commands)
+    programs = set(re.findall(r"^(\w+): phony", targets, re.MULTILINE))
+    return [test for test in re.findall(r"Test +#\d+: (\S+)", shown) if test in programs and re.search(pattern, test)]
 
 
 def prepare(pattern: str) -> dict[str, float]:
