@@ -273,7 +273,7 @@ TEST_F(ResultFileTest, WhatDoesNotFitIsRefusedBeforeAnythingIsWritten) {
   ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
   const auto refuses = [&](const Field& field, const std::string& part) {
     expect_throws<std::invalid_argument>([&] { writer.write(info(1), {field}); },
-                                         "field \"" + field.name + "\": " + part);
+                                         "field \"" + field.name + "\" has " + part);
   };
   refuses({"displacement", "m", FieldLocation::node, 2, counted(25)}, "25 values of 2 components, expected 26");
   refuses({"stress", "Pa", FieldLocation::gauss, 3, counted(6)}, "6 values of 3 components, expected 24");
