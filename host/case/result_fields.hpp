@@ -45,7 +45,9 @@ using Network = kernels::Microstructure;
 static_assert(kernels::strong_thresholds == std::array{1.0, 2.0, 2.5}, "the names below say the thresholds");
 
 /// The rows stand in the order in which files have the fields.
-inline constexpr auto table = std::to_array<ResultField>({
+// Not `inline`: the sanitizer's checks of null pointers are no constant expressions for objects that the linker may
+// merge, and result_field() is computed by the compiler.
+constexpr auto table = std::to_array<ResultField>({
     {"displacement", "m", 2, node},
     {"reaction", "N/m", 2, node},
     {"gauss_point_coordinates", "m", 2, gauss},
@@ -78,7 +80,7 @@ inline constexpr auto table = std::to_array<ResultField>({
 
 }  // namespace result_field_rows
 
-inline constexpr const auto& result_field_table = result_field_rows::table;
+constexpr const auto& result_field_table = result_field_rows::table;
 
 /// The row of a name; nullptr where the table has no such row.
 [[nodiscard]] constexpr const ResultField* find_result_field(std::string_view name) {

@@ -47,9 +47,10 @@ struct GrainMaterial {
 };
 
 /// One number of a material, and its name in the recipes of stored packings.
+using MaterialMember = double GrainMaterial::*;
 struct MaterialNumber {
   std::string_view name;
-  double GrainMaterial::* number;
+  MaterialMember number;
 };
 
 /// All numbers of a material. The recipe of a stored packing and the identity of a checkpoint hold them in this order,
