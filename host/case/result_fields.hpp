@@ -80,7 +80,7 @@ constexpr auto table = std::to_array<ResultField>({
 
 }  // namespace result_field_rows
 
-constexpr const auto& result_field_table = result_field_rows::table;
+static constexpr const auto& result_field_table = result_field_rows::table;
 
 /// The row of a name; nullptr where the table has no such row.
 [[nodiscard]] constexpr const ResultField* find_result_field(std::string_view name) {
