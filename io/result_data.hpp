@@ -33,6 +33,8 @@ struct Provenance {
   std::string build_compiler = "unknown";  ///< name and version
   std::string build_type = "unknown";      ///< CMake's, such as "Release"
   std::string kokkos = "unknown";          ///< Kokkos version, backends, instruction set
+  std::string processor = "unknown";       ///< its name, of the first rank
+  std::string lanes = "unknown";           ///< instruction set of the lanes, and why it was chosen
   std::string command = "unknown";         ///< command line
   std::string date = "unknown";            ///< start of the run, ISO 8601, UTC
   int threads = 1;                         ///< of the first rank

@@ -37,6 +37,8 @@ template <class Source, class Visit>
 void for_each_later_text(Source& source, Visit&& visit) {
   visit("build_compiler", source.build_compiler);
   visit("build_type", source.build_type);
+  visit("processor", source.processor);
+  visit("lanes", source.lanes);
 }
 
 void write_provenance(Hdf5File& file, const Provenance& provenance) {

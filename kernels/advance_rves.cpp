@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "kernels/lanes/advance_lanes.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 #include "kernels/teams/advance_teams.hpp"
 
 namespace voussoir::kernels {
@@ -44,14 +44,14 @@ Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const Eng
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports, std::span<const int> rves) {
   if (runs_teams(settings, requests)) return teams::advance(batch, requests, settings, reports, rves);
-  return lanes::advance(batch, requests, settings, reports, rves);
+  return chosen_lanes().lanes->advance_given(batch, requests, settings, reports, rves);
 }
 
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {
   const std::vector<int> rves = all_of(batch);
   if (runs_teams(settings, requests)) return teams::advance(batch, requests, settings, reports, rves);
-  return lanes::advance(batch, requests, settings, reports, rves);
+  return chosen_lanes().lanes->advance_servo(batch, requests, settings, reports, rves);
 }
 
 }  // namespace voussoir::kernels

@@ -33,7 +33,7 @@ FOLDERS = {
 # folder -> its rooms (sub-folders) level by level, the lowest first; rooms that stand on one level do not include one
 # another. Files at the top of the folder stand above all of its rooms.
 ROOMS = {
-    "kernels": (("contact",), ("state",), ("course",), ("tangents",), ("lanes", "teams")),
+    "kernels": (("contact",), ("state",), ("course", "isa"), ("tangents",), ("lanes", "teams")),
     "host": (
         ("process",),
         ("case",),
@@ -71,7 +71,7 @@ LIBRARIES = {
     "GoogleTest": r"(gtest|gmock)/.*",
     "Google Benchmark": r"benchmark/.*",
     "CUDA": r"cuda\w*\.h",
-    "intrinsics": r"immintrin\.h",
+    "intrinsics": r"(immintrin|cpuid)\.h",
     "POSIX": r"(sys/\w+|unistd|fcntl|poll|signal|spawn|termios)\.h",
     "standard": r"[a-z_0-9]+",
 }

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "kernels/isa/instruction_set.hpp"
 #include "kernels/state/network.hpp"
 #include "kernels/state/requests.hpp"
 
@@ -67,6 +68,9 @@ struct PackingCase {
   double pressure = 1.0e3;  ///< isotropic pressure of the finished packing [Pa]
 };
 
+/// The key `engine.isa`; "auto" is the choice without a value.
+using InstructionSetChoice = std::optional<kernels::InstructionSet>;
+
 /// [engine] Speed and accuracy of the grain engine: a preset (engine.hpp), whose values single keys override.
 /// What each key costs and buys is measured in docs/trade.md. The defaults are the preset `standard`.
 struct EngineCase {
@@ -75,6 +79,7 @@ struct EngineCase {
   double inertial_number = 3.0e-4;                             ///< target inertial number of an increment [-]
   double hold_tolerance = 3.0e-4;                              ///< unbalanced force ratio that ends the hold [-]
   kernels::Backend backend = kernels::Backend::automatic;      ///< one SIMD lane or one team of threads per RVE
+  InstructionSetChoice isa = {};                               ///< of the lanes; no bit of a result depends on it
   int hold_cap = 4000;                                         ///< most steps of a hold
   double skin = 0.1;                                           ///< neighbour skin over the mean grain diameter [-]
   int minimum_steps = 50;                                      ///< fewest strain steps of an increment

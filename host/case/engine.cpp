@@ -7,6 +7,7 @@
 
 #include "host/case/keys.hpp"
 #include "kernels/advance_rves.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 
@@ -65,6 +66,16 @@ std::string overridden(const EngineCase& engine, const EngineCase& preset) {
   return names;
 }
 
+/// The processor of this command decides what the key may be: a set that cannot be taken here is a fault of the input.
+InstructionSetChoice read_instruction_set(const io::Table& table) {
+  const auto isa = kernels::find_instruction_set(table.choice("isa", {"auto", "scalar", "v3", "v4"}, "auto"));
+  if (isa) {
+    const std::string fault = kernels::why_not(*isa);
+    if (!fault.empty()) throw table.error("isa", fmt::format("\"{}\" {}", kernels::name_of(*isa), fault));
+  }
+  return isa;
+}
+
 }  // namespace
 
 EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
@@ -76,6 +87,7 @@ EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
   engine.backend = backend == "lanes"   ? kernels::Backend::lanes
                    : backend == "teams" ? kernels::Backend::teams
                                         : kernels::Backend::automatic;
+  engine.isa = read_instruction_set(table);
   read_quantity(table, "inertial_number", io::Dimension::none, engine.inertial_number,
                 {.at_least = "1e-6", .at_most = "1e-2"});
   read_quantity(table, "hold_tolerance", io::Dimension::none, engine.hold_tolerance,

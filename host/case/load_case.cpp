@@ -125,8 +125,9 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();
   input.resolved = text.resolved();
-  // None of these keys changes a number: a preset acts only through the values that it gives to other keys.
-  const std::array<std::string, 4> without{"title", "output", "packing.folder", "engine.preset"};
+  // None of these keys changes a number: a preset acts only through the values that it gives to other keys, and all
+  // instruction sets give the same bits.
+  const std::array<std::string, 5> without{"title", "output", "packing.folder", "engine.preset", "engine.isa"};
   input.fingerprint = text.fingerprint(without);
   if (!input.packing.file.empty())
     input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));

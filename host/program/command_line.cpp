@@ -24,6 +24,7 @@ struct Arguments {
   std::vector<std::string> overrides;
   bool resume = false;
   bool replace = false;
+  bool cpu = false;
   int threads = 0;
   int processes = 1;
 };
@@ -69,8 +70,11 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, int&
   });
 
   CLI::App* info = app.add_subcommand("info", "print where a result comes from, and its increments");
-  info->add_option("result", a.file, "run.h5 of a result")->required();
-  info->callback([&] { code = command_info(a.file); });
+  CLI::Option_group* what = info->add_option_group("what");
+  what->add_option("result", a.file, "run.h5 of a result");
+  what->add_flag("--cpu", a.cpu, "print instead which instruction set the lanes take on this processor, and why");
+  what->require_option(1);
+  info->callback([&] { code = a.cpu ? command_info_cpu() : command_info(a.file); });
 }
 
 int complain(int code, const std::string& sentence) {

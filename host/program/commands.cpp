@@ -16,6 +16,7 @@
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -34,23 +35,27 @@ void print_increments(const std::vector<io::IncrementInfo>& increments) {
 
 int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides, RunOptions options) {
   const Case input = load_case(case_file, overrides);
+  const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
   check_folder(options, input.fingerprint);
   Kokkos::InitializationSettings settings;
   settings.set_disable_warnings(true);
   if (options.threads > 0) settings.set_num_threads(options.threads);
   const Kokkos::ScopeGuard kokkos(settings);
-  start_ranks(options.threads);
+  start_ranks(options.threads, input.engine.isa);
   options.threads = Kokkos::DefaultHostExecutionSpace().concurrency();
   // Only a kind that advances in increments can stop between two of them; the others are ended by the signal itself.
   if (runs_on_a_mesh(input.kind)) catch_interrupts();
+  if (!runs_on_a_mesh(input.kind)) std::printf("%s\n", kernels::lanes_sentence(lanes).c_str());  // others have a log
   return run_case(input, options);
 }
 
 int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
   const Case input = load_case(case_file, overrides);
+  const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
   std::printf("%s\n", input.resolved.c_str());
   if (uses_engine(input.kind, input.material)) std::printf("# %s\n", engine_note(input.engine).c_str());
+  std::printf("# %s\n", kernels::lanes_sentence(lanes).c_str());
   const CaseSize size = case_size(input);
   check_snapshot_points(input.output, size, input.name);
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
@@ -62,16 +67,27 @@ int command_info(const std::filesystem::path& result_file) {
   try {  // for this command a file that cannot be read is wrong input
     const io::Provenance origin = io::read_provenance(result_file);
     std::printf(
-        "kind %s, version %s (%s), %s, %d ranks, %d threads, begun %s\nbuild: %s, %s\ncommand: %s\nfingerprint: %s\n",
+        "kind %s, version %s (%s), %s, %d ranks, %d threads, begun %s\nbuild: %s, %s\nprocessor: %s\nlanes: %s\n"
+        "command: %s\nfingerprint: %s\n",
         origin.case_kind.c_str(), origin.version.c_str(), origin.git_hash.c_str(), origin.kokkos.c_str(), origin.ranks,
         origin.threads, origin.date.c_str(), origin.build_compiler.c_str(), origin.build_type.c_str(),
-        origin.command.c_str(), origin.fingerprint.c_str());
+        origin.processor.c_str(), origin.lanes.c_str(), origin.command.c_str(), origin.fingerprint.c_str());
     const io::MeshData mesh = io::read_mesh(result_file);
     std::printf("%zu nodes, %zu elements\n", mesh.nodes(), mesh.elements());
     print_increments(io::read_increments(result_file));
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(error.what());
   }
+  return exit_ok;
+}
+
+int command_info_cpu() {
+  std::string held;
+  for (const kernels::LaneSet* lanes : kernels::compiled_lanes())
+    held += fmt::format("{}{}", held.empty() ? "" : ", ", kernels::name_of(lanes->isa));
+  std::printf("processor: %s, which offers %s\nthis program holds the lanes %s\n%s\n",
+              kernels::processor_name().c_str(), kernels::description_of(kernels::processor_set()), held.c_str(),
+              kernels::lanes_sentence(kernels::choose_lanes({})).c_str());
   return exit_ok;
 }
 

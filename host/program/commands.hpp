@@ -20,6 +20,9 @@ namespace voussoir::host {
 /// `voussoir info`: prints where a result comes from, and its table of increments.
 [[nodiscard]] int command_info(const std::filesystem::path& result_file);
 
+/// `voussoir info --cpu`: prints the processor, the sets of lanes in this program, and which of them is taken and why.
+[[nodiscard]] int command_info_cpu();
+
 struct SweepOptions {
   std::filesystem::path folder;
   std::filesystem::path program;  ///< this program, which is started once for each run

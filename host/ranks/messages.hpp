@@ -15,7 +15,7 @@ using io::ByteReader;
 using io::ByteWriter;
 
 enum class Command : std::uint8_t {
-  start,            ///< revision of the build, threads -> name of the host, threads
+  start,            ///< revision of the build, threads, instruction set -> host, threads, set of the lanes, its fault
   make,             ///< recipe of the pool -> committed reports
   begin_increment,  ///< ->
   evaluate,         ///< tangents or not, gradients -> seconds, particle-steps, error of deferred answers, trial reports
@@ -70,13 +70,14 @@ inline PackedRve read_rve(ByteReader& read) {
 
 /// Writes or reads the options of a pool. Every member is bound to a name here, so that a new option does not
 /// compile until somebody decides whether it is sent. The preset's name is not sent, since the other members hold its
-/// values.
+/// values; the instruction set goes with the command `start`.
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
   auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure] = options;
-  auto& [preset, precision, inertial_number, hold_tolerance, backend, hold_cap, skin, minimum_steps, maximum_steps,
+  auto& [preset, precision, inertial_number, hold_tolerance, backend, isa, hold_cap, skin, minimum_steps, maximum_steps,
          defer] = engine;
   static_cast<void>(preset);
+  static_cast<void>(isa);
   transfer(&precision, 1);
   transfer(&backend, 1);
   for (auto* number : {&inertial_number, &hold_tolerance, &skin, &defer}) transfer(number, 1);

@@ -80,8 +80,8 @@ RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std
   std::string text = fmt::format("{} ranks:", ranks.size());
   for (std::size_t r = 0; r < ranks.size(); ++r) {
     if (r > 0) place(values_of(replies[r - 1]).list<kernels::RveReport>(), points_[r], committed_);
-    text += fmt::format("{} {} points on {} with {} threads", r > 0 ? "," : "", points_[r].size(), ranks[r].host,
-                        ranks[r].threads);
+    text += fmt::format("{} {} points on {} with {} threads and {} lanes", r > 0 ? "," : "", points_[r].size(),
+                        ranks[r].host, ranks[r].threads, ranks[r].lanes);
   }
   if (note_) note_(text);
 }

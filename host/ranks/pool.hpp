@@ -14,6 +14,7 @@ namespace voussoir::host {
 struct RankInfo {
   std::string host;
   int threads = 1;
+  std::string lanes = {};  ///< name of the set that its lanes take
 };
 
 /// The points of each rank out of `n`, ascending. Points are dealt out in turn, in proportion to the ranks' threads.

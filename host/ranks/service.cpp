@@ -13,6 +13,7 @@
 #include "host/process/resources.hpp"
 #include "host/ranks/messages.hpp"
 #include "host/ranks/session.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -66,8 +67,16 @@ class Service {
       if (threads > 0) settings.set_num_threads(threads);
       kokkos_.emplace(settings);
     }
+    std::string lanes, fault;
+    try {
+      lanes = kernels::name_of(kernels::choose_lanes(kernels::find_instruction_set(read.text())).lanes->isa);
+    } catch (const std::invalid_argument& error) {  // wrong input here is wrong input of the run
+      fault = error.what();
+    }
     reply.list(host_name());
     reply.value(Kokkos::DefaultHostExecutionSpace().concurrency());
+    reply.list(lanes);
+    reply.list(fault);
   }
 
   void make(ByteReader& read, ByteWriter& reply) {

@@ -6,6 +6,7 @@
 #include "host/process/build_info.hpp"
 #include "host/ranks/messages.hpp"
 #include "host/ranks/pool.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -28,25 +29,33 @@ RankSession::~RankSession() {
 
 bool RankSession::serves() const { return this_rank() != 0; }
 
-void start_ranks(int threads) {
+void start_ranks(int threads, InstructionSetChoice isa) {
   if (rank_count() == 1 || !ranks().empty()) return;
-  std::vector<RankInfo> found{{host_name(), Kokkos::DefaultHostExecutionSpace().concurrency()}};
+  std::vector<RankInfo> found{{host_name(), Kokkos::DefaultHostExecutionSpace().concurrency(),
+                               kernels::name_of(kernels::chosen_lanes().lanes->isa)}};
   Message message = message_of(Command::start);
   ByteWriter write(message);
   write.list(std::string(build_revision));
   write.value(threads);
+  write.list(std::string(isa ? kernels::name_of(*isa) : ""));
   for (int r = 1; r < rank_count(); ++r) send_message(r, message);
-  std::string refusal;
+  std::string refusal, fault;
   for (int r = 1; r < rank_count(); ++r) {
     const Message reply = receive_message(r);
     ByteReader read(reply);
     const bool good = read.value<bool>();
     RankInfo info{read.text(), 1};
-    if (good) info.threads = read.value<int>();
+    if (good) {
+      info.threads = read.value<int>();
+      info.lanes = read.text();
+      if (const std::string theirs = read.text(); !theirs.empty() && fault.empty())
+        fault = "rank " + std::to_string(r) + " on " + info.host + ": " + theirs;
+    }
     if (!good && refusal.empty()) refusal = info.host;
     found.push_back(std::move(info));
   }
   if (!refusal.empty()) throw std::runtime_error(refusal);
+  if (!fault.empty()) throw std::invalid_argument(fault);
   ranks() = std::move(found);
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "host/case/case.hpp"
 #include "host/packing/packings.hpp"
 
 namespace voussoir::fem {
@@ -37,9 +38,12 @@ class RankSession {
 /// The MPI library's name, or "no MPI" in a build without one.
 [[nodiscard]] std::string rank_library();
 
-/// Starts Kokkos on the other ranks; later calls do nothing.
+/// Starts Kokkos on the other ranks and lets them choose their lanes; later calls do nothing. Ranks may take unlike
+/// instruction sets, because all sets give the same bits.
 /// @param threads number of threads of each rank; with 0 each rank chooses its own
-void start_ranks(int threads);
+/// @param isa set of the lanes of each rank; without a value each rank chooses its own
+/// @throws std::invalid_argument where a rank cannot take the set
+void start_ranks(int threads, InstructionSetChoice isa);
 
 /// `n` clones of `rve`, spread over the ranks in proportion to their threads. They answer bit for bit as one pool on
 /// one rank does. To be called after start_ranks, and only where rank_count() > 1. `note` receives lines for the

@@ -8,6 +8,7 @@
 
 #include "host/process/build_info.hpp"
 #include "host/ranks/session.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -15,6 +16,10 @@ namespace {
 std::string kokkos_description() {
   return fmt::format("Kokkos {}.{}.{}, {}", KOKKOS_VERSION / 10000, KOKKOS_VERSION / 100 % 100, KOKKOS_VERSION % 100,
                      Kokkos::DefaultExecutionSpace::name());
+}
+
+std::string lanes_of(const kernels::LaneChoice& choice) {
+  return fmt::format("{}; {}", kernels::description_of(choice.lanes->isa), choice.reason);
 }
 
 std::string utc_now() {
@@ -42,6 +47,8 @@ io::Provenance provenance_of(const RunOptions& options, const Case& input, const
   p.date = utc_now();
   p.threads = options.threads;
   p.ranks = rank_count();
+  p.processor = kernels::processor_name();
+  p.lanes = lanes_of(kernels::chosen_lanes());
   return p;
 }
 

@@ -9,7 +9,6 @@
 
 #include "fem/boundary.hpp"
 #include "fem/mesh_rectangle.hpp"
-#include "host/case/engine.hpp"
 #include "host/record/provenance.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/ground_run.hpp"
@@ -157,7 +156,7 @@ RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
     run.report_finished();
     return RunStatus::finished;
   }
-  if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
+  log_engine(input, log);
   MaterialCase material = material_case(input);
   material.packing.pressure = test.pressure;
   run.open_ground(material, [&log](const std::string& text) { log.line(text); });

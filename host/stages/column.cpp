@@ -9,7 +9,6 @@
 #include <string>
 
 #include "fem/mesh_rectangle.hpp"
-#include "host/case/engine.hpp"
 #include "host/record/provenance.hpp"
 #include "host/stages/ground_loads.hpp"
 #include "host/stages/ground_record.hpp"
@@ -119,7 +118,7 @@ ColumnResult measure_k0(const ColumnSetup& setup, const RunOptions& options, con
 
 RunStatus run_column(const Case& input, const RunOptions& options) {
   RunLog log = open_log(options);
-  if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
+  log_engine(input, log);
   const ColumnResult column = measure_k0(column_setup(input), options, provenance_of(options, input, "column"), log);
   for (const std::string& line : totals_table(column.totals)) log.line(line);
   return column.status;

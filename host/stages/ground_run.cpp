@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "host/case/engine.hpp"
 #include "host/stages/ground_checkpoint.hpp"
 #include "host/stages/profiling.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 
@@ -17,6 +19,12 @@ StageSettings stage_settings(const Case& input) {
 RunLog open_log(const RunOptions& options) {
   std::filesystem::create_directories(options.folder);
   return {options.folder / "run.log", options.resume};
+}
+
+void log_engine(const Case& input, RunLog& log) {
+  if (!uses_engine(input.kind, input.material)) return;
+  log.line(engine_note(input.engine));
+  log.line(kernels::lanes_sentence(kernels::chosen_lanes()));
 }
 
 GroundRun::GroundRun(const RunOptions& options, const io::Provenance& provenance, const fem::Mesh& mesh,

@@ -25,6 +25,9 @@ struct StageSettings {
 /// Makes the folder of a run and opens its log there.
 [[nodiscard]] RunLog open_log(const RunOptions& options);
 
+/// Writes the preset of the engine and the set of its lanes to the log, where the case has grains.
+void log_engine(const Case& input, RunLog& log);
+
 class GroundRun {
  public:
   /// Starts the record in options.folder, or goes on with the record there. `mesh` and `log` must outlive the run.

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "fem/mesh_tunnel.hpp"
-#include "host/case/engine.hpp"
 #include "host/record/provenance.hpp"
 #include "host/stages/column.hpp"
 #include "host/stages/gravity.hpp"
@@ -58,7 +57,7 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   }
   log.line(fmt::format("{}: the mesh has {} elements and {} points of the material {}", input.name, mesh.n_elements(),
                        mesh.n_points(), to_string(input.material)));
-  if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
+  log_engine(input, log);
 
   const ColumnResult column = run_own_column(input, options, log);
   RunStatus status = column.status;

@@ -1,9 +1,9 @@
 #pragma once
 /// The value type of the engine. A value holds one number for each RVE of a group, one RVE per SIMD lane.
 ///
-/// `WideLane<real>` is as wide as the build's instruction set allows, `SingleLane<real>` holds one RVE; it serves
-/// unlike packings and the threads of a GPU. Every kernel is a template over this type and uses the operations of this
-/// file only. Lanes are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
+/// `SingleLane<real>` holds one RVE; it serves unlike packings, the threads of a GPU and processors without a wide set of
+/// instructions. `WideLane<real>` (lanes/wide_lane.hpp) is as wide as the instruction set allows for which a file of the
+/// lanes is compiled. Every kernel is a template over this type and uses the operations of this file only. Lanes are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
 
 #include <Kokkos_Core.hpp>
 #include <Kokkos_SIMD.hpp>
@@ -25,33 +25,10 @@ namespace abi = Kokkos::Experimental::simd_abi;
 template <class real>
 using SingleLane = Kokkos::Experimental::simd<real, abi::scalar>;
 
-/// The choice of a SIMD width for the build's instruction set. Kokkos' own `native` has only 8 floats.
-template <class real>
-struct WideAbi {
-  using type = abi::scalar;
-};
 #if defined(VOUSSOIR_AVX512)
-template <>
-struct WideAbi<float> {
-  using type = abi::avx512_fixed_size<16>;
-};
-template <>
-struct WideAbi<double> {
-  using type = abi::avx512_fixed_size<8>;
-};
-#elif defined(KOKKOS_ARCH_AVX2) && !defined(__CUDACC__)
-template <>
-struct WideAbi<float> {
-  using type = abi::avx2_fixed_size<8>;
-};
-template <>
-struct WideAbi<double> {
-  using type = abi::avx2_fixed_size<4>;
-};
+using Floats16 = Kokkos::Experimental::simd<float, abi::avx512_fixed_size<16>>;  // Kokkos' own `native` has only 8
+using Doubles8 = Kokkos::Experimental::simd<double, abi::avx512_fixed_size<8>>;
 #endif
-
-template <class real>
-using WideLane = Kokkos::Experimental::simd<real, typename WideAbi<real>::type>;
 
 template <class V>
 inline constexpr int lane_count = static_cast<int>(V::size());
@@ -94,9 +71,9 @@ template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V clamp_to(const V& x, const V& bound) {
 #if defined(VOUSSOIR_AVX512)  // one operation instead of three shortens the chain of every contact
   constexpr int smaller_magnitude_sign_of_first = 0b0010;
-  if constexpr (std::is_same_v<V, WideLane<float>>) {
+  if constexpr (std::is_same_v<V, Floats16>) {
     return V(_mm512_range_ps(static_cast<__m512>(x), static_cast<__m512>(bound), smaller_magnitude_sign_of_first));
-  } else if constexpr (std::is_same_v<V, WideLane<double>>) {
+  } else if constexpr (std::is_same_v<V, Doubles8>) {
     return V(_mm512_range_pd(static_cast<__m512d>(x), static_cast<__m512d>(bound), smaller_magnitude_sign_of_first));
   }
 #endif
@@ -108,12 +85,12 @@ template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V choose_if_zero(const V& x, const V& y, const V& z, const V& a, const V& b) {
 #if defined(VOUSSOIR_AVX512)  // two operations instead of five
   constexpr int any_of_three = 0b11111110;
-  if constexpr (std::is_same_v<V, WideLane<float>>) {
+  if constexpr (std::is_same_v<V, Floats16>) {
     const auto bits = [](const V& v) { return _mm512_castps_si512(static_cast<__m512>(v)); };
     const __m512 set = _mm512_castsi512_ps(_mm512_ternarylogic_epi32(bits(x), bits(y), bits(z), any_of_three));
     const __mmask16 zero = _mm512_cmp_ps_mask(set, _mm512_setzero_ps(), _CMP_EQ_OQ);
     return V(_mm512_mask_blend_ps(zero, static_cast<__m512>(b), static_cast<__m512>(a)));
-  } else if constexpr (std::is_same_v<V, WideLane<double>>) {
+  } else if constexpr (std::is_same_v<V, Doubles8>) {
     const auto bits = [](const V& v) { return _mm512_castpd_si512(static_cast<__m512d>(v)); };
     const __m512d set = _mm512_castsi512_pd(_mm512_ternarylogic_epi64(bits(x), bits(y), bits(z), any_of_three));
     const __mmask8 zero = _mm512_cmp_pd_mask(set, _mm512_setzero_pd(), _CMP_EQ_OQ);
@@ -128,7 +105,7 @@ KOKKOS_FORCEINLINE_FUNCTION V choose_if_zero(const V& x, const V& y, const V& z,
 template <class Mask>
 [[nodiscard]] inline unsigned bits_of(const Mask& mask) {
 #if defined(VOUSSOIR_AVX512)
-  if constexpr (std::is_same_v<Mask, WideLane<double>::mask_type>) return static_cast<__mmask8>(mask);
+  if constexpr (std::is_same_v<Mask, Doubles8::mask_type>) return static_cast<__mmask8>(mask);
 #endif
   unsigned bits = 0;
   for (unsigned l = 0; l < Mask::size(); ++l) bits |= (mask[l] ? 1U : 0U) << l;

@@ -3,6 +3,8 @@
 /// whether grains resist rolling. The law itself is chosen in contact/engine_law.hpp. Lanes and teams both use this
 /// choice.
 
+#include <type_traits>
+
 #include "kernels/contact/engine_law.hpp"
 #include "kernels/state/rve_batch.hpp"
 
@@ -12,11 +14,6 @@ namespace voussoir::kernels {
 template <class Type>
 struct Instance {
   using type = Type;
-};
-
-enum class Width {
-  one,    ///< one RVE by itself, for teams
-  widest  ///< one RVE a SIMD lane, as many as the processor has
 };
 
 /// Whether most RVEs have a packing of their own. Such RVEs would leave most lanes of a group empty, so that each of
@@ -29,15 +26,16 @@ auto choose_precision(Precision precision, const Body& body) {
   return precision == Precision::float32 ? body(Instance<float>{}) : body(Instance<double>{});
 }
 
-/// Calls body(Instance<Law>) with the law over the value type V that the batch and the precision ask for.
-template <Width width, class Body>
+/// Calls body(Instance<Law>) with the law over the value type that the batch and the precision ask for. `Value<real>` is
+/// SingleLane<real> for teams, and for lanes the value that holds as many RVEs as the instruction set allows.
+template <template <class> class Value, class Body>
 auto choose_instance(const RveBatch& batch, Precision precision, const Body& body) {
   const auto with = [&]<class V>(Instance<V>) {
     return rolls(batch) ? body(Instance<EngineLaw<V, true>>{}) : body(Instance<EngineLaw<V, false>>{});
   };
   return choose_precision(precision, [&]<class real>(Instance<real>) {
-    if constexpr (width == Width::widest) {
-      if (!mostly_alone(batch)) return with(Instance<WideLane<real>>{});
+    if constexpr (!std::is_same_v<Value<real>, SingleLane<real>>) {
+      if (!mostly_alone(batch)) return with(Instance<Value<real>>{});
     }
     return with(Instance<SingleLane<real>>{});
   });

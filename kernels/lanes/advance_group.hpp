@@ -8,7 +8,7 @@
 #include "kernels/lanes/restore.hpp"
 #include "kernels/lanes/sweep.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 template <class Run>
 [[nodiscard]] bool any_running(const Run& run) {
@@ -76,4 +76,4 @@ void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int
   finish(run, reports);
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -8,7 +8,7 @@
 #include "kernels/course/rve_report.hpp"
 #include "kernels/lanes/tangent.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// Sums over the contacts of all lanes at rest; histories are limited by the caps of the final positions.
 template <class Law, class V = typename Law::Value>
@@ -113,4 +113,4 @@ VOUSSOIR_OWN_SYMBOL void finish(Run& run, std::span<RveReport> reports) {
   store_contacts(run, stored);
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

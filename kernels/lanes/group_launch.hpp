@@ -12,7 +12,7 @@
 #include "kernels/course/flush_subnormals.hpp"
 #include "kernels/lanes/advance_group.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// Puts RVEs of one packing side by side, most work first, so that the lanes of a group end together and the longest
 /// group starts first.
@@ -97,4 +97,4 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
   return count_work<width>(batch, groups, reports);
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

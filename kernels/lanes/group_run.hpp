@@ -11,7 +11,7 @@
 #include "kernels/lanes/lists.hpp"
 #include "kernels/tangents/loading_tangent.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// Members of a group by lane; -1 is an empty lane. All share one packing.
 template <int width>
@@ -85,4 +85,4 @@ void move_positions(const Run& run, std::size_t l, std::vector<double>& position
   }
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -15,7 +15,7 @@
 #include "kernels/lanes/neighbours.hpp"
 #include "kernels/state/rve_batch.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// A contact with the history it carries.
 template <class Law>
@@ -169,4 +169,4 @@ void gather_lane(const GroupState<Law>& group, std::size_t lane, std::vector<Lis
   }
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

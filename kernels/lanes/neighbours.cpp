@@ -6,10 +6,10 @@
 #include <limits>
 #include <utility>
 
-#include "kernels/contact/lane.hpp"
+#include "kernels/lanes/wide_lane.hpp"
 #include "kernels/state/rve_batch.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 namespace {
 
@@ -224,4 +224,4 @@ void find_candidates(std::span<const double> positions, std::span<const double> 
   sort_keys(keys, radii.size());
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -7,7 +7,7 @@
 
 #include "kernels/lanes/group_run.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// The largest displacement and velocity of a group's grains, for each lane.
 template <class V>
@@ -93,4 +93,4 @@ void check_lists(Run& run, int step) {
   rebuild(run, stale);
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -6,7 +6,7 @@
 #include "kernels/lanes/group_run.hpp"
 #include "kernels/state/network.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// The contacts of lane `l`, whose cell and grains must be at the same step. They have normal forces only, since
 /// tangential forces are not known before the sweep.
@@ -54,4 +54,4 @@ void record_microstructures(Run& run, int step) {
   }
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -6,7 +6,7 @@
 
 #include "kernels/lanes/group_run.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// Makes the committed state of the lane's RVE the lane's reference. False, with the reason as status, for a lane that
 /// cannot run, which then stays empty.
@@ -78,4 +78,4 @@ VOUSSOIR_OWN_SYMBOL void restore(Run& run, const GroupMembers<static_cast<int>(R
   run.builder.build(run.group, run.lists, *run.packing);
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -11,7 +11,7 @@
 #include "kernels/contact/pair_forces.hpp"
 #include "kernels/course/regions.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// Fetches the part of a grain that the sweep will read, because the hardware cannot foresee its place in memory. This
 /// saves 4 % of a step.
@@ -69,4 +69,4 @@ VOUSSOIR_OWN_SYMBOL void sweep_pairs(GroupState<Law>& group, SweepSums<V>& sums)
   }
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -6,7 +6,7 @@
 
 #include "kernels/lanes/group_run.hpp"
 
-namespace voussoir::kernels::lanes {
+namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 /// Whether a static tangent `d` [Pa] is at most as stiff as the contact tangent. In exact arithmetic every static
 /// tangent is softer; a stiffer one shows that rounding has spoilt the iterations. False for NaN. The slack covers the
@@ -91,4 +91,4 @@ VOUSSOIR_OWN_SYMBOL void replace_tangents(Run& run, std::array<RveReport, Run::w
   }
 }
 
-}  // namespace voussoir::kernels::lanes
+}  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -12,7 +12,7 @@ using Space = Kokkos::DefaultExecutionSpace;
 template <class Drive>
 Work advance_with(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
                   std::span<RveReport> reports, std::span<const int> rves) {
-  return choose_instance<Width::one>(batch, settings.precision, [&]<class Law>(Instance<Law>) {
+  return choose_instance<SingleLane>(batch, settings.precision, [&]<class Law>(Instance<Law>) {
     return launch_teams<Law, Drive, Space>(batch, requests, settings, reports, rves);
   });
 }

@@ -17,7 +17,7 @@
 
 #include "host/case/load_case.hpp"
 #include "host/packing/packings.hpp"
-#include "kernels/contact/lane.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::kernels {
 namespace {
@@ -54,8 +54,7 @@ const host::PackedRve& gravel() {
 }
 
 std::size_t lanes_of(Precision precision) {
-  return static_cast<std::size_t>(precision == Precision::float32 ? lane_count<WideLane<float>>
-                                                                  : lane_count<WideLane<double>>);
+  return static_cast<std::size_t>(chosen_lanes().lanes->width(precision));
 }
 
 /// Pure shear of eps_q = `shear` whose major axis stands at `angle` to x, with `dilation` of every length.

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "kernels/contact/lane.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace {
 
@@ -27,8 +27,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   using namespace voussoir::kernels;
   benchmark::AddCustomContext("device", processor());
-  benchmark::AddCustomContext("lanes", std::to_string(lane_count<WideLane<float>>) + " floats, " +
-                                           std::to_string(lane_count<WideLane<double>>) + " doubles");
+  benchmark::AddCustomContext("lanes", lanes_sentence(chosen_lanes()));
   benchmark::AddCustomContext("backend", Kokkos::DefaultExecutionSpace::name());
   benchmark::AddCustomContext("concurrency", std::to_string(Kokkos::DefaultExecutionSpace().concurrency()));
   benchmark::RunSpecifiedBenchmarks();

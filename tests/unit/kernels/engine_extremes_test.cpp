@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "kernels/lanes/neighbours.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {

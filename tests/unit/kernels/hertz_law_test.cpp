@@ -9,13 +9,14 @@
 #include <vector>
 
 #include "kernels/lanes/group_launch.hpp"
+#include "kernels/lanes/wide_lane.hpp"
 #include "kernels/teams/team_launch.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {
 namespace {
 
-using Law = HertzLaw<WideLane<double>>;
+using Law = HertzLaw<lanes::WideLane<double>>;
 using HostSpace = Kokkos::DefaultHostExecutionSpace;
 
 constexpr double thickness = 0.1;  // [m]

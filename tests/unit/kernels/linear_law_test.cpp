@@ -9,9 +9,12 @@
 #include <limits>
 #include <vector>
 
+#include "kernels/lanes/wide_lane.hpp"
+
 namespace voussoir::kernels {
 namespace {
 
+using lanes::WideLane;
 using V = SingleLane<double>;
 using Law = LinearContactLaw<V, true>;
 

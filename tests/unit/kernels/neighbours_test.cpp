@@ -1,12 +1,11 @@
 // Candidate contacts against all pairs, for gradings from one size to a ratio of 20, in straight and sheared cells.
 
-#include "kernels/lanes/neighbours.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "kernels/isa/choose_lanes.hpp"
 #include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
@@ -61,10 +60,13 @@ TEST_P(Neighbours, AreThoseOfAllPairs) {
   const auto [ratio, shear, grains] = GetParam();
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Cloud cloud = random_cloud(grains, ratio, shear, seed);
-    std::vector<std::uint32_t> keys;
-    lanes::find_candidates(cloud.positions, cloud.radii, cloud.cell, 0.1, keys);
-    EXPECT_EQ(keys, all_pairs(cloud, 0.1));
-    EXPECT_FALSE(keys.empty());
+    for (const LaneSet* set : compiled_lanes()) {
+      if (set->isa > processor_set()) continue;
+      std::vector<std::uint32_t> keys;
+      set->find_candidates(cloud.positions, cloud.radii, cloud.cell, 0.1, keys);
+      EXPECT_EQ(keys, all_pairs(cloud, 0.1)) << name_of(set->isa);
+      EXPECT_FALSE(keys.empty());
+    }
   }
 }
 
