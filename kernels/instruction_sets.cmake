@@ -120,21 +120,24 @@ endif()
 # but that of its LaneSet are made local: the inline functions in it, compiled for wide instructions, would otherwise
 # compete with the same functions in other objects, and the linker keeps whichever it meets first.
 # `--force-group-allocation` makes ordinary functions of inline ones, which could not become local otherwise. The code gets
-# a section of its own, by which tests/regression/instruction_sets_test.py tells it from all other code. Code that runs before
-# main stays in the common section, so that this test finds wide instructions there.
+# a section of its own, by which tests/regression/instruction_sets_test.py tells it from all other code. The constructors of
+# static objects (Kokkos' headers have some) must not run before main on a processor without the instructions; they are
+# gathered between two symbols, and the set runs them when it is chosen (advance_lanes.cpp).
 function(voussoir_add_wide_set set)
   add_library(voussoir_lanes_${set} OBJECT ${ARGN})
   set_target_properties(voussoir_lanes_${set} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
   target_link_libraries(voussoir_lanes_${set} PRIVATE voussoir_flags voussoir_kernel_flags Kokkos::kokkos)
-  target_compile_options(voussoir_lanes_${set} PRIVATE -fno-signed-zeros)
+  # Without the last option g++ lets the whole program share the static objects of inline functions by their names.
+  target_compile_options(voussoir_lanes_${set} PRIVATE -fno-signed-zeros $<$<CXX_COMPILER_ID:GNU>:-fno-gnu-unique>)
+  target_compile_definitions(voussoir_lanes_${set} PRIVATE VOUSSOIR_JOINED)
   voussoir_set_flags(voussoir_lanes_${set} PRIVATE ${set})
 
   set(object "${CMAKE_CURRENT_BINARY_DIR}/lanes_${set}.o")
   set(script "${CMAKE_CURRENT_BINARY_DIR}/lanes_${set}.ld")
   file(CONFIGURE OUTPUT "${script}" CONTENT
 "SECTIONS {
-  .text.startup : { *(.text.startup .text.startup.* .text.exit .text.exit.*) }
   lanes_@set@ : { *(.text .text.*) }
+  lanes_@set@_starts : { voussoir_starts = .; *(.init_array .init_array.*); voussoir_starts_end = .; }
 }
 " @ONLY)
   add_custom_command(OUTPUT "${object}"

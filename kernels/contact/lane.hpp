@@ -1,13 +1,16 @@
 #pragma once
 /// The value type of the engine. A value holds one number for each RVE of a group, one RVE per SIMD lane.
 ///
-/// `SingleLane<real>` holds one RVE; it serves unlike packings, the threads of a GPU and processors without a wide set of
-/// instructions. `WideLane<real>` (lanes/wide_lane.hpp) is as wide as the instruction set allows for which a file of the
-/// lanes is compiled. Every kernel is a template over this type and uses the operations of this file only. Lanes are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
+/// `SingleLane<real>` holds one RVE; it serves unlike packings, the threads of a GPU and processors without a wide set
+/// of instructions. `WideLane<real>` (lanes/wide_lane.hpp) is as wide as the instruction set allows for which a file of
+/// the lanes is compiled. Every kernel is a template over this type and uses the operations of this file only. Lanes
+/// are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
 
 #include <Kokkos_Core.hpp>
 #include <Kokkos_SIMD.hpp>
 #include <type_traits>
+
+#include "kernels/contact/software_fma.hpp"
 
 #if defined(KOKKOS_ARCH_AVX512XEON) && !defined(__CUDACC__)
 #define VOUSSOIR_AVX512
@@ -42,7 +45,11 @@ template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V fused(const V& a, const V& b, const V& c) {
   if constexpr (V::size() == 1) {  // Kokkos 4.5's scalar fma rounds twice
     using real = real_of<V>;
+#if defined(__x86_64__) && !defined(__FMA__) && !defined(__CUDACC__)
+    return V(software_fma(static_cast<real>(a), static_cast<real>(b), static_cast<real>(c)));
+#else
     return V(Kokkos::fma(static_cast<real>(a), static_cast<real>(b), static_cast<real>(c)));
+#endif
   } else {
     return Kokkos::fma(a, b, c);
   }

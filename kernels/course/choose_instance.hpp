@@ -26,8 +26,8 @@ auto choose_precision(Precision precision, const Body& body) {
   return precision == Precision::float32 ? body(Instance<float>{}) : body(Instance<double>{});
 }
 
-/// Calls body(Instance<Law>) with the law over the value type that the batch and the precision ask for. `Value<real>` is
-/// SingleLane<real> for teams, and for lanes the value that holds as many RVEs as the instruction set allows.
+/// Calls body(Instance<Law>) with the law over the value type that the batch and the precision ask for. `Value<real>`
+/// is SingleLane<real> for teams, and for lanes the value that holds as many RVEs as the instruction set allows.
 template <template <class> class Value, class Body>
 auto choose_instance(const RveBatch& batch, Precision precision, const Body& body) {
   const auto with = [&]<class V>(Instance<V>) {

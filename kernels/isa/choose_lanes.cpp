@@ -1,5 +1,6 @@
 #include "kernels/isa/choose_lanes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <stdexcept>
@@ -93,7 +94,15 @@ std::string why_not(InstructionSet isa) {
   return {};
 }
 
-const LaneChoice& choose_lanes(std::optional<InstructionSet> wish) { return current().emplace(choose(wish)); }
+const LaneChoice& choose_lanes(std::optional<InstructionSet> wish) {
+  static std::vector<const LaneSet*> begun;
+  const LaneChoice& choice = current().emplace(choose(wish));
+  if (std::find(begun.begin(), begun.end(), choice.lanes) == begun.end()) {
+    choice.lanes->begin();
+    begun.push_back(choice.lanes);
+  }
+  return choice;
+}
 
 const LaneChoice& chosen_lanes() { return current() ? *current() : choose_lanes({}); }
 

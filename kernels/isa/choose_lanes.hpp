@@ -1,7 +1,7 @@
 #pragma once
 /// The choice of the lanes' instruction set, once for the whole process: a wish of the caller comes first, then the
-/// environment variable VOUSSOIR_ISA, then the largest set that the program holds and the processor takes. All sets give
-/// the same bits.
+/// environment variable VOUSSOIR_ISA, then the largest set that the program holds and the processor takes. All sets
+/// give the same bits.
 
 #include <optional>
 #include <span>

@@ -18,13 +18,13 @@ bool says(unsigned leaf, unsigned reg, unsigned bit) {
   return __get_cpuid(leaf, &r[0], &r[1], &r[2], &r[3]) != 0 && ((r[reg] >> bit) & 1U) != 0;
 }
 
-/// The compiler's own questions also ask whether the operating system keeps the wide registers. clang 14 knows no names for
-/// the last three features.
+/// The compiler's own questions also ask whether the operating system keeps the wide registers. clang 14 knows no names
+/// for the last three features.
 bool has_v3() {
   constexpr unsigned ecx = 2;
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
          __builtin_cpu_supports("bmi2") && says(0x80000001U, ecx, 5) &&  // lzcnt
-         says(1, ecx, 22) && says(1, ecx, 29);                            // movbe, f16c
+         says(1, ecx, 22) && says(1, ecx, 29);                           // movbe, f16c
 }
 
 bool has_v4() {

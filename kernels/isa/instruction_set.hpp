@@ -5,8 +5,8 @@
 
 namespace voussoir::kernels {
 
-/// `scalar` runs on every processor of the build's architecture, on x86-64 on its baseline. `v3` and `v4` are the levels of
-/// x86-64 of its psABI: AVX2 with fused operations, and AVX-512.
+/// `scalar` runs on every processor of the build's architecture, on x86-64 on its baseline. `v3` and `v4` are the
+/// levels of x86-64 of its psABI: AVX2 with fused operations, and AVX-512.
 enum class InstructionSet { scalar, v3, v4 };
 
 /// The name that the key engine.isa has for a set.

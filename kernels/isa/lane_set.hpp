@@ -20,6 +20,8 @@ struct LaneSet {
   InstructionSet isa;
   int floats, doubles;  ///< RVEs side by side
 
+  void (*begin)();  ///< to be called once before the others: makes the static objects of the set
+
   /// Advance some RVEs as `kernels::advance` (advance_rves.hpp) does.
   Work (*advance_given)(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
                         std::span<RveReport> reports, std::span<const int> rves);

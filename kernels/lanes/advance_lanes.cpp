@@ -5,9 +5,25 @@
 #include "kernels/lanes/group_launch.hpp"
 #include "kernels/lanes/wide_lane.hpp"
 
+#if defined(VOUSSOIR_JOINED)
+/// The constructors of static objects of this set, between two symbols that kernels/instruction_sets.cmake makes.
+extern "C" {
+using VoussoirStart = void (*)();
+extern const VoussoirStart voussoir_starts[];
+extern const VoussoirStart voussoir_starts_end[];
+}
+#endif
+
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 namespace {
+
+/// Nothing is to be done for the plain set, whose constructors run before main.
+void begin() {
+#if defined(VOUSSOIR_JOINED)
+  for (const VoussoirStart* start = voussoir_starts; start != voussoir_starts_end; ++start) (*start)();
+#endif
+}
 
 template <class Drive>
 Work advance(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
@@ -30,6 +46,7 @@ extern "C" const LaneSet VOUSSOIR_NAME_OF_SET(VOUSSOIR_LANES) = {
     .isa = lanes::own_set,
     .floats = lane_count<lanes::WideLane<float>>,
     .doubles = lane_count<lanes::WideLane<double>>,
+    .begin = lanes::begin,
     .advance_given = lanes::advance<StrainDrive>,
     .advance_servo = lanes::advance<ServoDrive>,
     .find_candidates = lanes::find_candidates,

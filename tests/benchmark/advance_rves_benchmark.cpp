@@ -53,9 +53,7 @@ const host::PackedRve& gravel() {
   return rve;
 }
 
-std::size_t lanes_of(Precision precision) {
-  return static_cast<std::size_t>(chosen_lanes().lanes->width(precision));
-}
+std::size_t lanes_of(Precision precision) { return static_cast<std::size_t>(chosen_lanes().lanes->width(precision)); }
 
 /// Pure shear of eps_q = `shear` whose major axis stands at `angle` to x, with `dilation` of every length.
 Mat2 sheared(double angle, double shear, double dilation) {

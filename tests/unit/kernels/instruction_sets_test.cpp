@@ -96,7 +96,8 @@ std::vector<StrainRequest> motions(std::size_t n) {
   std::vector<StrainRequest> requests(n);
   for (std::size_t k = 0; k < n; ++k) {
     const double e = 2e-3 * std::cos(1.0 * static_cast<double>(k));
-    requests[k] = {.f_rel = {1 + e, 5 * e, -e, 1 - 2 * e}, .strain_steps = 60 + 7 * static_cast<int>(k), .hold_cap = 200};
+    requests[k] = {
+        .f_rel = {1 + e, 5 * e, -e, 1 - 2 * e}, .strain_steps = 60 + 7 * static_cast<int>(k), .hold_cap = 200};
   }
   requests[3].f_rel = {1.2, 0, 0, 1.2};
   requests[4].f_rel = {0.5, 0, 0, 0.5};
@@ -104,7 +105,8 @@ std::vector<StrainRequest> motions(std::size_t n) {
 }
 
 TEST_P(InstructionSets, GiveTheSameBitsForGivenMotions) {
-  for (const TangentKind tangent : {TangentKind::contact, TangentKind::elastic, TangentKind::static_, TangentKind::loading}) {
+  for (const TangentKind tangent :
+       {TangentKind::contact, TangentKind::elastic, TangentKind::static_, TangentKind::loading}) {
     SCOPED_TRACE(name_of(tangent));
     expect_same_bits([&] {
       Answers a{clones(dense_, 19), std::vector<RveReport>(19), {}};

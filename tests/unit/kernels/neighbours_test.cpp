@@ -62,6 +62,7 @@ TEST_P(Neighbours, AreThoseOfAllPairs) {
     const Cloud cloud = random_cloud(grains, ratio, shear, seed);
     for (const LaneSet* set : compiled_lanes()) {
       if (set->isa > processor_set()) continue;
+      choose_lanes(set->isa);
       std::vector<std::uint32_t> keys;
       set->find_candidates(cloud.positions, cloud.radii, cloud.cell, 0.1, keys);
       EXPECT_EQ(keys, all_pairs(cloud, 0.1)) << name_of(set->isa);
