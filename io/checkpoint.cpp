@@ -184,7 +184,9 @@ CheckpointStore::CheckpointStore(std::filesystem::path folder, std::string finge
     : folder_(std::move(folder)), fingerprint_(std::move(fingerprint)) {}
 
 void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
-  fs::create_directory(folder_);  // not its parent: where the folder of the run has vanished, saving has to fail
+  if (!fs::exists(folder_)) {
+    fs::create_directory(folder_);  // not its parent: where the folder of the run has vanished, saving has to fail
+  }
   HashedWriter writer(checkpoint_path(folder_, increment));
   writer.text(magic);
   writer.text(fingerprint_);

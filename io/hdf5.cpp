@@ -92,8 +92,8 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   Hdf5File file(-1, path);
   const Handle access(file.checked(H5Pcreate(H5P_FILE_ACCESS), "create the file"), H5Pclose);
   file.checked(H5Pset_fapl_core(access, memory_step, 0), "create the file");
-  // HDF5 first tries to open an existing file of this name, which would be read into memory in vain.
-  const std::string name = path.string() + " in memory";
+  // HDF5 first tries to open an existing file, which would be read into memory in vain; no file can have this name.
+  const std::string name = "/dev/null/" + path.filename().string();
   file.file_ = file.checked(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), "create the file");
   return file;
 }
