@@ -1,7 +1,7 @@
 // A library to be preloaded into the program (LD_PRELOAD): it makes the n-th change of a file system fail. Counted are
 // the calls that open a file for writing, write, sync, truncate, rename, remove and make folders, for paths that
 // match a pattern. Environment:
-//   DISK_FAULTS_PATTERN  a pattern of fnmatch for absolute paths; "*" stands for slashes too
+//   DISK_FAULTS_PATTERN  a pattern of fnmatch for absolute paths; "*" stands for slashes too, "@(A|B)" for either
 //   DISK_FAULTS_AT       number of the call that fails, from 1; 0 or nothing: no call fails
 //   DISK_FAULTS_ERRNO    the reason, as a number
 //   DISK_FAULTS_MODE     "once", or "on": every later call fails too, except those that remove files, as on a full disk;
@@ -59,7 +59,7 @@ Function* real(const char* name) {
 }
 
 bool matches(const std::string& path) {
-  return !settings().pattern.empty() && fnmatch(settings().pattern.c_str(), path.c_str(), 0) == 0;
+  return !settings().pattern.empty() && fnmatch(settings().pattern.c_str(), path.c_str(), FNM_EXTMATCH) == 0;
 }
 
 std::string absolute(const char* path) {

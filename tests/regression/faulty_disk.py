@@ -33,7 +33,7 @@ SPECIMEN = ["material=linear_elastic", "biaxial_bvp.strain=2 %", "biaxial_bvp.st
 TEST = ['biaxial.pressures=["100 kPa"]', "biaxial.strain=2 %", "biaxial.inertial_number=1e-3", "packing.seeds=[1, 2]"]
 SEARCH = [
     "packing.seeds=[1]",
-    "calibrate.rounds=1",
+    "calibrate.rounds=0",
     "calibrate.confirm_grains=60",
     "calibrate.confirm_seeds=[1]",
     'biaxial.pressures=["100 kPa"]',
