@@ -2,87 +2,170 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <cstring>
-#include <fstream>
 #include <stdexcept>
-#include <string>
-#include <vector>
+#include <system_error>
+#include <utility>
 
 namespace voussoir::io {
 
 namespace {
 
-void sync(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  // EINVAL: a file system that cannot sync (some network and FUSE mounts); there the rename alone must suffice.
-  const bool good = file >= 0 && (::fsync(file) == 0 || errno == EINVAL);
-  const int reason = errno;
-  if (file >= 0) {
-    ::close(file);
-  }
-  if (!good) {
-    throw std::runtime_error(fmt::format("{}: cannot be synced to disk: {}", path.string(), std::strerror(reason)));
-  }
+constexpr std::size_t buffer_size = std::size_t{1} << 18;
+constexpr int most_names = 100;
+
+std::string text_of(int reason) {
+  const std::string text = std::generic_category().message(reason);
+  return reason == EFBIG ? text + ", the limit is that of `ulimit -f` or of the file system" : text;
 }
 
-/// Whether another process that still runs on this machine is writing the temporary file NAME.PID.tmp.
-bool is_being_written(const std::filesystem::path& temporary) {
-  const std::string number = temporary.stem().extension().string();  // ".PID"
-  pid_t process = 0;
-  const char* const end = number.data() + number.size();
-  const bool named = number.size() > 1 &&
-                     std::from_chars(number.data() + 1, end, process) == std::from_chars_result{end, std::errc{}};
-  if (!named || process <= 0 || process == ::getpid()) {
-    return false;
+/// A failure of fsync or of a lock that says that the file system lacks it, as some network and FUSE mounts do.
+bool is_missing_feature(int reason) {
+  return reason == EINVAL || reason == ENOSYS || reason == ENOTSUP || reason == EOPNOTSUPP || reason == ENOLCK;
+}
+
+/// Syncs an open file or folder; returns 0 or the reason of the failure. Where a file system cannot sync, the rename
+/// alone must suffice.
+int sync(int file) { return ::fsync(file) == 0 || is_missing_feature(errno) ? 0 : errno; }
+
+int sync_folder(const std::filesystem::path& folder) {
+  const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) {
+    return errno;
   }
-  return ::kill(process, 0) == 0 || errno == EPERM;  // EPERM: it lives, but belongs to another user
+  const int reason = sync(file);
+  ::close(file);
+  return reason;
+}
+
+/// Tries to lock a whole file without waiting; returns 0 or the reason of the failure. The lock belongs to the open
+/// file and not to the process, so that two writers of one process differ too, and it goes with its owner.
+int lock(int file) {
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  whole.l_whence = SEEK_SET;
+  return ::fcntl(file, F_OFD_SETLK, &whole) == 0 ? 0 : errno;
 }
 
 }  // namespace
 
-std::filesystem::path temporary_name(const std::filesystem::path& target) {
-  return fmt::format("{}.{}.tmp", target.string(), ::getpid());
+AtomicFile::AtomicFile(std::filesystem::path target) : target_(std::move(target)) {
+  // Two processes may have the same number on two hosts or in two containers that share a folder, and a killed process
+  // may have had the number of this one.
+  for (int k = 0; k < most_names; ++k) {
+    const std::string further = k == 0 ? "" : fmt::format("-{}", k);
+    if (open_as(fmt::format("{}.{}{}.tmp", target_.string(), ::getpid(), further))) {
+      return;
+    }
+  }
+  fail(EEXIST);
 }
 
-void publish(const std::filesystem::path& target) {
-  const auto temporary = temporary_name(target);
-  sync(temporary);
-  std::error_code failure;
-  std::filesystem::rename(temporary, target, failure);
-  if (failure) {
-    throw std::runtime_error(fmt::format("{}: cannot be renamed to {}: {}", temporary.string(),
-                                         target.filename().string(), failure.message()));
+AtomicFile::~AtomicFile() {
+  if (file_ >= 0) {
+    ::unlink(temporary_.c_str());
+    ::close(file_);
   }
-  const auto folder = target.parent_path();
-  sync(folder.empty() ? std::filesystem::path(".") : folder);
+}
+
+/// Creates and locks the temporary file; false where this name is not to be had.
+bool AtomicFile::open_as(const std::filesystem::path& name) {
+  const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (file < 0) {
+    const int reason = errno;
+    if (reason == EEXIST) {
+      return false;
+    }
+    fail(reason);
+  }
+  const int locked = lock(file);
+  struct stat status {};
+  // Between the two calls a cleaner may have taken the file for a leftover.
+  const bool lost = (locked != 0 && !is_missing_feature(locked)) || ::fstat(file, &status) != 0 || status.st_nlink == 0;
+  if (lost) {
+    ::close(file);
+    return false;
+  }
+  temporary_ = name;
+  file_ = file;
+  return true;
+}
+
+void AtomicFile::fail(int reason) {
+  throw std::runtime_error(fmt::format("{}: cannot be written: {}", target_.string(), text_of(reason)));
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  if (buffer_.size() + bytes.size() > buffer_size) {
+    flush();
+  }
+  if (bytes.size() >= buffer_size) {
+    write_through(bytes);
+  } else {
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+  }
+}
+
+void AtomicFile::flush() {
+  write_through(buffer_);
+  buffer_.clear();
+}
+
+void AtomicFile::write_through(std::span<const std::byte> bytes) {
+  constexpr std::size_t most = std::size_t{1} << 30;  // Linux writes no more than 2 GB in one call
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file_, bytes.data(), std::min(bytes.size(), most));
+    if (written > 0) {
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    } else if (written == 0 || errno != EINTR) {
+      fail(written == 0 ? EIO : errno);
+    }
+  }
+}
+
+void AtomicFile::publish() {
+  flush();
+  if (const int reason = sync(file_)) {
+    fail(reason);
+  }
+  // The file is renamed before it is closed, because its lock ends there.
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    fail(errno);
+  }
+  if (::close(std::exchange(file_, -1)) != 0 && errno != EINTR) {
+    fail(errno);
+  }
+  if (const int reason = sync_folder(target_.parent_path())) {
+    fail(reason);
+  }
 }
 
 void write_text(const std::filesystem::path& target, const std::string& text) {
-  {
-    std::ofstream file(temporary_name(target), std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) {
-      throw std::runtime_error(fmt::format("{}: cannot be written", temporary_name(target).string()));
-    }
-  }
-  publish(target);
+  AtomicFile file(target);
+  file.write(std::as_bytes(std::span(text.data(), text.size())));
+  file.publish();
 }
 
 void remove_leftovers(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> leftovers;
+  std::vector<std::filesystem::path> temporaries;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".tmp" && !is_being_written(entry.path())) {
-      leftovers.push_back(entry.path());
+    if (entry.path().extension() == ".tmp" && entry.symlink_status().type() == std::filesystem::file_type::regular) {
+      temporaries.push_back(entry.path());
     }
   }
-  for (const auto& path : leftovers) {
-    std::filesystem::remove(path);
+  for (const auto& path : temporaries) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) {
+      continue;  // its writer has renamed it by now, or it belongs to another user
+    }
+    if (lock(file) == 0) {
+      ::unlink(path.c_str());
+    }
+    ::close(file);
   }
 }
 

@@ -39,26 +39,25 @@ std::vector<T> values_of(const std::string& name, const std::vector<std::byte>& 
 /// Writes pieces and keeps the checksum of all of them.
 class HashedWriter {
  public:
-  explicit HashedWriter(const fs::path& path) : file_(path, std::ios::binary) {}
+  explicit HashedWriter(const fs::path& target) : file_(target) {}
 
   void bytes(std::span<const std::byte> piece) {
     sum_.add(piece);
-    file_.write(reinterpret_cast<const char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
+    file_.write(piece);
   }
   void integer(std::uint64_t value) { bytes(std::as_bytes(std::span(&value, 1))); }
   void text(std::string_view value) {
     integer(value.size());
     bytes(std::as_bytes(std::span(value.data(), value.size())));
   }
-  /// Ends the file with the checksum; false when anything could not be written.
-  bool finish() {
+  /// Ends the file with the checksum and gives it its name.
+  void publish() {
     integer(sum_.value());
-    file_.close();
-    return !file_.fail();
+    file_.publish();
   }
 
  private:
-  std::ofstream file_;
+  AtomicFile file_;
   Checksum sum_;
 };
 
@@ -185,9 +184,10 @@ CheckpointStore::CheckpointStore(std::filesystem::path folder, std::string finge
     : folder_(std::move(folder)), fingerprint_(std::move(fingerprint)) {}
 
 void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
-  fs::create_directories(folder_);
-  const auto target = checkpoint_path(folder_, increment);
-  HashedWriter writer(temporary_name(target));
+  if (!fs::exists(folder_)) {
+    fs::create_directory(folder_);  // not its parent: where the folder of the run has vanished, saving has to fail
+  }
+  HashedWriter writer(checkpoint_path(folder_, increment));
   writer.text(magic);
   writer.text(fingerprint_);
   writer.integer(checkpoint.blobs().size());
@@ -196,20 +196,16 @@ void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
     writer.integer(bytes.size());
     writer.bytes(bytes);
   }
-  if (!writer.finish()) {
-    fs::remove(temporary_name(target));
-    throw std::runtime_error(fmt::format("{}: cannot be written (disk full?)", target.string()));
-  }
-  publish(target);
+  writer.publish();
 
-  auto present = list(folder_);
   // Checkpoints with a higher number were written before the run was resumed from an earlier state, and are not part of
   // its history any more.
-  present.erase(present.find(increment));
-  const auto previous = present.lower_bound(increment);
-  for (auto it = present.begin(); it != present.end(); ++it) {
-    if (it->first > increment || previous == present.begin() || it != std::prev(previous)) {
-      fs::remove(it->second);
+  const auto present = list(folder_);
+  const auto here = present.lower_bound(increment);
+  const int previous = here == present.begin() ? increment : std::prev(here)->first;
+  for (const auto& [number, path] : present) {
+    if (number != increment && number != previous) {
+      fs::remove(path);
     }
   }
 }

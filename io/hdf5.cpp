@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "io/atomic_file.hpp"
+
 namespace voussoir::io {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
@@ -31,6 +33,8 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+constexpr std::size_t memory_step = std::size_t{1} << 20;  ///< by which a file in memory grows [bytes]
+
 /// HDF5 prints its error stack by default; here the innermost entry becomes part of an exception instead.
 void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
@@ -42,6 +46,7 @@ std::string innermost_reason() {
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, take, &reason);
   H5Eclear2(H5E_DEFAULT);
+  std::replace(reason.begin(), reason.end(), '\n', ' ');  // a date within it ends in one
   return reason;
 }
 
@@ -85,7 +90,11 @@ Hdf5File::Id Hdf5File::checked(Id id, const std::string& what) const {
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   be_quiet();
   Hdf5File file(-1, path);
-  file.file_ = file.checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), "create the file");
+  const Handle access(file.checked(H5Pcreate(H5P_FILE_ACCESS), "create the file"), H5Pclose);
+  file.checked(H5Pset_fapl_core(access, memory_step, 0), "create the file");
+  // HDF5 first tries to open an existing file, which would be read into memory in vain; no file can have this name.
+  const std::string name = "/dev/null/" + path.filename().string();
+  file.file_ = file.checked(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), "create the file");
   return file;
 }
 
@@ -96,9 +105,14 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
   return file;
 }
 
-void Hdf5File::close() {
-  const Id file = std::exchange(file_, -1);
-  checked(H5Fclose(file), "finish the file");
+void Hdf5File::publish() {
+  checked(H5Fflush(file_, H5F_SCOPE_GLOBAL), "finish the file");
+  std::vector<std::byte> image(static_cast<std::size_t>(checked(H5Fget_file_image(file_, nullptr, 0), "finish the file")));
+  checked(H5Fget_file_image(file_, image.data(), image.size()), "finish the file");
+  checked(H5Fclose(std::exchange(file_, -1)), "finish the file");
+  AtomicFile target(path_);
+  target.write(image);
+  target.publish();
 }
 
 void Hdf5File::write_array(const std::string& name, const void* values, std::size_t count,

@@ -19,6 +19,9 @@ struct Array {
 
 /// An open file; closed by the destructor. Objects are named by paths ("/mesh/coordinates"); groups on the way to a new
 /// object are made as needed.
+///
+/// A new file is made in memory, and `publish` gives its bytes to an AtomicFile. HDF5 itself never writes to a disk,
+/// because after a failed write it cannot close its file and ends in a segmentation fault when the program exits.
 class Hdf5File {
  public:
   [[nodiscard]] static Hdf5File create(const std::filesystem::path& path);
@@ -27,8 +30,8 @@ class Hdf5File {
   Hdf5File& operator=(Hdf5File&&) = delete;
   ~Hdf5File();
 
-  /// Flushes and closes the file. Unlike the destructor it reports failures.
-  void close();
+  /// Writes a file that was created, completely or not at all, and closes it. Without this call nothing is written.
+  void publish();
 
   void write(const std::string& name, std::span<const double> values, const std::vector<std::size_t>& shape,
              const std::string& unit);

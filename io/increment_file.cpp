@@ -8,7 +8,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "io/atomic_file.hpp"
 #include "io/hdf5.hpp"
 
 namespace voussoir::io {
@@ -137,7 +136,7 @@ RveSnapshot read_snapshot(const Hdf5File& file, const std::string& name) {
 void write_increment_file(const std::filesystem::path& path, const MeshData& mesh, const IncrementInfo& info,
                           const std::vector<Field>& fields, const std::vector<RveSnapshot>& snapshots,
                           const std::vector<double>& coordinates) {
-  Hdf5File file = Hdf5File::create(temporary_name(path));
+  Hdf5File file = Hdf5File::create(path);
   write_info(file, info);
   if (!coordinates.empty()) {
     file.write("/mesh/coordinates", coordinates, {mesh.nodes(), 2}, "m");
@@ -151,8 +150,7 @@ void write_increment_file(const std::filesystem::path& path, const MeshData& mes
   for (const RveSnapshot& snapshot : snapshots) {
     write_snapshot(file, snapshot);
   }
-  file.close();
-  publish(path);
+  file.publish();
 }
 
 IncrementInfo read_increment_info(const std::filesystem::path& path) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "io/atomic_file.hpp"
 #include "io/hdf5.hpp"
 
 namespace voussoir::io {
@@ -92,10 +91,9 @@ void save_packing(const std::filesystem::path& path, const Packing& packing) {
   if (path.has_parent_path()) {
     std::filesystem::create_directories(path.parent_path());
   }
-  Hdf5File file = Hdf5File::create(temporary_name(path));
+  Hdf5File file = Hdf5File::create(path);
   write_packing(file, packing);
-  file.close();
-  publish(path);
+  file.publish();
 }
 
 Packing load_packing(const std::filesystem::path& path) {
@@ -146,7 +144,7 @@ std::optional<Packing> find_packing(const std::filesystem::path& folder, const s
     if (label != packing.labels.end() && label->second == recipe_fingerprint) {
       return packing;
     }
-  } catch (const std::runtime_error&) {
+  } catch (const std::exception&) {
     // A cache may be damaged without harm: the packing is made again and replaces it.
   }
   return std::nullopt;

@@ -155,8 +155,13 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& folder, Provenanc
       fs::remove(path);
       continue;
     }
-    writer.increments_.push_back(read_increment_info(path));
-    writer.grids_.push_back(xdmf_grid(path, writer.mesh_, writer.increments_.back()));
+    try {
+      writer.increments_.push_back(read_increment_info(path));
+      writer.grids_.push_back(xdmf_grid(path, writer.mesh_, writer.increments_.back()));
+    } catch (const std::exception& damage) {
+      throw std::runtime_error(std::string(damage.what()) +
+                               "; where this file is removed, --resume goes on without this increment's results");
+    }
   }
   if (writer.mesh_.nodes() == 0) {
     fs::remove(folder / "result.xdmf");
@@ -215,8 +220,7 @@ void ResultWriter::set_table(const std::string& name, std::vector<TableColumn> c
 }
 
 void ResultWriter::write_index() const {
-  const auto target = folder_ / "run.h5";
-  Hdf5File file = Hdf5File::create(temporary_name(target));
+  Hdf5File file = Hdf5File::create(folder_ / "run.h5");
   write_provenance(file, provenance_);
   if (mesh_.nodes() > 0) {
     write_mesh(file, mesh_);
@@ -228,8 +232,7 @@ void ResultWriter::write_index() const {
   }
   write_increment_table(file, increments_);
   write_tables(file, tables_);
-  file.close();
-  publish(target);
+  file.publish();
   if (mesh_.nodes() > 0) {
     write_text(folder_ / "result.xdmf", xdmf_document(grids_));
   }

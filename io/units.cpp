@@ -20,12 +20,17 @@ constexpr std::array table{
     Unit{"cm", Dimension::length, 1e-2},
     Unit{"mm", Dimension::length, 1e-3},
     Unit{"km", Dimension::length, 1e3},
+    Unit{"um", Dimension::length, 1e-6, false},
+    Unit{"\u00b5m", Dimension::length, 1e-6, false},  // the micro sign
+    Unit{"\u03bcm", Dimension::length, 1e-6, false},  // the Greek letter, which looks the same
     Unit{"Pa", Dimension::pressure, 1},
     Unit{"kPa", Dimension::pressure, 1e3},
     Unit{"MPa", Dimension::pressure, 1e6},
     Unit{"GPa", Dimension::pressure, 1e9},
     Unit{"kN/m2", Dimension::pressure, 1e3},
     Unit{"MN/m2", Dimension::pressure, 1e6},
+    Unit{"N/m2", Dimension::pressure, 1, false},
+    Unit{"N/mm2", Dimension::pressure, 1e6, false},
     Unit{"N/m3", Dimension::unit_weight, 1},
     Unit{"kN/m3", Dimension::unit_weight, 1e3},
     Unit{"MN/m3", Dimension::unit_weight, 1e6},
@@ -36,14 +41,14 @@ constexpr std::array table{
     Unit{"deg", Dimension::angle, degree},
 };
 
-/// For messages: "pressure in Pa, kPa, MPa".
+/// For messages: "pressure in Pa, kPa, MPa". Other spellings of the same unit are left out.
 std::string expectation(Dimension dimension) {
   if (dimension == Dimension::none) {
     return "a plain number or \"%\"";
   }
   std::string text;
   for (const Unit& unit : table) {
-    if (unit.dimension == dimension) {
+    if (unit.dimension == dimension && (unit.written || unit.symbol == "um")) {
       text += fmt::format("{}{}", text.empty() ? "" : ", ", unit.symbol);
     }
   }
@@ -133,7 +138,7 @@ std::string format_quantity(double in_si, Dimension dimension) {
   for (const Unit& unit : table) {
     const double written = in_si / unit.factor;
     // A division may lose the last bit; a unit for which it does is passed over. The unit of factor 1 loses nothing.
-    if (unit.dimension == dimension && written * unit.factor == in_si) {
+    if (unit.written && unit.dimension == dimension && written * unit.factor == in_si) {
       const std::string candidate = joined(shortest(written), unit.symbol);
       if (best.empty() || candidate.size() < best.size()) {
         best = candidate;

@@ -22,6 +22,9 @@ struct Unit {
   std::string_view symbol;
   Dimension dimension;
   double factor;
+  /// False for a unit that is read only. format_quantity chooses the shortest text, so a further unit would change how
+  /// resolved cases are written, and with them the fingerprints of results that exist.
+  bool written = true;
 };
 
 /// Text that is no quantity of the wanted dimension; the message is a sentence without a place in a file.

@@ -169,6 +169,7 @@ int run_probe(const Case& input, const RunOptions& options) {
   std::printf("%s\n", engine_note(input.engine).c_str());
   std::vector<PackedRve> rves = packings_to_probe(input.soil, input.packing, input.probe.pressure);
   std::filesystem::create_directories(options.folder);
+  io::remove_leftovers(options.folder);
   Tables tables;
   int code = exit_ok;
   const auto note_failure = [&code](const std::string& failure) {

@@ -12,6 +12,7 @@
 #include "host/packing/bias.hpp"
 #include "host/packing/recipe.hpp"
 #include "host/packing/stored_packing.hpp"
+#include "io/atomic_file.hpp"
 #include "io/hash.hpp"
 #include "io/packing_file.hpp"
 
@@ -30,7 +31,6 @@ std::string table_line(const PackedRve& rve) {
 void keep(const SoilCase& soil, const PackingCase& recipe, const PackedRve& rve) {
   const std::string text = recipe_text(soil, recipe, rve.seed);
   const std::string fingerprint = io::fingerprint_of(text);
-  std::filesystem::create_directories(recipe.folder);
   io::save_packing(io::packing_path(recipe.folder, fingerprint), stored_packing(rve, text, fingerprint));
 }
 
@@ -83,6 +83,8 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
       note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe are not used)");
     return {rve};
   }
+  std::filesystem::create_directories(recipe.folder);
+  io::remove_leftovers(recipe.folder);
   std::vector<std::int64_t> missing;
   for (const std::int64_t seed : seeds) {
     if (!find(soil, recipe, seed)) missing.push_back(seed);

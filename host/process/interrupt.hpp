@@ -1,10 +1,11 @@
 #pragma once
-/// A request to stop, from Ctrl-C (SIGINT), SIGTERM or SIGUSR1: the run ends after the current increment, with a
-/// checkpoint.
+/// A request to stop, from Ctrl-C (SIGINT), SIGTERM, SIGHUP or SIGUSR1: the run ends after the current increment, with
+/// a checkpoint.
 
 namespace voussoir::host {
 
-/// From now on these signals set a flag instead of ending the process. A second signal ends the process at once.
+/// From now on these signals set a flag instead of ending the process. A second signal ends the process at once, except
+/// a second SIGHUP. Where SIGHUP is ignored, as under nohup, it stays ignored.
 void catch_interrupts();
 
 /// True once a signal has arrived.

@@ -5,12 +5,14 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "host/process/build_info.hpp"
 #include "host/process/exit_code.hpp"
+#include "host/process/standard_streams.hpp"
 #include "host/program/commands.hpp"
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
@@ -95,7 +97,9 @@ int run_command_line(int argc, char** argv) {
     try {
       app.parse(argc, argv);
     } catch (const CLI::Success& help) {
-      return app.exit(help);
+      std::ostringstream text;
+      app.exit(help, text, text);
+      return print_answer(text.str());
     } catch (const CLI::ParseError& error) {
       if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
         return complain(exit_input, "unknown command " + std::string(argv[1]) + " (see --help)");

@@ -5,6 +5,7 @@
 #include <Kokkos_Core.hpp>
 #include <cstdio>
 #include <stdexcept>
+#include <string>
 
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
@@ -12,6 +13,7 @@
 #include "host/estimate/work.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
+#include "host/process/standard_streams.hpp"
 #include "host/program/run_case.hpp"
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
@@ -21,14 +23,15 @@
 namespace voussoir::host {
 namespace {
 
-void print_increments(const std::vector<io::IncrementInfo>& increments) {
-  std::printf("%5s  %-12s %5s  %12s  %6s  %5s  %9s  %10s  %8s\n", "file", "stage", "index", "load", "iter.", "cuts",
-              "residual", "part.steps", "wall [s]");
+std::string table_of(const std::vector<io::IncrementInfo>& increments) {
+  std::string text = fmt::format("{:>5}  {:<12} {:>5}  {:>12}  {:>6}  {:>5}  {:>9}  {:>10}  {:>8}\n", "file", "stage",
+                                 "index", "load", "iter.", "cuts", "residual", "part.steps", "wall [s]");
   for (const io::IncrementInfo& info : increments) {
-    std::printf("%5d  %-12s %5d  %12.6g  %6d  %5d  %9.2e  %10.3g  %8.2f\n", info.index, info.stage.c_str(),
-                info.stage_index, info.load_parameter, info.iterations, info.cuts, info.residual, info.particle_steps,
-                info.wall_s);
+    text += fmt::format("{:5d}  {:<12} {:5d}  {:12.6g}  {:6d}  {:5d}  {:9.2e}  {:10.3g}  {:8.2f}\n", info.index,
+                        info.stage, info.stage_index, info.load_parameter, info.iterations, info.cuts, info.residual,
+                        info.particle_steps, info.wall_s);
   }
+  return text;
 }
 
 }  // namespace
@@ -47,48 +50,52 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
   // Only a kind that advances in increments can stop between two of them; the others are ended by the signal itself.
   if (runs_on_a_mesh(input.kind)) catch_interrupts();
   if (!runs_on_a_mesh(input.kind)) std::printf("%s\n", kernels::lanes_sentence(lanes).c_str());  // others have a log
-  return run_case(input, options);
+  const int code = run_case(input, options);
+  if (const auto reason = lost_output()) {  // only kinds without a log come here; a log has told of the loss already
+    std::fprintf(stderr, "voussoir: standard output cannot be written (%s), its lines are lost, the files are not\n",
+                 reason->c_str());
+  }
+  return code;
 }
 
 int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
   const Case input = load_case(case_file, overrides);
   const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
-  std::printf("%s\n", input.resolved.c_str());
-  if (uses_engine(input.kind, input.material)) std::printf("# %s\n", engine_note(input.engine).c_str());
-  std::printf("# %s\n", kernels::lanes_sentence(lanes).c_str());
+  std::string answer = input.resolved + "\n";
+  if (uses_engine(input.kind, input.material)) answer += "# " + engine_note(input.engine) + "\n";
+  answer += "# " + kernels::lanes_sentence(lanes) + "\n";
   const CaseSize size = case_size(input);
   check_snapshot_points(input.output, size, input.name);
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
-    std::printf("# %s\n", line.c_str());
-  return exit_ok;
+    answer += "# " + line + "\n";
+  return print_answer(answer);
 }
 
 int command_info(const std::filesystem::path& result_file) {
+  std::string answer;
   try {  // for this command a file that cannot be read is wrong input
     const io::Provenance origin = io::read_provenance(result_file);
-    std::printf(
-        "kind %s, version %s (%s), %s, %d ranks, %d threads, begun %s\nbuild: %s, %s\nprocessor: %s\nlanes: %s\n"
-        "command: %s\nfingerprint: %s\n",
-        origin.case_kind.c_str(), origin.version.c_str(), origin.git_hash.c_str(), origin.kokkos.c_str(), origin.ranks,
-        origin.threads, origin.date.c_str(), origin.build_compiler.c_str(), origin.build_type.c_str(),
-        origin.processor.c_str(), origin.lanes.c_str(), origin.command.c_str(), origin.fingerprint.c_str());
+    answer = fmt::format(
+        "kind {}, version {} ({}), {}, {} ranks, {} threads, begun {}\nbuild: {}, {}\nprocessor: {}\nlanes: {}\n"
+        "command: {}\nfingerprint: {}\n",
+        origin.case_kind, origin.version, origin.git_hash, origin.kokkos, origin.ranks, origin.threads, origin.date,
+        origin.build_compiler, origin.build_type, origin.processor, origin.lanes, origin.command, origin.fingerprint);
     const io::MeshData mesh = io::read_mesh(result_file);
-    std::printf("%zu nodes, %zu elements\n", mesh.nodes(), mesh.elements());
-    print_increments(io::read_increments(result_file));
+    answer += fmt::format("{} nodes, {} elements\n", mesh.nodes(), mesh.elements()) +
+              table_of(io::read_increments(result_file));
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(error.what());
   }
-  return exit_ok;
+  return print_answer(answer);
 }
 
 int command_info_cpu() {
   std::string held;
   for (const kernels::LaneSet* lanes : kernels::compiled_lanes())
     held += fmt::format("{}{}", held.empty() ? "" : ", ", kernels::name_of(lanes->isa));
-  std::printf("processor: %s, which offers %s\nthis program holds the lanes %s\n%s\n",
-              kernels::processor_name().c_str(), kernels::description_of(kernels::processor_set()), held.c_str(),
-              kernels::lanes_sentence(kernels::choose_lanes({})).c_str());
-  return exit_ok;
+  return print_answer(fmt::format("processor: {}, which offers {}\nthis program holds the lanes {}\n{}\n",
+                                  kernels::processor_name(), kernels::description_of(kernels::processor_set()), held,
+                                  kernels::lanes_sentence(kernels::choose_lanes({}))));
 }
 
 }  // namespace voussoir::host

@@ -1,18 +1,20 @@
 // The command `voussoir sweep`. Each run is a process of its own, so that it behaves as it does without a sweep.
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -20,6 +22,7 @@
 #include "host/case/load_case.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
+#include "host/process/standard_streams.hpp"
 #include "host/program/commands.hpp"
 #include "host/ranks/session.hpp"
 #include "io/atomic_file.hpp"
@@ -68,6 +71,22 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
   return sweep;
 }
 
+/// The forked child's way to its program; it calls only what is allowed between fork and exec. If the sweep dies, the
+/// child gets SIGTERM, so that no run goes on that nobody waits for: a run on a mesh then ends after its increment, and
+/// `sweep --resume` goes on with it.
+[[noreturn]] void become(const std::vector<char*>& arguments, pid_t sweep, const sigset_t& signals) {
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) ::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
+  if (::getppid() != sweep) ::_exit(exit_interrupted);  // the sweep died before the child could ask to be told
+  const int nowhere = ::open("/dev/null", O_WRONLY);     // the same lines are in run.log
+  if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
+  ::execv(arguments.front(), arguments.data());
+  constexpr std::string_view complaint = "voussoir: the program of a run cannot be started\n";
+  static_cast<void>(!::write(STDERR_FILENO, complaint.data(), complaint.size()));
+  ::_exit(exit_machine);
+}
+
 pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepOptions& options) {
   std::vector<std::string> words{options.program.string(), "run", base.string(), "-o", run.folder.string()};
   for (const std::string& value : run.overrides) words.insert(words.end(), {"--set", value});
@@ -77,13 +96,16 @@ pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepO
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
 
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);  // the same lines are in run.log
-  pid_t process = 0;
-  const int failure = posix_spawn(&process, words.front().c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) throw std::system_error(failure, std::generic_category(), "cannot start " + words.front());
+  // A signal that came between fork and exec would be lost in a copy of this process.
+  sigset_t all, before;
+  sigfillset(&all);
+  ::sigprocmask(SIG_SETMASK, &all, &before);
+  const pid_t sweep = ::getpid();
+  const pid_t process = ::fork();
+  const int failure = errno;
+  if (process == 0) become(arguments, sweep, before);
+  ::sigprocmask(SIG_SETMASK, &before, nullptr);
+  if (process < 0) throw std::system_error(failure, std::generic_category(), "cannot start " + words.front());
   return process;
 }
 
@@ -116,26 +138,44 @@ void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+  if (process < 0 && errno == EINTR) return;
   if (process < 0) throw std::system_error(errno, std::generic_category(), "cannot wait for a run");
   const auto found = running.find(process);
   if (found == running.end()) return;
   SweepRun& run = *found->second;
   // The signal itself has ended a run whose kind cannot stop between increments.
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : passed_on ? exit_interrupted : exit_machine;
-  fmt::print("{}: {}\n", run.name, status_name(run.exit_code));
-  std::fflush(stdout);
+  std::printf("%s: %s\n", run.name.c_str(), status_name(run.exit_code));
+  static_cast<void>(lost_output());  // the summary says the same
   running.erase(found);
 }
 
 void run_all(Sweep& sweep, const SweepOptions& options) {
   std::map<pid_t, SweepRun*> running;
   bool passed_on = false;
-  for (SweepRun& run : sweep.runs) {
-    while (static_cast<int>(running.size()) >= options.processes) wait_for_one(running, passed_on);
-    if (interrupted()) break;
-    running.emplace(start(run, sweep.base, options), &run);
+  try {
+    for (SweepRun& run : sweep.runs) {
+      while (static_cast<int>(running.size()) >= options.processes) wait_for_one(running, passed_on);
+      if (interrupted()) break;
+      running.emplace(start(run, sweep.base, options), &run);
+    }
+  } catch (...) {  // for example no process is left: the runs that have begun are stopped and waited for
+    for (const auto& [child, run] : running) kill(child, SIGUSR1);
+    passed_on = true;
+    while (!running.empty()) wait_for_one(running, passed_on);
+    throw;
   }
   while (!running.empty()) wait_for_one(running, passed_on);
+}
+
+/// The increments of a run; none where it has no results, or where they have vanished or are damaged.
+std::vector<io::IncrementInfo> increments_of(const SweepRun& run) {
+  try {
+    if (std::filesystem::exists(run.folder / "run.h5")) return io::read_increments(run.folder / "run.h5");
+  } catch (const std::exception& damage) {
+    std::fprintf(stderr, "voussoir: the summary has no values of %s: %s\n", run.name.c_str(), damage.what());
+  }
+  return {};
 }
 
 /// Writes one row for each run: how it ended, and the further columns of its last increment.
@@ -143,8 +183,7 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
   std::vector<std::vector<io::IncrementInfo>> tables;
   std::set<std::string> columns;
   for (const SweepRun& run : sweep.runs) {
-    const bool has_results = std::filesystem::exists(run.folder / "run.h5");
-    tables.push_back(has_results ? io::read_increments(run.folder / "run.h5") : std::vector<io::IncrementInfo>{});
+    tables.push_back(increments_of(run));
     if (tables.back().empty()) continue;
     for (const auto& [name, value] : tables.back().back().extra) columns.insert(name);
     columns.erase("volume_loss");  // this column repeats the load parameter of the stage "volume_loss"
@@ -182,9 +221,11 @@ int command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& g
   Sweep sweep = load_sweep(sweep_file, options);
   catch_interrupts();
   std::filesystem::create_directories(options.folder);
+  io::remove_leftovers(options.folder);
   run_all(sweep, options);
   write_summary(sweep, options.folder / "summary.csv");
-  fmt::print("summary: {}\n", (options.folder / "summary.csv").string());
+  std::printf("summary: %s\n", (options.folder / "summary.csv").c_str());
+  static_cast<void>(lost_output());
   int worst = exit_ok;
   for (const SweepRun& run : sweep.runs) worst = std::max(worst, run.exit_code < 0 ? exit_interrupted : run.exit_code);
   return worst;

@@ -155,7 +155,7 @@ Message answer(Service& service, const Message& message) {
 }  // namespace
 
 int RankSession::serve() const {
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) std::signal(signal, SIG_IGN);
   try {
     Service service;
     for (;;) {

@@ -29,7 +29,7 @@ class RankSession {
 
   [[nodiscard]] bool serves() const;  ///< true on all ranks but the first: they have to call `serve` only
   /// Answers the first rank until the first rank ends. Returns 0, since the first rank's exit code
-  /// says how the run ended. Ctrl-C, SIGTERM and SIGUSR1 are ignored here; the first rank obeys them.
+  /// says how the run ended. Ctrl-C, SIGTERM, SIGHUP and SIGUSR1 are ignored here; the first rank obeys them.
   [[nodiscard]] int serve() const;
 };
 

@@ -7,18 +7,27 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "host/process/standard_streams.hpp"
 #include "host/ranks/session.hpp"
 
 namespace voussoir::host {
 
 RunLog::RunLog(const std::filesystem::path& file, bool append)
     : terminal_(isatty(STDOUT_FILENO) != 0 && rank_count() == 1) {
+  // A pipe of this name would wait for a reader for ever.
+  if (std::filesystem::is_fifo(file) || std::filesystem::is_directory(file)) {
+    throw std::runtime_error(file.string() + ": cannot be written: it is a folder or a pipe");
+  }
   try {
     auto sink = std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), !append);
     file_ = std::make_shared<spdlog::logger>("run", std::move(sink));
   } catch (const spdlog::spdlog_ex& error) {
-    throw std::runtime_error(file.string() + ": " + error.what());
+    throw std::runtime_error(file.string() + ": cannot be opened: " + error.what());
   }
+  // spdlog would print its own lines on stderr, once a second, and go on without a log.
+  file_->set_error_handler([name = file.string()](const std::string& reason) {
+    throw std::runtime_error(name + ": cannot be written: " + reason);
+  });
   file_->set_pattern("%Y-%m-%dT%H:%M:%SZ %L %v", spdlog::pattern_time_type::utc);
   file_->flush_on(spdlog::level::info);
 }
@@ -31,17 +40,23 @@ void RunLog::clear_live() {
   live_width_ = 0;
 }
 
-void RunLog::line(const std::string& text) {
+void RunLog::show(const std::string& text) {
   clear_live();
   std::printf("%s\n", text.c_str());
-  std::fflush(stdout);
+  if (const auto reason = lost_output()) {
+    terminal_ = false;
+    file_->warn("standard output cannot be written any more ({}); the run goes on, and its lines are in this file only",
+                *reason);
+  }
+}
+
+void RunLog::line(const std::string& text) {
+  show(text);
   file_->info(text);
 }
 
 void RunLog::warning(const std::string& text) {
-  clear_live();
-  std::printf("warning: %s\n", text.c_str());
-  std::fflush(stdout);
+  show("warning: " + text);
   file_->warn(text);
 }
 

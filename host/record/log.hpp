@@ -14,7 +14,9 @@ namespace voussoir::host {
 
 class RunLog {
  public:
-  /// Starts `file` anew, or goes on at its end. Throws std::runtime_error where it cannot be written.
+  /// Starts `file` anew, or goes on at its end. This and all members that write to the file throw std::runtime_error
+  /// naming the file where it cannot be written. Standard output may fail: one line in the file says so, and the lines
+  /// are in the file only from then on.
   RunLog(const std::filesystem::path& file, bool append);
   ~RunLog();
   RunLog(const RunLog&) = delete;
@@ -27,6 +29,7 @@ class RunLog {
 
  private:
   void clear_live();
+  void show(const std::string& text);
 
   std::shared_ptr<spdlog::logger> file_;
   bool terminal_;

@@ -153,6 +153,8 @@ RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
   GroundRun run(options, provenance_of(options, input, "biaxial_bvp"), mesh, specimen_data(mesh, test),
                 stage_settings(input), log);
   if (run.finished()) {
+    // The disk may have been full between the last checkpoint and this table, which a run that has it keeps.
+    run.recorder().set_table("gauss_histories", gauss_histories(options.folder));
     run.report_finished();
     return RunStatus::finished;
   }

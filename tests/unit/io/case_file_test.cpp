@@ -93,9 +93,9 @@ TEST(CaseFile, EachMistakeGivesOneLineWithItsPlace) {
             "case.toml:3: radius: unknown key; did you mean \"soil.radius\"?");
   EXPECT_EQ(message(changed("\"5 mm\"", "\"-5 mm\"")), "case.toml:4: soil.radius: must be positive, is -5 mm");
   EXPECT_EQ(message(changed("\"5 mm\"", "\"5 kPa\"")),
-            "case.toml:4: soil.radius: \"5 kPa\" is a pressure, expected length in m, cm, mm, km");
+            "case.toml:4: soil.radius: \"5 kPa\" is a pressure, expected length in m, cm, mm, km, um");
   EXPECT_EQ(message(changed("\"5 mm\"", "5")),
-            "case.toml:4: soil.radius: \"5\" has no unit, expected length in m, cm, mm, km");
+            "case.toml:4: soil.radius: \"5\" has no unit, expected length in m, cm, mm, km, um");
   EXPECT_EQ(message(changed("\"5 mm\"", "true")),
             "case.toml:4: soil.radius: must be a quantity in quotes, such as \"1 m\", is true or false");
   EXPECT_EQ(message(changed("20 kN", "31 kN")), "case.toml:5: soil.weight: must be at most 30 kN/m3, is 31 kN/m3");

@@ -80,7 +80,7 @@ TEST_F(ResultFileTest, ProvenanceOfTheFirstVersionsIsRead) {
     file.set_attribute("/provenance", name, std::string("old ") + name);
   }
   file.set_attribute("/provenance", "threads", std::int64_t{4});
-  file.close();
+  file.publish();
   const Provenance read = read_provenance(folder_ / "run.h5");
   EXPECT_EQ(read.git_hash, "old git_hash");
   EXPECT_EQ(read.build_compiler, "unknown");
