@@ -205,7 +205,10 @@ void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
   auto present = list(folder_);
   // Checkpoints with a higher number were written before the run was resumed from an earlier state, and are not part of
   // its history any more.
-  present.erase(present.find(increment));
+  if (present.erase(increment) == 0) {
+    throw std::runtime_error(fmt::format("{}: vanished right after it was written; does something else change {}?",
+                                         target.string(), folder_.string()));
+  }
   const auto previous = present.lower_bound(increment);
   for (auto it = present.begin(); it != present.end(); ++it) {
     if (it->first > increment || previous == present.begin() || it != std::prev(previous)) {

@@ -7,6 +7,9 @@ namespace voussoir::host {
 /// From now on these signals set a flag instead of ending the process. A second signal ends the process at once.
 void catch_interrupts();
 
+/// From now on these signals end the process at once, with this exit code.
+void end_on_interrupts(int code);
+
 /// True once a signal has arrived.
 [[nodiscard]] bool interrupted();
 

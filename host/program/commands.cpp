@@ -1,20 +1,19 @@
 #include "host/program/commands.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
-#include <Kokkos_Core.hpp>
 #include <cstdio>
+#include <memory>
 #include <stdexcept>
 
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
 #include "host/estimate/report.hpp"
 #include "host/estimate/work.hpp"
-#include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
+#include "host/process/threads.hpp"
 #include "host/program/run_case.hpp"
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
+#include "io/input_error.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -32,22 +31,27 @@ void print_increments(const std::vector<io::IncrementInfo>& increments) {
 
 }  // namespace
 
-int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides, RunOptions options) {
+Outcome command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
+                    RunOptions options) {
   const Case input = load_case(case_file, overrides);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
   check_folder(options, input.fingerprint);
-  Kokkos::InitializationSettings settings;
-  settings.set_disable_warnings(true);
-  if (options.threads > 0) settings.set_num_threads(options.threads);
-  const Kokkos::ScopeGuard kokkos(settings);
+  if (!input.output.rves.empty()) check_snapshot_points(input.output, case_size(input), input.name);
+  const KokkosSession kokkos(options.threads);
   start_ranks(options.threads);
-  options.threads = Kokkos::DefaultHostExecutionSpace().concurrency();
-  // Only a kind that advances in increments can stop between two of them; the others are ended by the signal itself.
-  if (runs_on_a_mesh(input.kind)) catch_interrupts();
+  options.threads = kokkos.threads().count;
+  options.threads_note = kokkos.threads().note;
+  // Only a kind that advances in increments can stop between two of them; the others end at once.
+  runs_on_a_mesh(input.kind) ? catch_interrupts() : end_on_interrupts(exit_code(Outcome::interrupted));
+  // A case of this kind writes into the folder of packings only, but it removes what lies in its own with --replace.
+  if (input.kind != CaseKind::pack || std::filesystem::exists(options.folder)) {
+    options.lock = std::make_shared<RunLock>(options.folder, options.take_over);
+    check_folder(options, input.fingerprint);  // once more: another run may have ended between the check and the lock
+  }
   return run_case(input, options);
 }
 
-int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
+Outcome command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
   const Case input = load_case(case_file, overrides);
   std::printf("%s\n", input.resolved.c_str());
   if (uses_engine(input.kind, input.material)) std::printf("# %s\n", engine_note(input.engine).c_str());
@@ -55,10 +59,10 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
   check_snapshot_points(input.output, size, input.name);
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     std::printf("# %s\n", line.c_str());
-  return exit_ok;
+  return Outcome::done;
 }
 
-int command_info(const std::filesystem::path& result_file) {
+Outcome command_info(const std::filesystem::path& result_file) {
   try {  // for this command a file that cannot be read is wrong input
     const io::Provenance origin = io::read_provenance(result_file);
     std::printf(
@@ -70,9 +74,9 @@ int command_info(const std::filesystem::path& result_file) {
     std::printf("%zu nodes, %zu elements\n", mesh.nodes(), mesh.elements());
     print_increments(io::read_increments(result_file));
   } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(error.what());
+    throw io::InputError("info", "", error.what());
   }
-  return exit_ok;
+  return Outcome::done;
 }
 
 }  // namespace voussoir::host

@@ -9,21 +9,23 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <map>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
 
 #include "host/case/load_case.hpp"
-#include "host/process/exit_code.hpp"
+#include "host/process/cores.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/program/commands.hpp"
+#include "host/program/sweep_outcome.hpp"
 #include "host/ranks/session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/case_file.hpp"
+#include "io/input_error.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -33,7 +35,7 @@ struct SweepRun {
   std::string name;
   std::vector<std::string> overrides;
   std::filesystem::path folder;
-  int exit_code = -1;  ///< -1 as long as the run has not ended
+  RunEnd end = {};
 };
 
 struct Sweep {
@@ -54,13 +56,14 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
   sweep.base = text.root().path("base");
   std::set<std::string> names;
   for (const io::Table& table : text.root().tables("run")) {
-    SweepRun run{table.text("name"), table.texts("set", std::vector<std::string>{}), {}};
+    SweepRun run{.name = table.text("name"), .overrides = table.texts("set", std::vector<std::string>{}), .folder = {}};
     if (!is_plain(run.name))
       throw table.error("name", "must consist of letters, digits and _ . - and must not begin with a dot");
     if (!names.insert(run.name).second) throw table.error("name", "is the name of two runs");
     run.folder = options.folder / run.name;
     check_folder({.folder = run.folder, .resume = options.resume, .command = {}},
                  load_case(sweep.base, run.overrides).fingerprint);
+    expect_unlocked(run.folder);
     sweep.runs.push_back(std::move(run));
   }
   if (sweep.runs.empty()) throw text.root().error("run", "there is no [[run]] in this sweep");
@@ -73,6 +76,7 @@ pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepO
   for (const std::string& value : run.overrides) words.insert(words.end(), {"--set", value});
   if (options.threads > 0) words.insert(words.end(), {"--threads", std::to_string(options.threads)});
   if (options.resume) words.emplace_back("--resume");
+  if (options.take_over) words.emplace_back("--take-over");
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -85,23 +89,6 @@ pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepO
   posix_spawn_file_actions_destroy(&actions);
   if (failure != 0) throw std::system_error(failure, std::generic_category(), "cannot start " + words.front());
   return process;
-}
-
-const char* status_name(int exit_code) {
-  switch (exit_code) {
-    case exit_ok:
-      return "finished";
-    case exit_input:
-      return "wrong input";
-    case exit_numerical:
-      return "no equilibrium";
-    case exit_interrupted:
-      return "interrupted";
-    case -1:
-      return "not run";
-    default:
-      return "machine failure";
-  }
 }
 
 /// Waits until one of the processes has ended and stores its exit code. A request to stop is passed on once, as
@@ -120,9 +107,8 @@ void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
   const auto found = running.find(process);
   if (found == running.end()) return;
   SweepRun& run = *found->second;
-  // The signal itself has ended a run whose kind cannot stop between increments.
-  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : passed_on ? exit_interrupted : exit_machine;
-  fmt::print("{}: {}\n", run.name, status_name(run.exit_code));
+  run.end = end_of(status, passed_on);
+  fmt::print("{}: {}\n", run.name, name_of(run.end));
   std::fflush(stdout);
   running.erase(found);
 }
@@ -163,8 +149,8 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
       steps += info.particle_steps;
       wall += info.wall_s;
     }
-    text += fmt::format("{},{},{},{},{:.9g},{},{:.9g},{:.2f}", run.name, status_name(run.exit_code), run.exit_code,
-                        last.stage, last.load_parameter, iterations, steps, wall);
+    text += fmt::format("{},{},{},{},{:.9g},{},{:.9g},{:.2f}", run.name, name_of(run.end), run.end.code, last.stage,
+                        last.load_parameter, iterations, steps, wall);
     for (const std::string& column : columns) {
       text += last.extra.contains(column) ? fmt::format(",{:.9g}", last.extra.at(column).value) : ",";
     }
@@ -173,21 +159,31 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
   io::write_text(file, text);
 }
 
+/// The sweep's cores, shared among the runs at a time, where nobody has said a number.
+int threads_of_a_run(const SweepOptions& options) {
+  const bool said = options.threads > 0 || getenv("OMP_NUM_THREADS") != nullptr ||
+                    getenv("KOKKOS_NUM_THREADS") != nullptr;
+  if (said || options.processes == 1) return options.threads;
+  return std::max(1, cores_of_this_process().usable() / options.processes);
+}
+
 }  // namespace
 
-int command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& given) {
-  if (rank_count() > 1) throw std::invalid_argument("sweep starts processes of its own: run it without mpirun");
+Outcome command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& given) {
+  if (rank_count() > 1) throw io::InputError("sweep", "", "starts processes of its own: run it without mpirun");
   SweepOptions options = given;
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / sweep_file.stem();
   Sweep sweep = load_sweep(sweep_file, options);
   catch_interrupts();
-  std::filesystem::create_directories(options.folder);
+  const RunLock lock(options.folder, options.take_over);
+  if (!lock.note().empty()) fmt::print("{}\n", lock.note());
+  options.threads = threads_of_a_run(options);
   run_all(sweep, options);
   write_summary(sweep, options.folder / "summary.csv");
   fmt::print("summary: {}\n", (options.folder / "summary.csv").string());
-  int worst = exit_ok;
-  for (const SweepRun& run : sweep.runs) worst = std::max(worst, run.exit_code < 0 ? exit_interrupted : run.exit_code);
-  return worst;
+  std::vector<RunEnd> ends;
+  for (const SweepRun& run : sweep.runs) ends.push_back(run.end);
+  return outcome_of(ends);
 }
 
 }  // namespace voussoir::host
