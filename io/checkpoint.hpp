@@ -40,7 +40,7 @@ class CheckpointStore {
   CheckpointStore(std::filesystem::path folder, std::string fingerprint);
 
   /// Writes a temporary file, syncs it and renames it; then removes all checkpoints but the last two. Throws
-  /// std::runtime_error.
+  /// std::runtime_error, also where the new checkpoint is gone again.
   void save(int increment, const Checkpoint& checkpoint) const;
 
   struct Loaded {

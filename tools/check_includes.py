@@ -25,7 +25,7 @@ FOLDERS = {
     "fem": ({"fem"}, {"Eigen", "SuiteSparse", "Gmsh", "OpenMP", "fmt"}),
     "io": ({"io"}, {"HDF5", "toml++", "JSON", "fmt", "POSIX"}),
     # host joins the others, so it holds their types (Kokkos views, Eigen matrices) and starts Kokkos.
-    "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX", "MPI"}),
+    "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX", "MPI", "OpenMP"}),
     "tests": (set(OURS), None),  # None: all libraries
     "tools": (set(), {"CUDA"}),
 }
@@ -50,8 +50,8 @@ ROOMS = {
 # Libraries that only a few files of their folder may include.
 CONFINED = {
     "Gmsh": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
-    # the files need OpenMP to restore the number of threads, which Gmsh changes
-    "OpenMP": re.compile(r"fem/mesh\w*\.cpp|tests/.*"),
+    # fem needs OpenMP to restore the number of threads, which Gmsh changes; host chooses their number
+    "OpenMP": re.compile(r"fem/mesh\w*\.cpp|host/process/(cores|threads)\.cpp|tests/.*"),
     "MPI": re.compile(r"host/ranks/channel\.cpp"),
 }
 

@@ -14,7 +14,6 @@
 #include "host/element_tests/biaxial.hpp"
 #include "host/element_tests/strength.hpp"
 #include "host/packing/packings.hpp"
-#include "host/process/exit_code.hpp"
 #include "host/record/provenance.hpp"
 #include "io/result_file.hpp"
 
@@ -136,8 +135,8 @@ std::size_t wanted_tests(const PackingCase& recipe, const BiaxialCase& test) {
   return (recipe.file.empty() ? seeds_of(recipe).size() : 1) * test.pressures.size();
 }
 
-/// Exit code of a finished run, from the tests in its folder; nothing where there is no finished run.
-std::optional<int> finished_before(std::size_t wanted, const RunOptions& options) {
+/// Outcome of a finished run, from the tests in its folder; nothing where there is no finished run.
+std::optional<Outcome> finished_before(std::size_t wanted, const RunOptions& options) {
   const std::filesystem::path file = options.folder / "run.h5";
   if (!options.resume || !std::filesystem::exists(file)) return {};
   const io::Tables tables = io::read_tables(file);
@@ -146,17 +145,17 @@ std::optional<int> finished_before(std::size_t wanted, const RunOptions& options
   for (const io::TableColumn& column : strength->second) {
     if (column.name != "valid") continue;
     const auto held = static_cast<std::size_t>(std::count(column.values.begin(), column.values.end(), 1.0));
-    return held < wanted ? exit_numerical : exit_ok;
+    return held < wanted ? Outcome::no_equilibrium : Outcome::done;
   }
   return {};
 }
 
 }  // namespace
 
-int run_biaxial(const Case& input, const RunOptions& options) {
+Outcome run_biaxial(const Case& input, const RunOptions& options) {
   const BiaxialCase& test = input.biaxial;
   const std::size_t wanted = wanted_tests(input.packing, test);
-  if (const std::optional<int> before = finished_before(wanted, options)) {
+  if (const std::optional<Outcome> before = finished_before(wanted, options)) {
     std::printf("the run in %s is finished already, there is nothing to do\n", options.folder.string().c_str());
     return *before;
   }
@@ -165,6 +164,7 @@ int run_biaxial(const Case& input, const RunOptions& options) {
   const std::vector<PackedRve> rves = packings_of(input.soil, input.packing, test.pressures, note);
   const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
                                     engine_settings(input.engine), input.output.microstructure);
+  confirm_lock(options, note);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});
   Summary summary;
   bool failed = false;
@@ -189,7 +189,7 @@ int run_biaxial(const Case& input, const RunOptions& options) {
     std::fprintf(stderr, "biaxial: %zu of %zu tests were left out because their packings do not come to rest\n",
                  wanted - curves.size(), wanted);
   }
-  return failed || curves.size() < wanted ? exit_numerical : exit_ok;
+  return failed || curves.size() < wanted ? Outcome::no_equilibrium : Outcome::done;
 }
 
 }  // namespace voussoir::host

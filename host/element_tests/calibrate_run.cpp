@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "host/element_tests/calibrate_tests.hpp"
-#include "host/process/exit_code.hpp"
 #include "host/record/provenance.hpp"
 #include "io/result_file.hpp"
 
@@ -182,28 +181,31 @@ std::vector<io::TableColumn> test_table(const std::vector<SetTests>& sets) {
 
 }  // namespace
 
-int run_calibrate(const Case& input, const RunOptions& options) {
+Outcome run_calibrate(const Case& input, const RunOptions& options) {
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const CalibrateCase& targets = input.calibrate;
   const TestProgram program{input.soil, input.packing, input.engine, input.biaxial};
   const SearchBox box(targets, program.soil);
+  confirm_lock(options, note);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "calibrate"), {});
   Search search;
   std::vector<ParameterSet> next = box.grid();
   Optimum optimum;
   for (int round = 0; round <= targets.rounds; ++round) {
     search.add(test_sets(program, next, note), round, targets);
+    confirm_lock(options, note);
     writer.set_table("search", table_of(search.sets, search.rounds, targets));
     const std::vector<Measured> usable = search.usable();
     if (usable.empty()) {
       std::fprintf(stderr, "calibrate: no set of the grid could be tested\n");
-      return exit_numerical;
+      return Outcome::no_equilibrium;
     }
     optimum = find_optimum(box, usable, targets, round);
     next = around(box, optimum.set, round + 1);
   }
   const std::vector<ParameterSet> last{optimum.set, parameters_of(program.soil)};
   const std::vector<SetTests> confirmed = test_sets(confirmation(program, targets), last, note);
+  confirm_lock(options, note);
   writer.set_table("fit", table_of(confirmed, {0, 1}, targets));
   writer.set_table("tests", test_table(confirmed));
   writer.set_table("sensitivity", sensitivity_table(optimum));
@@ -211,7 +213,7 @@ int run_calibrate(const Case& input, const RunOptions& options) {
   print_fit(confirmed[0], targets);
   print_sensitivity(optimum, box);
   print("as given", confirmed[1], targets);
-  return confirmed[0].usable() ? exit_ok : exit_numerical;
+  return confirmed[0].usable() ? Outcome::done : Outcome::no_equilibrium;
 }
 
 }  // namespace voussoir::host

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "host/case/engine.hpp"
+#include "host/process/exit_code.hpp"
 
 namespace voussoir::host {
 
 namespace {
 
-/// Packings of one set at all pressures, pressure by pressure. Throws std::runtime_error where a packing does not come
+/// Packings of one set at all pressures, pressure by pressure. Throws NoEquilibrium where a packing does not come
 /// to rest.
 std::vector<PackedRve> packings_of(const TestProgram& program, const ParameterSet& set) {
   const std::vector<std::int64_t> seeds = seeds_of(program.packing);
@@ -23,8 +23,8 @@ std::vector<PackedRve> packings_of(const TestProgram& program, const ParameterSe
     recipe.pressure = pressure;
     std::vector<PackedRve> at_pressure = obtain_packings(soil, recipe, seeds, {}, Bias::left);
     if (at_pressure.size() != seeds.size()) {
-      throw std::runtime_error(fmt::format("{} of {} packings do not come to rest at {:.4g} kPa",
-                                           seeds.size() - at_pressure.size(), seeds.size(), pressure * 1e-3));
+      throw NoEquilibrium(fmt::format("{} of {} packings do not come to rest at {:.4g} kPa",
+                                      seeds.size() - at_pressure.size(), seeds.size(), pressure * 1e-3));
     }
     for (PackedRve& rve : at_pressure) {
       rve.pressure = pressure;  // the consolidation has reached this pressure to a thousandth
@@ -110,7 +110,7 @@ std::vector<SetTests> test_sets(const TestProgram& program, std::span<const Para
         rves.push_back(std::move(rve));
         owner.push_back(k);
       }
-    } catch (const std::runtime_error& error) {
+    } catch (const NoEquilibrium& error) {
       out[k].fault = error.what();
       if (note) note(out[k].fault);
     }

@@ -3,18 +3,17 @@
 #include <cstdio>
 
 #include "host/packing/packings.hpp"
-#include "host/process/exit_code.hpp"
 
 namespace voussoir::host {
 
-int run_pack(const Case& input) {
+Outcome run_pack(const Case& input) {
   const PackingNote print = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const std::vector<std::int64_t> seeds = seeds_of(input.packing);
   const std::size_t made = obtain_packings(input.soil, input.packing, seeds, print).size();
-  if (made == seeds.size() || !input.packing.file.empty()) return exit_ok;
+  if (made == seeds.size() || !input.packing.file.empty()) return Outcome::done;
   std::fprintf(stderr, "pack: %zu of %zu packings do not come to rest and are not stored\n", seeds.size() - made,
                seeds.size());
-  return exit_numerical;
+  return Outcome::no_equilibrium;
 }
 
 }  // namespace voussoir::host

@@ -14,7 +14,6 @@
 #include "host/material/rve_pool.hpp"
 #include "host/packing/packings.hpp"
 #include "host/packing/stored_packing.hpp"
-#include "host/process/exit_code.hpp"
 #include "io/atomic_file.hpp"
 
 namespace voussoir::host {
@@ -165,29 +164,31 @@ std::vector<PackedRve> packings_to_probe(const SoilCase& soil, PackingCase recip
 
 }  // namespace
 
-int run_probe(const Case& input, const RunOptions& options) {
+Outcome run_probe(const Case& input, const RunOptions& options) {
   std::printf("%s\n", engine_note(input.engine).c_str());
   std::vector<PackedRve> rves = packings_to_probe(input.soil, input.packing, input.probe.pressure);
   std::filesystem::create_directories(options.folder);
   io::remove_leftovers(options.folder);
   Tables tables;
-  int code = exit_ok;
-  const auto note_failure = [&code](const std::string& failure) {
+  Outcome outcome = Outcome::done;
+  const auto note_failure = [&outcome](const std::string& failure) {
     if (!failure.empty()) std::fprintf(stderr, "probe: %s\n", failure.c_str());
-    if (!failure.empty()) code = exit_numerical;
+    if (!failure.empty()) outcome = Outcome::no_equilibrium;
     return !failure.empty();
   };
   for (PackedRve& rve : rves) {
     if (!input.probe.path.empty()) {
       if (note_failure(take_path(input.probe, input.engine, rve, tables))) continue;
+      confirm_lock(options, print);
       io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed),
                        stored_packing(rve, "path of " + input.name, input.fingerprint));
     }
     note_failure(take_probes(input.probe, input.engine, rve, tables, &rve == &rves.front()));
   }
+  confirm_lock(options, print);
   if (!input.probe.path.empty()) io::write_text(options.folder / "path.csv", tables.path);
   io::write_text(options.folder / "probe.csv", tables.probe);
-  return code;
+  return outcome;
 }
 
 }  // namespace voussoir::host

@@ -6,14 +6,16 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "host/packing/bias.hpp"
+#include "host/packing/packing_locks.hpp"
 #include "host/packing/recipe.hpp"
 #include "host/packing/stored_packing.hpp"
 #include "io/atomic_file.hpp"
+#include "host/process/exit_code.hpp"
 #include "io/hash.hpp"
+#include "io/input_error.hpp"
 #include "io/packing_file.hpp"
 
 namespace voussoir::host {
@@ -40,19 +42,79 @@ std::optional<PackedRve> find(const SoilCase& soil, const PackingCase& recipe, s
   return rve && rve->packing.size() == recipe.grains ? rve : std::nullopt;
 }
 
-/// Measures the bias of the packings without one and stores it with them.
-void measure_bias(const SoilCase& soil, const PackingCase& recipe, std::vector<PackedRve>& rves) {
+PackingLock lock_of(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed, const PackingNote& note) {
+  return {io::packing_path(recipe.folder, io::fingerprint_of(recipe_text(soil, recipe, seed))), seed, note};
+}
+
+/// Makes the packings of these seeds side by side, stores those that come to rest and notes the others.
+void make_and_keep(const SoilCase& soil, const PackingCase& recipe, std::span<const std::int64_t> seeds,
+                   const PackingNote& note) {
+  for (const PackedRve& rve : make_packings(soil, recipe, seeds)) {
+    if (rve.status == kernels::RveStatus::converged) {
+      keep(soil, recipe, rve);
+    } else if (note) {
+      note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
+                       kernels::name_of(rve.status)));
+    }
+  }
+}
+
+/// Makes the packings that are missing. Those at which another process is at work are waited for at the end, when this
+/// process holds no lock itself, so that two processes cannot wait for one another. Returns the seeds that were made
+/// here.
+std::vector<std::int64_t> make_missing(const SoilCase& soil, const PackingCase& recipe,
+                                       std::span<const std::int64_t> seeds, const PackingNote& note) {
+  std::vector<std::int64_t> here, elsewhere;
+  {
+    std::vector<PackingLock> held;
+    for (const std::int64_t seed : seeds) {
+      if (find(soil, recipe, seed)) continue;
+      std::filesystem::create_directories(recipe.folder);
+      PackingLock lock = lock_of(soil, recipe, seed, note);
+      if (!lock.take()) {
+        elsewhere.push_back(seed);
+      } else if (!find(soil, recipe, seed)) {  // it may have been finished in between
+        held.push_back(std::move(lock));
+        here.push_back(seed);
+      }
+    }
+    make_and_keep(soil, recipe, here, note);
+  }
+  for (const std::int64_t seed : elsewhere) {
+    PackingLock lock = lock_of(soil, recipe, seed, note);
+    lock.wait();
+    if (find(soil, recipe, seed)) continue;  // otherwise the other process has died, or its packing has found no rest
+    make_and_keep(soil, recipe, std::span(&seed, 1), note);
+    here.push_back(seed);
+  }
+  return here;
+}
+
+/// Measures the bias of the packings without one and stores it with them. Locks are taken in the order of the seeds by
+/// all processes, so that two cannot wait for one another.
+void measure_bias(const SoilCase& soil, const PackingCase& recipe, std::vector<PackedRve>& rves,
+                  const PackingNote& note) {
+  std::vector<PackedRve*> ascending;
+  for (PackedRve& rve : rves) ascending.push_back(&rve);
+  std::sort(ascending.begin(), ascending.end(),
+            [](const PackedRve* a, const PackedRve* b) { return a->seed < b->seed; });
+  std::vector<PackingLock> held;
   std::vector<PackedRve> unknown;
-  for (const PackedRve& rve : rves) {
-    if (std::isnan(rve.bias)) unknown.push_back(rve);
+  std::vector<PackedRve*> place;
+  for (PackedRve* rve : ascending) {
+    if (!std::isnan(rve->bias)) continue;
+    PackingLock lock = lock_of(soil, recipe, rve->seed, note);
+    lock.wait();
+    if (const auto stored = find(soil, recipe, rve->seed)) rve->bias = stored->bias;
+    if (!std::isnan(rve->bias)) continue;
+    held.push_back(std::move(lock));
+    unknown.push_back(*rve);
+    place.push_back(rve);
   }
   const std::vector<double> biases = biases_of(unknown);
-  for (PackedRve& rve : rves) {
-    for (std::size_t k = 0; k < unknown.size(); ++k) {
-      if (unknown[k].seed != rve.seed) continue;
-      rve.bias = biases[k];
-      keep(soil, recipe, rve);
-    }
+  for (std::size_t k = 0; k < place.size(); ++k) {
+    place[k]->bias = biases[k];
+    keep(soil, recipe, *place[k]);
   }
 }
 
@@ -69,14 +131,15 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
   if (recipe.file.extension() == ".h5") {
     auto rve = restored_packing(io::load_packing(recipe.file), soil);
     if (!rve)
-      throw std::runtime_error(recipe.file.string() + " is not a complete packing of this program and its contact law");
+      throw io::InputError("packing.file", recipe.file.string(),
+                           "is not a complete packing of this program and its contact law");
     if (note) note("packing read:  " + table_line(*rve));
     return {std::move(*rve)};
   }
   if (!recipe.file.empty()) {
     PackedRve rve = settle_foreign_packing(soil, recipe);
     if (rve.status != kernels::RveStatus::converged) {
-      throw std::runtime_error(
+      throw NoEquilibrium(
           fmt::format("{} does not come to rest: {}", recipe.file.string(), kernels::name_of(rve.status)));
     }
     if (note)
@@ -85,26 +148,15 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
   }
   std::filesystem::create_directories(recipe.folder);
   io::remove_leftovers(recipe.folder);
-  std::vector<std::int64_t> missing;
-  for (const std::int64_t seed : seeds) {
-    if (!find(soil, recipe, seed)) missing.push_back(seed);
-  }
-  for (const PackedRve& rve : make_packings(soil, recipe, missing)) {
-    if (rve.status == kernels::RveStatus::converged) {
-      keep(soil, recipe, rve);
-    } else if (note) {
-      note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
-                       kernels::name_of(rve.status)));
-    }
-  }
+  const std::vector<std::int64_t> made_here = make_missing(soil, recipe, seeds, note);
   std::vector<PackedRve> out;
   for (const std::int64_t seed : seeds) {
     if (auto rve = find(soil, recipe, seed)) out.push_back(std::move(*rve));
   }
-  if (out.empty()) throw std::runtime_error("no packing of this recipe comes to rest");
-  if (bias == Bias::measured && out.size() > 1) measure_bias(soil, recipe, out);
+  if (out.empty()) throw NoEquilibrium("no packing of this recipe comes to rest");
+  if (bias == Bias::measured && out.size() > 1) measure_bias(soil, recipe, out, note);
   for (const PackedRve& rve : out) {
-    const bool made = std::find(missing.begin(), missing.end(), rve.seed) != missing.end();
+    const bool made = std::find(made_here.begin(), made_here.end(), rve.seed) != made_here.end();
     if (note) note((made ? "packing made:  " : "packing found: ") + table_line(rve));
   }
   return out;

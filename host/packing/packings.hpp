@@ -17,8 +17,9 @@ enum class Bias { measured, left };
 
 /// The packings of these seeds, in their order: found in the recipe's folder, or made side by side and stored there. A
 /// seed whose packing does not come to rest is noted and left out. With Bias::measured the bias is measured (bias.hpp)
-/// where there are several packings. A recipe that names a file has only the packing in this file. Throws
-/// std::runtime_error when no packing is left.
+/// where there are several packings. A recipe that names a file has only the packing in this file. Where several
+/// processes ask for one packing, one makes it and the others wait (packing_locks.hpp). Throws NoEquilibrium when no
+/// packing is left, Interrupted where a request to stop arrives during the wait.
 [[nodiscard]] std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& recipe,
                                                      std::span<const std::int64_t> seeds, const PackingNote& note = {},
                                                      Bias bias = Bias::measured);

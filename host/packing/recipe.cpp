@@ -3,12 +3,12 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "host/packing/consolidation.hpp"
 #include "host/packing/grading.hpp"
 #include "host/packing/stored_packing.hpp"
+#include "host/process/exit_code.hpp"
 #include "io/packing_file.hpp"
 
 namespace voussoir::host {
@@ -44,7 +44,7 @@ void place_loose(PackedRve& rve, Uniform& uniform) {
       x = side * uniform();
       y = side * uniform();
     } while (overlaps(rve, i, x, y, side) && ++tries < placement_tries);
-    if (tries == placement_tries) throw std::runtime_error("the cell has no room left to place a grain at random");
+    if (tries == placement_tries) throw NoEquilibrium("the cell has no room left to place a grain at random");
     rve.position[2 * i] = x;
     rve.position[2 * i + 1] = y;
   }

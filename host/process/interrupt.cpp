@@ -1,5 +1,7 @@
 #include "host/process/interrupt.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
 #include <initializer_list>
 
@@ -7,6 +9,7 @@ namespace voussoir::host {
 namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;
+volatile std::sig_atomic_t code_at_once = 0;
 
 extern "C" void voussoir_on_signal(int signal) {
   stop_requested = 1;
@@ -14,6 +17,8 @@ extern "C" void voussoir_on_signal(int signal) {
   // send two, one from the kernel and one from the shell.
   if (signal != SIGHUP) std::signal(signal, SIG_DFL);
 }
+
+extern "C" void voussoir_end_on_signal(int /*signal*/) { _exit(code_at_once); }
 
 }  // namespace
 
@@ -27,6 +32,11 @@ void catch_interrupts() {
   struct sigaction hangup {};
   const bool under_nohup = sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler == SIG_IGN;
   if (!under_nohup) sigaction(SIGHUP, &action, nullptr);
+}
+
+void end_on_interrupts(int code) {
+  code_at_once = code;
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, voussoir_end_on_signal);
 }
 
 bool interrupted() { return stop_requested != 0; }

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "host/process/exit_code.hpp"
+
 namespace voussoir::host {
 
 /// To be called first in `main`. Descriptors 0 to 2 that are closed are taken up, so that no result file gets their
@@ -11,9 +13,9 @@ namespace voussoir::host {
 /// file beyond its limit (SIGXFSZ) become failures of the call that writes.
 void prepare_standard_streams();
 
-/// Writes the answer of a command whose product is its output. Returns exit_ok, or exit_machine after one line on
+/// Writes the answer of a command whose product is its output. Returns Outcome::done, or machine_failure after one line on
 /// standard error; no line is written where the reader of a pipe has gone, as `head` does.
-[[nodiscard]] int print_answer(const std::string& answer);
+[[nodiscard]] Outcome print_answer(const std::string& answer);
 
 /// For a command whose product is its files: the reason for which standard output has failed, if it has. Whatever is
 /// written to it from then on is dropped in silence.

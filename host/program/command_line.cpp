@@ -1,21 +1,23 @@
 #include "host/program/command_line.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <new>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "host/process/build_info.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/standard_streams.hpp"
+#include "host/process/threads.hpp"
 #include "host/program/commands.hpp"
+#include "host/program/failure.hpp"
+#include "host/program/sweep_outcome.hpp"
 #include "host/ranks/session.hpp"
-#include "io/case_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -29,7 +31,28 @@ struct Arguments {
   bool cpu = false;
   int threads = 0;
   int processes = 1;
+  bool take_over = false;
 };
+
+/// The table of exit codes, for the end of `--help`.
+std::string exit_codes() {
+  std::string text = "exit status:\n";
+  for (const ExitStatus& status : exit_table) text += fmt::format("  {:<4} {}\n", status.code, status.meaning);
+  return text + sweep_rule;
+}
+
+/// A build whose Kokkos has one thread takes any number, so that scripts work with both builds.
+int most_threads_to_ask_for() { return most_threads() > 1 ? most_threads() : 4096; }
+
+void add_threads(CLI::App& command, Arguments& a, const char* text) {
+  command.add_option("--threads", a.threads, text)->check(CLI::Range(1, most_threads_to_ask_for()));
+}
+
+void add_take_over(CLI::App& command, Arguments& a) {
+  command.add_flag("--take-over", a.take_over,
+                   "take a folder over that a process on another host has not given back; only where that process has "
+                   "ended, as where a scheduler has moved the job");
+}
 
 void add_overrides(CLI::App& command, Arguments& arguments) {
   command
@@ -38,9 +61,10 @@ void add_overrides(CLI::App& command, Arguments& arguments) {
       ->allow_extra_args(false);
 }
 
-/// Describes the commands with their options; `code` receives the exit code of the command that was run.
-void describe(CLI::App& app, Arguments& a, const std::string& command_text, int& code) {
+/// Describes the commands with their options; `outcome` receives that of the command that was run.
+void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outcome& outcome) {
   app.require_subcommand(1);
+  app.footer(exit_codes());
   app.set_version_flag("--version",
                        std::string("voussoir ") + build_version + " (" + build_revision + "), " + rank_library());
 
@@ -49,26 +73,29 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, int&
   run->add_option("-o,--output", a.output, "folder of the results; default: out/TITLE of the case");
   run->add_flag("--resume", a.resume, "go on behind the last checkpoint in the folder");
   run->add_flag("--replace", a.replace, "remove the results of an earlier run in the folder")->excludes("--resume");
-  run->add_option("--threads", a.threads, "number of threads; default: all cores")->check(CLI::Range(1, 4096));
+  add_threads(*run, a, "number of threads; default: OMP_NUM_THREADS, or one for each core that is available");
+  add_take_over(*run, a);
   add_overrides(*run, a);
-  run->callback(
-      [&] { code = command_run(a.file, a.overrides, {a.output, a.resume, a.replace, command_text, a.threads}); });
+  run->callback([&] {
+    outcome = command_run(a.file, a.overrides, {a.output, a.resume, a.replace, command_text, a.threads, a.take_over});
+  });
 
   CLI::App* check = app.add_subcommand(
       "check", "print every value of a case after defaults and --set, and what the run will cost");
   check->add_option("case", a.file, "case file (TOML)")->required();
   add_overrides(*check, a);
-  check->callback([&] { code = command_check(a.file, a.overrides); });
+  check->callback([&] { outcome = command_check(a.file, a.overrides); });
 
   CLI::App* sweep = app.add_subcommand("sweep", "run a base case with lists of overrides");
   sweep->add_option("sweep", a.file, "sweep file (TOML)")->required();
   sweep->add_option("-o,--output", a.output, "folder of the results; default: out/STEM of the sweep file");
   sweep->add_option("-j", a.processes, "number of runs at a time")->check(CLI::Range(1, 1024));
-  sweep->add_option("--threads", a.threads, "threads of each run")->check(CLI::Range(1, 4096));
+  add_threads(*sweep, a, "threads of each run; default: the available cores, shared among the runs at a time");
+  add_take_over(*sweep, a);
   sweep->add_flag("--resume", a.resume, "skip finished runs and go on with interrupted ones");
   sweep->callback([&] {
-    code = command_sweep(a.file,
-                         {a.output, std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads, a.resume});
+    outcome = command_sweep(a.file, {a.output, std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads,
+                                     a.resume, a.take_over});
   });
 
   CLI::App* info = app.add_subcommand("info", "print where a result comes from, and its increments");
@@ -76,12 +103,12 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, int&
   what->add_option("result", a.file, "run.h5 of a result");
   what->add_flag("--cpu", a.cpu, "print instead which instruction set the lanes take on this processor, and why");
   what->require_option(1);
-  info->callback([&] { code = a.cpu ? command_info_cpu() : command_info(a.file); });
+  info->callback([&] { outcome = a.cpu ? command_info_cpu() : command_info(a.file); });
 }
 
-int complain(int code, const std::string& sentence) {
+int complain(Outcome outcome, const std::string& sentence) {
   std::fprintf(stderr, "voussoir: %s\n", sentence.c_str());
-  return code;
+  return exit_code(outcome);
 }
 
 }  // namespace
@@ -91,30 +118,25 @@ int run_command_line(int argc, char** argv) {
     std::string command_text;
     for (int k = 0; k < argc; ++k) command_text += (k > 0 ? " " : "") + std::string(argv[k]);
     Arguments arguments;
-    int code = exit_ok;
+    Outcome outcome = Outcome::done;
     CLI::App app("Tunnelling ground movement by coupled finite and discrete elements", "voussoir");
-    describe(app, arguments, command_text, code);
+    describe(app, arguments, command_text, outcome);
     try {
       app.parse(argc, argv);
     } catch (const CLI::Success& help) {
       std::ostringstream text;
       app.exit(help, text, text);
-      return print_answer(text.str());
+      return exit_code(print_answer(text.str()));
     } catch (const CLI::ParseError& error) {
       if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
-        return complain(exit_input, "unknown command " + std::string(argv[1]) + " (see --help)");
+        return complain(Outcome::wrong_input, "unknown command " + std::string(argv[1]) + " (see --help)");
       }
-      return complain(exit_input, std::string(error.what()) + " (see --help)");
+      return complain(Outcome::wrong_input, std::string(error.what()) + " (see --help)");
     }
-    return code;
-  } catch (const io::InputError& error) {
-    return complain(exit_input, error.what());
-  } catch (const std::invalid_argument& error) {
-    return complain(exit_input, error.what());
-  } catch (const std::bad_alloc&) {
-    return complain(exit_machine, "out of memory");
-  } catch (const std::exception& error) {
-    return complain(exit_machine, error.what());
+    return exit_code(outcome);
+  } catch (...) {
+    const Failure failure = failure_of(std::current_exception());
+    return complain(failure.outcome, failure.sentence);
   }
 }
 

@@ -1,9 +1,7 @@
 #include "host/program/commands.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
-#include <Kokkos_Core.hpp>
 #include <cstdio>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -11,12 +9,13 @@
 #include "host/case/load_case.hpp"
 #include "host/estimate/report.hpp"
 #include "host/estimate/work.hpp"
-#include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
+#include "host/process/threads.hpp"
 #include "host/program/run_case.hpp"
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
+#include "io/input_error.hpp"
 #include "io/result_file.hpp"
 #include "kernels/isa/choose_lanes.hpp"
 
@@ -36,29 +35,34 @@ std::string table_of(const std::vector<io::IncrementInfo>& increments) {
 
 }  // namespace
 
-int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides, RunOptions options) {
+Outcome command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
+                    RunOptions options) {
   const Case input = load_case(case_file, overrides);
   const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
   check_folder(options, input.fingerprint);
-  Kokkos::InitializationSettings settings;
-  settings.set_disable_warnings(true);
-  if (options.threads > 0) settings.set_num_threads(options.threads);
-  const Kokkos::ScopeGuard kokkos(settings);
+  if (!input.output.rves.empty()) check_snapshot_points(input.output, case_size(input), input.name);
+  const KokkosSession kokkos(options.threads);
   start_ranks(options.threads, input.engine.isa);
-  options.threads = Kokkos::DefaultHostExecutionSpace().concurrency();
-  // Only a kind that advances in increments can stop between two of them; the others are ended by the signal itself.
-  if (runs_on_a_mesh(input.kind)) catch_interrupts();
+  options.threads = kokkos.threads().count;
+  options.threads_note = kokkos.threads().note;
+  // Only a kind that advances in increments can stop between two of them; the others end at once.
+  runs_on_a_mesh(input.kind) ? catch_interrupts() : end_on_interrupts(exit_code(Outcome::interrupted));
+  // A case of this kind writes into the folder of packings only, but it removes what lies in its own with --replace.
+  if (input.kind != CaseKind::pack || std::filesystem::exists(options.folder)) {
+    options.lock = std::make_shared<RunLock>(options.folder, options.take_over);
+    check_folder(options, input.fingerprint);  // once more: another run may have ended between the check and the lock
+  }
   if (!runs_on_a_mesh(input.kind)) std::printf("%s\n", kernels::lanes_sentence(lanes).c_str());  // others have a log
-  const int code = run_case(input, options);
+  const Outcome outcome = run_case(input, options);
   if (const auto reason = lost_output()) {  // only kinds without a log come here; a log has told of the loss already
     std::fprintf(stderr, "voussoir: standard output cannot be written (%s), its lines are lost, the files are not\n",
                  reason->c_str());
   }
-  return code;
+  return outcome;
 }
 
-int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
+Outcome command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
   const Case input = load_case(case_file, overrides);
   const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
   std::string answer = input.resolved + "\n";
@@ -71,7 +75,7 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
   return print_answer(answer);
 }
 
-int command_info(const std::filesystem::path& result_file) {
+Outcome command_info(const std::filesystem::path& result_file) {
   std::string answer;
   try {  // for this command a file that cannot be read is wrong input
     const io::Provenance origin = io::read_provenance(result_file);
@@ -84,12 +88,12 @@ int command_info(const std::filesystem::path& result_file) {
     answer += fmt::format("{} nodes, {} elements\n", mesh.nodes(), mesh.elements()) +
               table_of(io::read_increments(result_file));
   } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(error.what());
+    throw io::InputError("info", "", error.what());
   }
   return print_answer(answer);
 }
 
-int command_info_cpu() {
+Outcome command_info_cpu() {
   std::string held;
   for (const kernels::LaneSet* lanes : kernels::compiled_lanes())
     held += fmt::format("{}{}", held.empty() ? "" : ", ", kernels::name_of(lanes->isa));

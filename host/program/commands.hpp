@@ -1,27 +1,28 @@
 #pragma once
-/// The commands, called after the command line is parsed. They return exit codes and throw input errors.
+/// The commands, called after the command line is parsed. They return outcomes and throw input errors.
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "host/process/exit_code.hpp"
 #include "host/record/folder.hpp"
 
 namespace voussoir::host {
 
 /// `voussoir run`: checks case and folder before anything is written. Kokkos is initialised for the time of the run,
-/// with options.threads; with 0 Kokkos chooses the number.
-[[nodiscard]] int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
-                              RunOptions options);
+/// with options.threads (process/threads.hpp); 0 asks for the default. The folder is locked for the time of the run.
+[[nodiscard]] Outcome command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
+                                  RunOptions options);
 
 /// `voussoir check`: prints every value after defaults and overrides, and the estimated cost of the run.
-[[nodiscard]] int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides);
+[[nodiscard]] Outcome command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides);
 
 /// `voussoir info`: prints where a result comes from, and its table of increments.
-[[nodiscard]] int command_info(const std::filesystem::path& result_file);
+[[nodiscard]] Outcome command_info(const std::filesystem::path& result_file);
 
 /// `voussoir info --cpu`: prints the processor, the sets of lanes in this program, and which of them is taken and why.
-[[nodiscard]] int command_info_cpu();
+[[nodiscard]] Outcome command_info_cpu();
 
 struct SweepOptions {
   std::filesystem::path folder;
@@ -29,10 +30,11 @@ struct SweepOptions {
   int processes = 1;
   int threads = 0;
   bool resume = false;
+  bool take_over = false;  ///< see RunOptions; for the sweep's folder and those of its runs
 };
 
 /// `voussoir sweep`: runs one base case with different overrides, each run in a folder of its own, and writes
 /// summary.csv.
-[[nodiscard]] int command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& options);
+[[nodiscard]] Outcome command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& options);
 
 }  // namespace voussoir::host

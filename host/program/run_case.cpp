@@ -2,16 +2,17 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdint>
 #include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <stdexcept>
 
 #include "host/element_tests/biaxial_run.hpp"
 #include "host/element_tests/calibrate_run.hpp"
 #include "host/element_tests/pack.hpp"
 #include "host/element_tests/probe.hpp"
-#include "host/estimate/report.hpp"
-#include "host/estimate/work.hpp"
-#include "host/process/exit_code.hpp"
+#include "host/program/failure.hpp"
+#include "host/record/log.hpp"
 #include "host/stages/biaxial_bvp.hpp"
 #include "host/stages/column.hpp"
 #include "host/stages/tunnel.hpp"
@@ -20,28 +21,24 @@
 namespace voussoir::host {
 namespace {
 
-int answer(RunStatus status, const RunOptions& options) {
+Outcome answer(RunStatus status, const RunOptions& options) {
   const std::string folder = options.folder.string();
   switch (status) {
     case RunStatus::finished:
-      return exit_ok;
+      return Outcome::done;
     case RunStatus::interrupted:
       std::fprintf(stderr, "the run was stopped on request; `--resume` goes on from the last increment in %s\n",
                    folder.c_str());
-      return exit_interrupted;
+      return Outcome::interrupted;
     case RunStatus::failed:
       std::fprintf(stderr, "no equilibrium was found (see %s/run.log); the last good checkpoint is kept\n",
                    folder.c_str());
-      return exit_numerical;
+      return Outcome::no_equilibrium;
   }
-  return exit_machine;
+  throw std::logic_error("a run ended in no known way");
 }
 
-}  // namespace
-
-int run_case(const Case& input, const RunOptions& options) {
-  if (!input.output.rves.empty()) check_snapshot_points(input.output, case_size(input), input.name);
-  if (options.replace) remove_earlier_run(options);
+Outcome run_kind(const Case& input, const RunOptions& options) {
   switch (input.kind) {
     case CaseKind::tunnel:
       return answer(run_tunnel(input, options), options);
@@ -58,7 +55,35 @@ int run_case(const Case& input, const RunOptions& options) {
     case CaseKind::calibrate:
       return run_calibrate(input, options);
   }
-  return exit_machine;
+  throw std::logic_error("a case of no known kind");
+}
+
+/// Adds the reason of a run's end to its log, which the exception itself does not reach.
+void add_to_log(const RunOptions& options, const std::string& sentence) {
+  const std::filesystem::path file = options.folder / "run.log";
+  if (!std::filesystem::exists(file)) return;
+  try {
+    RunLog(file, true).detail("the run ends: " + sentence);
+  } catch (const std::exception&) {  // a disk that is full may be the reason itself
+  }
+}
+
+}  // namespace
+
+Outcome run_case(const Case& input, const RunOptions& options) {
+  if (options.replace) remove_earlier_run(options);
+  if (!runs_on_a_mesh(input.kind)) {  // the kinds on a mesh have a log
+    for (const std::string& line : {options.threads_note, options.lock ? options.lock->note() : std::string()}) {
+      if (!line.empty()) std::printf("%s\n", line.c_str());
+    }
+    return run_kind(input, options);
+  }
+  try {
+    return run_kind(input, options);
+  } catch (...) {
+    add_to_log(options, failure_of(std::current_exception()).sentence);
+    throw;
+  }
 }
 
 }  // namespace voussoir::host

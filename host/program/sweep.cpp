@@ -10,9 +10,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -20,13 +20,15 @@
 #include <vector>
 
 #include "host/case/load_case.hpp"
-#include "host/process/exit_code.hpp"
+#include "host/process/cores.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
 #include "host/program/commands.hpp"
+#include "host/program/sweep_outcome.hpp"
 #include "host/ranks/session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/case_file.hpp"
+#include "io/input_error.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -36,7 +38,7 @@ struct SweepRun {
   std::string name;
   std::vector<std::string> overrides;
   std::filesystem::path folder;
-  int exit_code = -1;  ///< -1 as long as the run has not ended
+  RunEnd end = {};
 };
 
 struct Sweep {
@@ -57,13 +59,14 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
   sweep.base = text.root().path("base");
   std::set<std::string> names;
   for (const io::Table& table : text.root().tables("run")) {
-    SweepRun run{table.text("name"), table.texts("set", std::vector<std::string>{}), {}};
+    SweepRun run{.name = table.text("name"), .overrides = table.texts("set", std::vector<std::string>{}), .folder = {}};
     if (!is_plain(run.name))
       throw table.error("name", "must consist of letters, digits and _ . - and must not begin with a dot");
     if (!names.insert(run.name).second) throw table.error("name", "is the name of two runs");
     run.folder = options.folder / run.name;
     check_folder({.folder = run.folder, .resume = options.resume, .command = {}},
                  load_case(sweep.base, run.overrides).fingerprint);
+    expect_unlocked(run.folder);
     sweep.runs.push_back(std::move(run));
   }
   if (sweep.runs.empty()) throw text.root().error("run", "there is no [[run]] in this sweep");
@@ -92,6 +95,7 @@ pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepO
   for (const std::string& value : run.overrides) words.insert(words.end(), {"--set", value});
   if (options.threads > 0) words.insert(words.end(), {"--threads", std::to_string(options.threads)});
   if (options.resume) words.emplace_back("--resume");
+  if (options.take_over) words.emplace_back("--take-over");
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -107,23 +111,6 @@ pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepO
   ::sigprocmask(SIG_SETMASK, &before, nullptr);
   if (process < 0) throw std::system_error(failure, std::generic_category(), "cannot start " + words.front());
   return process;
-}
-
-const char* status_name(int exit_code) {
-  switch (exit_code) {
-    case exit_ok:
-      return "finished";
-    case exit_input:
-      return "wrong input";
-    case exit_numerical:
-      return "no equilibrium";
-    case exit_interrupted:
-      return "interrupted";
-    case -1:
-      return "not run";
-    default:
-      return "machine failure";
-  }
 }
 
 /// Waits until one of the processes has ended and stores its exit code. A request to stop is passed on once, as
@@ -143,9 +130,8 @@ void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
   const auto found = running.find(process);
   if (found == running.end()) return;
   SweepRun& run = *found->second;
-  // The signal itself has ended a run whose kind cannot stop between increments.
-  run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : passed_on ? exit_interrupted : exit_machine;
-  std::printf("%s: %s\n", run.name.c_str(), status_name(run.exit_code));
+  run.end = end_of(status, passed_on);
+  std::printf("%s: %s\n", run.name.c_str(), name_of(run.end).c_str());
   static_cast<void>(lost_output());  // the summary says the same
   running.erase(found);
 }
@@ -202,8 +188,8 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
       steps += info.particle_steps;
       wall += info.wall_s;
     }
-    text += fmt::format("{},{},{},{},{:.9g},{},{:.9g},{:.2f}", run.name, status_name(run.exit_code), run.exit_code,
-                        last.stage, last.load_parameter, iterations, steps, wall);
+    text += fmt::format("{},{},{},{},{:.9g},{},{:.9g},{:.2f}", run.name, name_of(run.end), run.end.code, last.stage,
+                        last.load_parameter, iterations, steps, wall);
     for (const std::string& column : columns) {
       text += last.extra.contains(column) ? fmt::format(",{:.9g}", last.extra.at(column).value) : ",";
     }
@@ -212,23 +198,33 @@ void write_summary(const Sweep& sweep, const std::filesystem::path& file) {
   io::write_text(file, text);
 }
 
+/// The sweep's cores, shared among the runs at a time, where nobody has said a number.
+int threads_of_a_run(const SweepOptions& options) {
+  const bool said = options.threads > 0 || getenv("OMP_NUM_THREADS") != nullptr ||
+                    getenv("KOKKOS_NUM_THREADS") != nullptr;
+  if (said || options.processes == 1) return options.threads;
+  return std::max(1, cores_of_this_process().usable() / options.processes);
+}
+
 }  // namespace
 
-int command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& given) {
-  if (rank_count() > 1) throw std::invalid_argument("sweep starts processes of its own: run it without mpirun");
+Outcome command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& given) {
+  if (rank_count() > 1) throw io::InputError("sweep", "", "starts processes of its own: run it without mpirun");
   SweepOptions options = given;
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / sweep_file.stem();
   Sweep sweep = load_sweep(sweep_file, options);
   catch_interrupts();
-  std::filesystem::create_directories(options.folder);
+  const RunLock lock(options.folder, options.take_over);
   io::remove_leftovers(options.folder);
+  if (!lock.note().empty()) std::printf("%s\n", lock.note().c_str());
+  options.threads = threads_of_a_run(options);
   run_all(sweep, options);
   write_summary(sweep, options.folder / "summary.csv");
   std::printf("summary: %s\n", (options.folder / "summary.csv").c_str());
   static_cast<void>(lost_output());
-  int worst = exit_ok;
-  for (const SweepRun& run : sweep.runs) worst = std::max(worst, run.exit_code < 0 ? exit_interrupted : run.exit_code);
-  return worst;
+  std::vector<RunEnd> ends;
+  for (const SweepRun& run : sweep.runs) ends.push_back(run.end);
+  return outcome_of(ends);
 }
 
 }  // namespace voussoir::host

@@ -106,7 +106,7 @@ Message receive_message(int rank) {
   try {
     message.resize(size);
   } catch (const std::bad_alloc&) {
-    abort_ranks(exit_machine, "there is no memory left for a message between ranks");
+    abort_ranks(exit_code(Outcome::machine_failure), "there is no memory left for a message between ranks");
   }
   for (std::size_t at = 0; at < size; at += piece) receive_bytes(rank, message.data() + at, std::min(piece, size - at));
   return message;

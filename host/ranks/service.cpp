@@ -11,6 +11,7 @@
 #include "host/process/build_info.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/resources.hpp"
+#include "host/process/threads.hpp"
 #include "host/ranks/messages.hpp"
 #include "host/ranks/session.hpp"
 #include "kernels/isa/choose_lanes.hpp"
@@ -61,12 +62,7 @@ class Service {
                                theirs + ")");
     }
     const int threads = read.value<int>();
-    if (!kokkos_) {
-      Kokkos::InitializationSettings settings;
-      settings.set_disable_warnings(true);
-      if (threads > 0) settings.set_num_threads(threads);
-      kokkos_.emplace(settings);
-    }
+    if (!kokkos_) kokkos_.emplace(threads);
     std::string lanes, fault;
     try {
       lanes = kernels::name_of(kernels::choose_lanes(kernels::find_instruction_set(read.text())).lanes->isa);
@@ -130,7 +126,7 @@ class Service {
     reply.list(pool().committed_reports());
   }
 
-  std::optional<Kokkos::ScopeGuard> kokkos_;
+  std::optional<KokkosSession> kokkos_;
   std::optional<RvePool> pool_;
 };
 
@@ -160,11 +156,11 @@ int RankSession::serve() const {
     Service service;
     for (;;) {
       const Message message = receive_message(0);
-      if (message.front() == static_cast<std::byte>(Command::quit)) return exit_ok;
+      if (message.front() == static_cast<std::byte>(Command::quit)) return exit_code(Outcome::done);
       send_message(0, answer(service, message));
     }
   } catch (const std::exception& error) {
-    abort_ranks(exit_machine, error.what());
+    abort_ranks(exit_code(Outcome::machine_failure), error.what());
   }
 }
 

@@ -13,7 +13,7 @@
 namespace voussoir::host {
 namespace {
 
-/// Names that a run may leave before it has a run.h5.
+/// Names that a run may leave before it has a run.h5, besides its lock, which this process holds.
 constexpr std::array<std::string_view, 4> first_names{"run.log", "increments", "checkpoints", "column"};
 /// Further names that it may leave. run.h5 is removed last: while it exists, the folder is known as a folder of
 /// results.
@@ -22,7 +22,7 @@ constexpr std::array<std::string_view, 5> further_names{"result.xdmf", "k0.csv",
 /// True for an entry that a run leaves when it is killed before it has a run.h5.
 bool is_left_by_a_start(const std::filesystem::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
-  return entry.path().extension() == ".tmp" ||
+  return entry.path().extension() == ".tmp" || name == run_lock_name ||
          std::find(first_names.begin(), first_names.end(), name) != first_names.end();
 }
 
@@ -43,6 +43,11 @@ std::string fingerprint_of_results(const RunOptions& options) {
 }
 
 }  // namespace
+
+void confirm_lock(const RunOptions& options, const std::function<void(const std::string&)>& note) {
+  const std::string changed = options.lock ? options.lock->confirm() : std::string();
+  if (!changed.empty()) note(changed);
+}
 
 void check_folder(const RunOptions& options, const std::string& fingerprint) {
   namespace fs = std::filesystem;

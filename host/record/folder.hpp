@@ -2,7 +2,11 @@
 /// Checks of a run's folder before anything is written there.
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
+
+#include "host/record/run_lock.hpp"
 
 namespace voussoir::host {
 
@@ -12,7 +16,14 @@ struct RunOptions {
   bool replace = false;          ///< results of an earlier run may be removed
   std::string command;           ///< command line, which the provenance repeats
   int threads = 1;
+  bool take_over = false;              ///< a lock that another host left may be taken
+  std::string threads_note = {};       ///< number of threads and its reason, for the log
+  std::shared_ptr<RunLock> lock = {};  ///< held while the run lasts; none where nobody else can come, as in tests
 };
+
+/// To be called before something is written into the folder: RunLock::confirm, whose sentence goes to `note`, or
+/// nothing where there is no lock.
+void confirm_lock(const RunOptions& options, const std::function<void(const std::string&)>& note);
 
 /// Throws io::InputError where the run of the case with this fingerprint must not start: the folder holds results and
 /// neither resume nor replace is asked for; it holds other files and no results; or resume is asked for and the results

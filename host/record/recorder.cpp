@@ -36,7 +36,8 @@ std::string remarks(const EquilibriumReport& found) {
 }  // namespace
 
 RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& provenance, io::MeshData mesh, RunLog& log)
-    : folder_(options.folder),
+    : options_(options),
+      folder_(options.folder),
       log_(log),
       store_(options.folder / "checkpoints", provenance.fingerprint),
       provenance_(provenance),
@@ -58,6 +59,10 @@ RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& proven
   totals_ = totals_from(checkpoint);
   if (std::filesystem::exists(folder_ / "run.h5")) provenance_ = io::read_provenance(folder_ / "run.h5");
   if (!finished_) writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
+}
+
+void RunRecorder::confirm() {
+  confirm_lock(options_, [this](const std::string& changed) { log_.warning(changed); });
 }
 
 const io::Checkpoint* RunRecorder::resumed() const { return loaded_ ? &loaded_->checkpoint : nullptr; }
@@ -98,6 +103,7 @@ void RunRecorder::report(const IncrementReport& increment) {
 
 void RunRecorder::write(const IncrementReport& increment, const std::vector<io::Field>& fields,
                         const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates) {
+  confirm();
   io::IncrementInfo row = row_of(increment);
   row.index = ++result_index_;
   writer_->write(row, fields, snapshots, coordinates);
@@ -111,6 +117,7 @@ std::string RunRecorder::disk_use() const {
 }
 
 void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn> columns) {
+  confirm();
   if (!writer_) {
     if (std::filesystem::exists(folder_ / "run.h5") && io::read_tables(folder_ / "run.h5").contains(name)) return;
     writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
@@ -119,6 +126,7 @@ void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn
 }
 
 void RunRecorder::save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished) {
+  confirm();
   checkpoint.put_text("stage", stage);
   host::save(totals_, checkpoint);
   const std::array<std::int64_t, 3> record{stage_index, result_index_, finished ? 1 : 0};

@@ -57,7 +57,10 @@ class RunRecorder {
 
  private:
   [[nodiscard]] std::string time_left(int done) const;
+  /// Makes sure that the folder still belongs to this run.
+  void confirm();
 
+  RunOptions options_;
   std::filesystem::path folder_;
   RunLog& log_;
   io::CheckpointStore store_;

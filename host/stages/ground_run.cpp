@@ -18,7 +18,10 @@ StageSettings stage_settings(const Case& input) {
 
 RunLog open_log(const RunOptions& options) {
   std::filesystem::create_directories(options.folder);
-  return {options.folder / "run.log", options.resume};
+  RunLog log(options.folder / "run.log", options.resume);
+  if (options.lock && !options.lock->note().empty()) log.warning(options.lock->note());
+  if (!options.threads_note.empty()) log.line(options.threads_note);
+  return log;
 }
 
 void log_engine(const Case& input, RunLog& log) {

@@ -1,11 +1,14 @@
 /// Checkpoints: same bits back, damaged files passed over, only the last two kept.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <thread>
 
 #include "io/checkpoint.hpp"
 #include "io/checksum.hpp"
@@ -133,6 +136,30 @@ TEST(ChecksumTest, IsOfTheSequenceNotOfItsPiecesAndSeesEveryBit) {
     EXPECT_NE(sum_of(damaged, 8), whole) << bit;
   }
   EXPECT_NE(sum_of(std::vector<std::byte>(8), 8), sum_of(std::vector<std::byte>(9), 8));
+}
+
+// A folder that something else changes while checkpoints are written: each save works or says what is wrong.
+TEST_F(CheckpointTest, AFolderThatChangesUnderTheRunIsAnError) {
+  std::atomic<bool> stop = false;
+  std::thread other([&] {
+    while (!stop) {
+      for (int k = 1; k < 400; ++k) {
+        std::error_code ignored;
+        fs::remove(folder_ / fmt::format("checkpoint_{:04}.bin", k), ignored);
+      }
+    }
+  });
+  int refused = 0;
+  for (int k = 1; k < 400 && refused < 3; ++k) {
+    try {
+      store_.save(k, example(k));
+    } catch (const std::exception&) {
+      ++refused;
+    }
+  }
+  stop = true;
+  other.join();
+  EXPECT_GT(refused, 0);  // in the mean every other save is hit
 }
 
 }  // namespace

@@ -1,0 +1,61 @@
+#include "host/program/failure.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+
+#include "io/input_error.hpp"
+
+namespace voussoir::host {
+namespace {
+
+[[noreturn]] void end_by_exception() {
+  const Failure failure = failure_of(std::current_exception());
+  std::fprintf(stderr, "voussoir: %s\n", failure.sentence.c_str());
+  std::fflush(stdout);
+  _exit(exit_code(failure.outcome));
+}
+
+void correct_exit_code(int code, void* /*unused*/) {
+  const bool known = std::any_of(exit_table.begin(), exit_table.end(),
+                                 [code](const ExitStatus& status) { return status.code == code; });
+  if (known) return;
+  std::fflush(nullptr);
+  _exit(exit_code(Outcome::machine_failure));
+}
+
+}  // namespace
+
+Failure failure_of(const std::exception_ptr& exception) {
+  if (!exception) return {Outcome::machine_failure, "an error within the program: it was ended without a reason"};
+  try {
+    std::rethrow_exception(exception);
+  } catch (const io::InputError& error) {
+    return {Outcome::wrong_input, error.what()};
+  } catch (const NoEquilibrium& error) {
+    return {Outcome::no_equilibrium, error.what()};
+  } catch (const Interrupted& error) {
+    return {Outcome::interrupted, error.what()};
+  } catch (const std::bad_alloc&) {
+    return {Outcome::machine_failure, "out of memory"};
+  } catch (const std::length_error&) {  // of a container that would be larger than any memory
+    return {Outcome::machine_failure, "out of memory"};
+  } catch (const std::logic_error& error) {
+    return {Outcome::machine_failure, std::string("an error within the program: ") + error.what()};
+  } catch (const std::exception& error) {
+    return {Outcome::machine_failure, error.what()};
+  } catch (...) {
+    return {Outcome::machine_failure, "an error within the program: an exception of unknown type"};
+  }
+}
+
+void end_all_failures_by_the_table() {
+  std::set_terminate(end_by_exception);
+  on_exit(correct_exit_code, nullptr);
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,162 @@
+"""Two processes and one folder: the second is refused with exit status 2 and one line that names process and host; a
+run that was killed does not block; a lock of another host is taken over only where the user says so. In the folder of
+packings the second process waits for the first."""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import time
+from pathlib import Path
+
+from program import PROGRAM, ROOT, check, command, fresh, run
+
+SMALL = ["ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m", "volume_loss.total=1 %"]
+LONG = [*SMALL, "volume_loss.increments=300"]
+QUICK = [*SMALL, "volume_loss.increments=1", "gravity.ratio=2", "gravity.uniform_step=0.5"]
+CASE = "tunnel_elastic"
+PACK = ROOT / "cases/pack/case.toml"
+
+
+def start(words):
+    return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def wait_until(holds, process, what):
+    deadline = time.monotonic() + 120
+    while not holds():
+        check(process.poll() is None, f"the run ended with {process.returncode} before {what}")
+        check(time.monotonic() < deadline, f"no {what} within two minutes")
+        time.sleep(0.005)
+
+
+def expect_refusal(words, *fragments):
+    done = run(words, code=2)
+    check(done.stderr.count("\n") == 1, f"not one line: {done.stderr}")
+    for fragment in fragments:
+        check(fragment in done.stderr, f"'{fragment}' is missing in: {done.stderr}")
+    print(f"ok: {done.stderr.strip()}")
+
+
+# A second run in the folder of a running one, with every option; in its column; and the first goes on unharmed.
+two = fresh("two")
+first = start(command(CASE, two, LONG))
+wait_until(lambda: (two / "increments/0002.h5").exists(), first, "a second increment")
+names = (f"process {first.pid} ", f"host {socket.gethostname()}")
+for option in ([], ["--resume"], ["--replace"], ["--resume", "--take-over"]):
+    expect_refusal(command(CASE, two, LONG, *option), *(names if option else ("two",)))
+expect_refusal(command(CASE, two / "column", LONG, "--resume"), "the folder above it", *names)
+check((two / "increments/0002.h5").exists(), "a refused --replace has removed results")
+
+# A user removes the lock file: the run makes it anew and says so.
+(two / "run.lock").unlink()
+wait_until(lambda: (two / "run.lock").exists(), first, "a new lock file")
+expect_refusal(command(CASE, two, LONG, "--resume"), *names)
+check("it was made anew" in (two / "run.log").read_text(), "the log does not say that the lock file was removed")
+
+# kill -9, and the next run goes on.
+first.kill()
+first.communicate()
+check((two / "run.lock").exists(), "a killed run has no lock file to leave")
+second = start(command(CASE, two, LONG, "--resume"))
+wait_until(lambda: f"process {second.pid}\n" in (two / "run.lock").read_text(), second, "lock of the second run")
+# Another process takes the folder over, for example from another host: this run ends and leaves the folder.
+kept = (two / "run.lock").read_text()
+(two / "new.tmp").write_text(kept.replace(f"process {second.pid}\n", "process 1\n"))
+(two / "new.tmp").rename(two / "run.lock")
+said = second.communicate(timeout=60)[1]
+check(second.returncode == 4 and "taken the folder over" in said, f"exit {second.returncode}: {said}")
+
+# A lock of another host is refused whatever its age, and taken over where the user says so.
+lock = two / "run.lock"
+lock.write_text(kept.replace(f"host {socket.gethostname()}\n", "host elsewhere\n"))
+os.utime(lock, (0, 0))
+expect_refusal(command(CASE, two, LONG, "--resume"), "host elsewhere", "--take-over")
+third = start(command(CASE, two, LONG, "--resume", "--take-over"))
+wait_until(lambda: "taken over from" in (two / "run.log").read_text(), third, "a line about the take-over")
+third.send_signal(signal.SIGTERM)
+third.communicate(timeout=60)
+check(third.returncode == 130 and not lock.exists(), f"exit {third.returncode}; a run that was stopped gives its lock back")
+
+# The folder is moved away under the run.
+fourth = start(command(CASE, two, LONG, "--resume"))
+wait_until(lambda: lock.exists() and f"process {fourth.pid}\n" in lock.read_text(), fourth, "its lock")
+moved = fresh("moved")
+two.rename(moved)
+said = fourth.communicate(timeout=60)[1]
+check(fourth.returncode == 4 and said.count("\n") == 1, f"a moved folder: exit {fourth.returncode}: {said}")
+check(not (two / "run.h5").exists(), "the run has begun anew in another folder of the old name")
+
+# Two that start at the same moment: one goes on, the other is refused.
+for _ in range(4):
+    race = fresh("race")
+    pair = [start(command(CASE, race, QUICK)) for _ in range(2)]
+    ends = [(p.communicate(timeout=120)[1], p.returncode)[1] for p in pair]
+    check(sorted(ends) == [0, 2], f"two at the same moment ended with {ends}")
+run(command(CASE, race, QUICK, "--resume"))
+
+# A sweep holds its folder and those of its runs.
+Path("sweep.toml").write_text(f"""base = '{ROOT / "cases/tunnel_elastic/case.toml"}'
+[[run]]
+name = "one"
+set = {LONG}
+[[run]]
+name = "two"
+set = {QUICK}
+""")
+swept = fresh("swept")
+words = [PROGRAM, "sweep", "sweep.toml", "-o", str(swept), "--threads", "1"]
+sweep = start(words)
+wait_until(lambda: (swept / "one/increments/0001.h5").exists(), sweep, "an increment of the sweep")
+expect_refusal([*words, "--resume"], "process")
+expect_refusal(command(CASE, swept / "one", LONG, "--resume"), "process")
+expect_refusal(command(CASE, swept / "two", QUICK), "the folder above it", f"process {sweep.pid} ")
+sweep.send_signal(signal.SIGTERM)
+sweep.communicate(timeout=60)
+check(sweep.returncode == 130, f"the sweep ended with {sweep.returncode}")
+
+
+# Packings: the second process waits for the first.
+def pack(grains):
+    return [PROGRAM, "run", str(PACK), "-o", "pack", "--threads", "1", "--set", f"packing.grains={grains}",
+            "--set", "packing.seeds=[1]", "--set", "packing.folder=packings", "--set", "packing.pressure=10 kPa"]  # fmt: skip
+
+
+shutil.rmtree("packings", ignore_errors=True)
+many = 700
+first = start(pack(many))
+wait_until(lambda: list(Path("packings").glob("*.lock")), first, "the lock of a packing")
+others = [start(pack(many)) for _ in range(2)]
+check("packing made" in first.communicate(timeout=250)[0], "the first process made no packing")
+for other in others:
+    said = other.communicate(timeout=250)[0]
+    check(f"waits for process {first.pid} " in said, f"the second process does not say that it waits: {said}")
+    check("packing found" in said and "packing made" not in said, f"the packing was made twice: {said}")
+check(not list(Path("packings").glob("*.lock")), "a lock of a packing is left")
+
+# The first dies: the second makes the packing. A request to stop ends the wait.
+shutil.rmtree("packings")
+first = start(pack(many))
+wait_until(lambda: list(Path("packings").glob("*.lock")), first, "the lock of a packing")
+other, stopped = start(pack(many)), start(command("biaxial_bvp", fresh("waiting"), [
+    f"packing.grains={many}", "packing.seed=1", "packing.candidates=1", "packing.folder=packings",
+    "packing.consolidation_friction=0.0", "biaxial_bvp.pressure=10 kPa"]))  # fmt: skip
+log = Path("waiting/run.log")
+wait_until(lambda: log.exists() and "waits for process" in log.read_text(), first, "a run that waits")
+stopped.send_signal(signal.SIGTERM)
+said = stopped.communicate(timeout=60)[1]
+check(stopped.returncode == 130 and "waited for process" in said, f"stopped while waiting: {stopped.returncode}: {said}")
+first.kill()
+first.communicate()
+said = other.communicate(timeout=250)[0]
+check("packing made" in said, f"the second process did not take over: {said}")
+check(run(pack(many)).stdout.count("packing found") == 1, "the packing is not there")
+
+# pack that is stopped while it computes.
+shutil.rmtree("packings")
+first = start(pack(4000))
+wait_until(lambda: list(Path("packings").glob("*.lock")), first, "the lock of a packing")
+first.send_signal(signal.SIGTERM)
+first.communicate(timeout=60)
+check(first.returncode == 130, f"a packing that was stopped ended with {first.returncode}")
