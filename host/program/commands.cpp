@@ -9,13 +9,14 @@
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
 #include "host/estimate/report.hpp"
-#include "host/estimate/work.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
+#include "host/program/accept_case.hpp"
 #include "host/program/run_case.hpp"
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
 #include "io/result_file.hpp"
+#include "io/text_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -33,7 +34,8 @@ void print_increments(const std::vector<io::IncrementInfo>& increments) {
 }  // namespace
 
 int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides, RunOptions options) {
-  const Case input = load_case(case_file, overrides);
+  const AcceptedCase accepted = accept_case(case_file, overrides);
+  const Case& input = accepted.input;
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
   check_folder(options, input.fingerprint);
   Kokkos::InitializationSettings settings;
@@ -41,6 +43,7 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
   if (options.threads > 0) settings.set_num_threads(options.threads);
   const Kokkos::ScopeGuard kokkos(settings);
   start_ranks(options.threads);
+  refuse_too_large(input, accepted.size, rank_count());
   options.threads = Kokkos::DefaultHostExecutionSpace().concurrency();
   // Only a kind that advances in increments can stop between two of them; the others are ended by the signal itself.
   if (runs_on_a_mesh(input.kind)) catch_interrupts();
@@ -48,14 +51,24 @@ int command_run(const std::filesystem::path& case_file, const std::vector<std::s
 }
 
 int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
-  const Case input = load_case(case_file, overrides);
+  const auto [input, size] = accept_case(case_file, overrides);
+  refuse_too_large(input, size, rank_count());
   std::printf("%s\n", input.resolved.c_str());
   if (uses_engine(input.kind, input.material)) std::printf("# %s\n", engine_note(input.engine).c_str());
-  const CaseSize size = case_size(input);
-  check_snapshot_points(input.output, size, input.name);
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     std::printf("# %s\n", line.c_str());
   return exit_ok;
+}
+
+int command_keys(const std::string& kind) {
+  for (const auto& [candidate, name] : case_kind_names) {
+    if (kind != name) continue;
+    std::printf("%s", io::key_table(keys_of(candidate)).c_str());
+    return exit_ok;
+  }
+  std::string names;
+  for (const auto& [candidate, name] : case_kind_names) names += (names.empty() ? "" : ", ") + std::string(name);
+  throw std::invalid_argument("keys: the kind must be one of " + names + ", is " + io::in_one_line(kind));
 }
 
 int command_info(const std::filesystem::path& result_file) {

@@ -17,6 +17,9 @@ namespace voussoir::host {
 /// `voussoir check`: prints every value after defaults and overrides, and the estimated cost of the run.
 [[nodiscard]] int command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides);
 
+/// `voussoir keys`: prints all keys of a kind with their types, defaults and limits.
+[[nodiscard]] int command_keys(const std::string& kind);
+
 /// `voussoir info`: prints where a result comes from, and its table of increments.
 [[nodiscard]] int command_info(const std::filesystem::path& result_file);
 

@@ -9,13 +9,10 @@
 #include "host/element_tests/calibrate_run.hpp"
 #include "host/element_tests/pack.hpp"
 #include "host/element_tests/probe.hpp"
-#include "host/estimate/report.hpp"
-#include "host/estimate/work.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/stages/biaxial_bvp.hpp"
 #include "host/stages/column.hpp"
 #include "host/stages/tunnel.hpp"
-#include "io/case_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -40,7 +37,6 @@ int answer(RunStatus status, const RunOptions& options) {
 }  // namespace
 
 int run_case(const Case& input, const RunOptions& options) {
-  if (!input.output.rves.empty()) check_snapshot_points(input.output, case_size(input), input.name);
   if (options.replace) remove_earlier_run(options);
   switch (input.kind) {
     case CaseKind::tunnel:

@@ -17,9 +17,9 @@
 #include <thread>
 #include <vector>
 
-#include "host/case/load_case.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
+#include "host/program/accept_case.hpp"
 #include "host/program/commands.hpp"
 #include "host/ranks/session.hpp"
 #include "io/atomic_file.hpp"
@@ -60,7 +60,7 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
     if (!names.insert(run.name).second) throw table.error("name", "is the name of two runs");
     run.folder = options.folder / run.name;
     check_folder({.folder = run.folder, .resume = options.resume, .command = {}},
-                 load_case(sweep.base, run.overrides).fingerprint);
+                 accept_case(sweep.base, run.overrides).input.fingerprint);
     sweep.runs.push_back(std::move(run));
   }
   if (sweep.runs.empty()) throw text.root().error("run", "there is no [[run]] in this sweep");
