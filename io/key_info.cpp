@@ -35,6 +35,11 @@ void collect(const CaseNode& node, std::vector<KeyInfo>& keys) {
   }
 }
 
+/// A default without the quotes of TOML, which the quotes of a table would double.
+std::string unquoted(const std::string& text) {
+  return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
+}
+
 /// A field of comma-separated values.
 std::string field(const std::string& text) {
   if (text.find_first_of(",\"") == std::string::npos) {
@@ -80,7 +85,7 @@ std::string key_table(const std::vector<KeyInfo>& keys) {
     const std::string least = info.at_least.empty() && info.above_zero ? "> 0" : info.at_least;
     out += fmt::format("{},{}{},{},{},{},{},{}\n", info.key, info.list ? "list of " : "", name_of(info.type),
                        measured ? dimension_name(info.dimension) : "",
-                       field(info.required ? "(required)" : info.fallback), field(least), field(info.at_most),
+                       field(info.required ? "(required)" : unquoted(info.fallback)), field(least), field(info.at_most),
                        fmt::join(info.choices, "|"));
   }
   return out;

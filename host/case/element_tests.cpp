@@ -101,7 +101,7 @@ CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil) {
   out.rolling_stiffness = read_list(table, "rolling_stiffness", Dimension::none, soil.rolling_stiffness, rolling);
   out.rolling_limit = read_list(table, "rolling_limit", Dimension::none, soil.rolling_limit, rolling);
   out.thickness = read_list(table, "thickness", Dimension::length, soil.thickness,
-                            {.at_least = "0.001 mm", .at_most = "1 km"});
+                            {.at_least = "1 mm", .at_most = "100 m"});
   if (out.rolling_stiffness.size() < 2 && out.rolling_limit.size() < 2 && out.thickness.size() < 2) {
     throw table.error("rolling_stiffness", "leaves nothing to search: at least one parameter needs two values");
   }

@@ -19,8 +19,8 @@ namespace {
 
 // Limits that [soil] and its classes share. Within them the engine's numbers stay far from the ends of what a float can
 // hold, and a run ends with an answer or says why it has none; tests/regression/key_limits_test.py tries all of them.
-const io::QuantityRule size_rule{.at_least = "0.001 mm", .at_most = "100 m"};
-const io::QuantityRule modulus_rule{.at_least = "1 kPa", .at_most = "100000 GPa"};
+const io::QuantityRule size_rule{.at_least = "0.001 mm", .at_most = "10 m"};
+const io::QuantityRule modulus_rule{.at_least = "1 MPa", .at_most = "1000 GPa"};
 const io::QuantityRule stiffness_ratio_rule{.at_least = "0", .at_most = "2"};
 const io::QuantityRule friction_rule{.at_least = "0 deg", .at_most = "80 deg"};
 const io::QuantityRule rolling_rule{.at_least = "0", .at_most = "10"};  ///< of rolling_stiffness and rolling_limit
@@ -104,7 +104,7 @@ SoilCase read_soil(const io::Table& table) {
   read_quantity(table, "rolling_limit", Dimension::none, soil.rolling_limit, rolling_rule);
   read_quantity(table, "damping", Dimension::none, soil.damping, {.at_least = "0", .at_most = "0.9"});
   read_quantity(table, "density", Dimension::density, soil.density, {.at_least = "1 kg/m3", .at_most = "100000 kg/m3"});
-  read_quantity(table, "thickness", Dimension::length, soil.thickness, {.at_least = "0.001 mm", .at_most = "1 km"});
+  read_quantity(table, "thickness", Dimension::length, soil.thickness, {.at_least = "1 mm", .at_most = "100 m"});
   read_classes(table, soil);
   return soil;
 }

@@ -31,7 +31,7 @@ GroundCase read_ground(const io::Table& table, bool with_tunnel) {
   read_quantity(table, "diameter", Dimension::length, ground.diameter, {.at_least = "1 cm", .at_most = "1 km"});
   read_quantity(table, "cover_ratio", Dimension::none, ground.cover_ratio, {.at_least = "0.25", .at_most = "20"});
   read_quantity(table, "mesh_size_opening", Dimension::length, ground.mesh_size_opening,
-                {.at_least = "1 mm", .at_most = "1 km"});
+                {.at_least = "1 mm", .at_most = "500 m"});
   read_quantity(table, "mesh_size_far", Dimension::length, ground.mesh_size_far,
                 {.at_least = "1 mm", .at_most = "10 km"});
   if (ground.invert_height() < 0.5 * ground.diameter) {
@@ -111,7 +111,7 @@ OutputCase read_output(const io::Table& table) {
   OutputCase output;
   read_integer(table, "every", output.every, {.at_least = 1, .at_most = 1'000'000});
   read_integer(table, "checkpoint_every", output.checkpoint_every, {.at_least = 1, .at_most = 1'000'000});
-  output.rves = table.integers("rves", {.at_least = 0}, std::vector<std::int64_t>{});
+  output.rves = table.integers("rves", {.at_least = 0, .at_most = 1'000'000'000}, std::vector<std::int64_t>{});
   const std::set<std::int64_t> different(output.rves.begin(), output.rves.end());
   if (different.size() != output.rves.size()) throw table.error("rves", "names a point twice");
   output.microstructure = read_microstructure(table);

@@ -156,8 +156,8 @@ void check_grains(const io::Packing& file, const SoilCase& soil, double skin) {
         fmt::format("has {} grains, where a packing has 2 to {}", file.grains(), kernels::max_grains));
   }
   check_sizes(file.radius, soil);
-  if (!(file.thickness >= 1e-6 && file.thickness <= 1e3)) {
-    throw std::runtime_error(fmt::format("the thickness must be 0.001 mm to 1 km, is {:g} m", file.thickness));
+  if (!(file.thickness >= 1e-3 && file.thickness <= 100)) {  // the limits of soil.thickness
+    throw std::runtime_error(fmt::format("the thickness must be 1 mm to 100 m, is {:g} m", file.thickness));
   }
   check_cell(file, skin);
   check_overlaps(file);
