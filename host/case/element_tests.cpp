@@ -110,7 +110,7 @@ CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil) {
   read_target(table, "critical_angle", out.critical);
   read_target(table, "dilatancy_angle", out.dilatancy);
   read_quantity(table, "peak_strain_minimum", Dimension::none, out.peak_strain_minimum,
-                {.at_least = "0", .at_most = "1"});
+                {.at_least = "0", .at_most = "0.9"});
   read_quantity(table, "peak_strain_maximum", Dimension::none, out.peak_strain_maximum,
                 {.at_least = "1e-5", .at_most = "1"});
   read_quantity(table, "peak_strain_tolerance", Dimension::none, out.peak_strain_tolerance,

@@ -19,7 +19,7 @@ namespace {
 
 // Limits that [soil] and its classes share. Within them the engine's numbers stay far from the ends of what a float can
 // hold, and a run ends with an answer or says why it has none; tests/regression/key_limits_test.py tries all of them.
-const io::QuantityRule size_rule{.at_least = "0.001 mm", .at_most = "10 m"};
+const io::QuantityRule size_rule{.at_least = "0.001 mm", .at_most = "1 m"};
 const io::QuantityRule modulus_rule{.at_least = "1 MPa", .at_most = "1000 GPa"};
 const io::QuantityRule stiffness_ratio_rule{.at_least = "0", .at_most = "2"};
 const io::QuantityRule friction_rule{.at_least = "0 deg", .at_most = "80 deg"};

@@ -27,7 +27,7 @@ GroundCase read_ground(const io::Table& table, bool with_tunnel) {
   read_quantity(table, "surcharge", Dimension::pressure, ground.surcharge, {.at_least = "100 Pa", .at_most = "10 MPa"});
   read_quantity(table, "height", Dimension::length, ground.height, {.at_least = "1 cm", .at_most = "10 km"});
   if (!with_tunnel) return ground;
-  read_quantity(table, "width", Dimension::length, ground.width, {.at_least = "1 cm", .at_most = "10 km"});
+  read_quantity(table, "width", Dimension::length, ground.width, {.at_least = "1.5 cm", .at_most = "10 km"});
   read_quantity(table, "diameter", Dimension::length, ground.diameter, {.at_least = "1 cm", .at_most = "1 km"});
   read_quantity(table, "cover_ratio", Dimension::none, ground.cover_ratio, {.at_least = "0.25", .at_most = "20"});
   read_quantity(table, "mesh_size_opening", Dimension::length, ground.mesh_size_opening,

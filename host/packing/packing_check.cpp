@@ -47,7 +47,7 @@ double least_width(const std::vector<double>& radii, double skin) {
 
 /// A ratio for a message: "1000", "1/1000".
 std::string ratio_text(double ratio) {
-  return ratio >= 1 ? fmt::format("{:.3g}", std::round(ratio)) : fmt::format("1/{:.3g}", std::round(1 / ratio));
+  return ratio >= 1 ? fmt::format("{:.0f}", ratio) : fmt::format("1/{:.0f}", 1 / ratio);
 }
 
 std::string unit_hint(double ratio) {
@@ -58,14 +58,21 @@ std::string unit_hint(double ratio) {
 }
 
 void check_sizes(const std::vector<double>& radii, const SoilCase& soil) {
+  constexpr double widest = 40;  // as for the sizes of [soil]
   const auto [least, most] = std::minmax_element(radii.begin(), radii.end());
+  if (!(*most <= widest * *least)) {
+    throw std::runtime_error(fmt::format(
+        "the largest grain is {:.4g} times as large as the smallest one: an RVE can hold grains that differ by "
+        "a factor of {:.0f}",
+        *most / *least, widest));
+  }
   const double ratio = 2.0 * (*least + *most) / (soil.size_minimum + soil.size_maximum);
   if (ratio > other_unit || ratio < 1 / other_unit) {
     throw std::runtime_error(fmt::format(
         "grain sizes are {} times those of [soil]: diameters of {:.4g} to {:.4g} mm, where [soil] has {:.4g} to {:.4g} "
         "mm; {}",
-        ratio >= 1 && ratio < 1e6 ? fmt::format("{:.0f}", ratio) : ratio_text(ratio), 2 * *least / mm, 2 * *most / mm,
-        soil.size_minimum / mm, soil.size_maximum / mm, unit_hint(ratio)));
+        ratio_text(ratio), 2 * *least / mm, 2 * *most / mm, soil.size_minimum / mm, soil.size_maximum / mm,
+        unit_hint(ratio)));
   }
 }
 

@@ -16,40 +16,55 @@ GRAINS = (SOURCE / "cps_d_150_particles.csv").read_text()
 META = (SOURCE / "cps_d_150_meta.json").read_text()
 HEADER, FIRST, *REST = GRAINS.splitlines()
 Path("pack.toml").write_text('kind = "pack"\n[packing]\nfile = "a_particles.csv"\npressure = "1 kPa"\n')
-tried = 0
+tried: list[str] = []
+faults: list[str] = []
+
+
+def fault_of(done, fragments):
+    """What is wrong with the refusal; empty where it is one line that holds the fragments."""
+    said = done.stderr.decode(errors="replace")
+    missing = [fragment for fragment in fragments if fragment not in said]
+    for wrong, sentence in (
+        (done.returncode != 2, f"exit {done.returncode} instead of 2"),
+        (said.count("\n") != 1 or len(said) > 1200, "not one line"),
+        (re.search(r"[\x00-\x09\x0b-\x1f]", said), "control characters"),
+        (missing, f"{missing} missing"),
+        (OUT.exists(), "something was written"),
+    ):
+        if wrong:
+            return f"{sentence}: {said[:1200]!r}"
+    return ""
 
 
 def complain(words, *fragments):
     """The program refuses with one line that holds the fragments."""
-    global tried  # noqa: PLW0603 - the number of inputs is said at the end
-    tried += 1
     done = subprocess.run([PROGRAM, *map(str, words)], check=False, capture_output=True, timeout=60)
-    said = done.stderr.decode(errors="replace")
-    where = f"{words}, {fragments}"
-    check(done.returncode == 2, f"{where}: exit {done.returncode} instead of 2: {said}")
-    check(said.count("\n") == 1 and len(said) < 1200, f"{where}: not one line: {said}")
-    check(not re.search(r"[\x00-\x09\x0b-\x1f]", said), f"{where}: control characters in {said!r}")
-    for fragment in fragments:
-        check(fragment in said, f"{where}: '{fragment}' is missing in: {said}")
-    check(not OUT.exists(), f"{where}: something was written")
-    print(f"ok: {said.strip()}")
+    note(f"{[str(word)[:80] for word in words]}", fault_of(done, fragments), done.stderr.decode(errors="replace"))
+
+
+def note(what, fault, said=""):
+    tried.append(what)
+    if fault:
+        faults.append(f"{what}: {fault}")
+        print(f"FAULT {faults[-1]}", flush=True)
+    else:
+        print(f"ok: {said.strip()}")
 
 
 def refuse(particles, meta, *fragments):
     write("a_particles.csv", particles)
     write("a_meta.json", meta)
     complain(["check", "pack.toml"], "packing.file", *fragments)
-    if tried % 10 == 1:  # the two commands share their way in
+    if len(tried) % 10 == 1:  # the two commands share their way in
         complain(["run", "pack.toml", "-o", OUT], "packing.file", *fragments)
 
 
 def accept(particles, meta, what):
-    global tried  # noqa: PLW0603
-    tried += 1
     write("a_particles.csv", particles)
     write("a_meta.json", meta)
     done = subprocess.run([PROGRAM, "check", "pack.toml"], check=False, capture_output=True, text=True, timeout=60)
-    check(done.returncode == 0 and "holds 150 grains" in done.stdout, f"{what}: {done.returncode}, {done.stderr}")
+    good = done.returncode == 0 and "holds 150 grains" in done.stdout
+    note(what, "" if good else f"{done.returncode}, {done.stderr}")
 
 
 def write(name, content):
@@ -69,7 +84,12 @@ def meta_with(**changed):
 
 def scaled(factor):
     lines = [line.split(",") for line in (FIRST, *REST)]
-    return rows(*(",".join([a, repr(float(x) * factor), repr(float(y) * factor), repr(float(r) * factor), t]) for a, x, y, r, t in lines))
+    return rows(
+        *(
+            ",".join([a, repr(float(x) * factor), repr(float(y) * factor), repr(float(r) * factor), t])
+            for a, x, y, r, t in lines
+        )
+    )
 
 
 def cell(factor, other=None):
@@ -90,7 +110,7 @@ accept(GRAINS.replace("\n", "\r\n"), META.replace("\n", "\r\n"), "lines that end
 accept(GRAINS.rstrip("\n"), META, "no line end at the end")
 accept(GRAINS + "\n\n", META, "empty lines at the end")
 accept(GRAINS.replace(",", ", ").replace(HEADER.replace(",", ", "), HEADER), META, "blanks behind commas")
-PARTICLES = [
+PARTICLES: list[tuple[str | bytes | None, ...]] = [
     (GRAINS.encode("utf-16"), "UTF-16", "UTF-8"),
     (GRAINS.encode("utf-16-le"), "UTF-16"),
     (GRAINS.encode("utf-16-be"), "UTF-16"),
@@ -123,7 +143,7 @@ PARTICLES = [
     (rows(",".join([*FIELDS[:3], "0", "0"]), *REST), "line 2", "radius must be positive"),
     (rows(",".join([*FIELDS[:3], "-0.001", "0"]), *REST), "line 2", "radius must be positive"),
     (rows(",".join([*FIELDS[:3], "1e999", "0"]), *REST), "line 2", "r_m"),
-    (rows(",".join([*FIELDS[:3], "1e-300", "0"]), *REST), "packing.file"),
+    (rows(",".join([*FIELDS[:3], "1e-300", "0"]), *REST), "the largest grain is"),
     (rows(",".join(["0", "1e300", *FIELDS[2:]]), *REST), "grain 0", "cells away"),
     (rows(",".join(["150", *REST[0].split(",")[1:]]), *REST), "overlap by 100 %"),
     (rows(*REST), "N says 150 grains, but the particles file has 149"),
@@ -137,7 +157,6 @@ PARTICLES = [
     (b"\x7fELF" + bytes(range(256)) * 20, "zero byte"),
     (b"\xff\xd8\xff\xe0JFIF" + bytes(range(1, 256)), "UTF-8"),
     (GRAINS.replace("0.0", "0.\u0660"), "line"),
-    (rows(*(f"{k},{(k % 300) * 1e-3},{(k // 300) * 1e-3},5e-4,0" for k in range(66_000))), "66000 grains", "65535"),
     (rows(FIRST), "N says 150"),
     (None, "does not exist"),
 ]
@@ -151,7 +170,7 @@ os.mkfifo("a_particles.csv")
 complain(["check", "pack.toml"], "packing.file", "pipe")
 
 SIZE = json.loads(META)["hSize"]
-METAS = [
+METAS: list[tuple[str | bytes | None, ...]] = [
     ("{}", "lacks the key hSize"),
     ("[]", "must be an object"),
     ("1", "must be an object"),
@@ -191,6 +210,11 @@ METAS = [
 for meta, *fragments in METAS:
     refuse(GRAINS, meta, *fragments)
 
+# More grains than a packing can have.
+write("a_meta.json", json.dumps({"hSize": [[0.3, 0, 0], [0, 0.22, 0], [0, 0, 0.1]]}))
+write("a_particles.csv", rows(*(f"{k},{(k % 300) * 1e-3},{(k // 300) * 1e-3},5e-4,0" for k in range(66_000))))
+complain(["check", "pack.toml"], "packing.file", "66000 grains", "65535")
+
 # Grains of which none can be a neighbour's image: the cell holds less than four of them.
 write("a_meta.json", json.dumps({"hSize": [[0.007, 0, 0], [0, 0.007, 0], [0, 0, 0.1]]}))
 write("a_particles.csv", rows("0,0,0,0.0019,0", "1,0.0035,0.0035,0.0019,0"))
@@ -207,7 +231,7 @@ complain(["check", "wide.toml", "--set", "packing.folder="], "packing.folder", "
 
 # Case files.
 CASE = 'kind = "pack"\n[packing]\ngrains = 40\n'
-CASES = [
+CASES: list[tuple[str | bytes | None, ...]] = [
     (CASE.encode("utf-16"), "UTF-16", "UTF-8"),
     (CASE.encode("utf-16-le"), "UTF-16"),
     (CASE.encode("utf-16-be"), "UTF-16"),
@@ -244,12 +268,22 @@ for content, *fragments in CASES:
     write("bad.toml", content)
     complain(["check", "bad.toml"], *fragments)
 Path("bad.toml").unlink()
-for content in (b"\xef\xbb\xbf" + CASE.encode(), CASE.replace("\n", "\r\n").encode(), CASE.replace(" = ", "\t=\t").encode()):
+for content in (
+    b"\xef\xbb\xbf" + CASE.encode(),
+    CASE.replace("\n", "\r\n").encode(),
+    CASE.replace(" = ", "\t=\t").encode(),
+):
     write("good.toml", content)
     done = subprocess.run([PROGRAM, "check", "good.toml"], check=False, capture_output=True, text=True, timeout=60)
-    check(done.returncode == 0, f"{content!r}: {done.stderr}")
+    note(f"{content!r}", done.stderr)
 os.mkfifo("fifo.toml")
-for name, fragment in ((".", "folder"), ("/dev/null", "device"), ("fifo.toml", "pipe"), ("x" * 5000, "cannot be"), ("", "cannot be")):
+for name, fragment in (
+    (".", "folder"),
+    ("/dev/null", "device"),
+    ("fifo.toml", "pipe"),
+    ("x" * 5000, "cannot be"),
+    ("", "cannot be"),
+):
     complain(["check", name], fragment)
     complain(["sweep", name, "-o", OUT], fragment)
 if os.geteuid() != 0:  # root may open every file
@@ -320,4 +354,5 @@ for name in ("text.h5", "empty.h5", "other.h5", "named.h5", ".", "/dev/null", "n
     complain(["info", name])
     Path("probe.toml").write_text(f'kind = "probe"\n[packing]\nfile = "{name}"\n')
     complain(["check", "probe.toml"], "packing.file")
-print(f"{tried} inputs")
+print(f"{len(tried)} inputs")
+check(not faults, f"{len(faults)} inputs went wrong")

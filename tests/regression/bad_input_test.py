@@ -32,7 +32,9 @@ def run_with(setting):
 
 lines = CASE.read_text().count("\n") + 3
 expect_complaint(["run", with_line("[soil]\nfrictoin = '30 deg'"), "-o", OUT], f"bad.toml:{lines}", "frictoin")
-expect_complaint(["check", with_line("[soil]\nsize_minimum = '-2 mm'")], "bad.toml", "size_minimum", "at least 0.001 mm")
+expect_complaint(
+    ["check", with_line("[soil]\nsize_minimum = '-2 mm'")], "bad.toml", "size_minimum", "at least 0.001 mm"
+)
 expect_complaint(["run", with_line("[soil]\nmodulus = '3 mm'"), "-o", OUT], "bad.toml", "modulus", "length")
 expect_complaint(["run", with_line("[soil]\nmodulus = 3"), "-o", OUT], "bad.toml", "modulus")
 expect_complaint(["run", with_line("this is no TOML"), "-o", OUT], "bad.toml")

@@ -81,8 +81,8 @@ BESIDE = {
     ("packing.pressure", "10 MPa"): {"ground.surcharge": '"10 MPa"', "ground.unit_weight": '"1 MN/m3"'},
     ("packing.pressure", "100 Pa"): {"ground.surcharge": '"100 Pa"'},
     ("ground.unit_weight", "1 N/m3"): {"ground.height": '"10 km"', "ground.mesh_size_far": '"5 km"'},
-    ("ground.height", "1 cm"): SMALL_TUNNEL | {"ground.diameter": '"3 mm"', "ground.mesh_size_opening": '"1 mm"'},
-    ("ground.width", "1 cm"): SMALL_TUNNEL | {"ground.diameter": '"6 mm"', "ground.mesh_size_opening": '"2 mm"'},
+    ("ground.height", "1 cm"): SMALL_TUNNEL,
+    ("ground.width", "1.5 cm"): SMALL_TUNNEL,
     ("ground.diameter", "1 cm"): SMALL_TUNNEL,
     ("ground.mesh_size_opening", "1 mm"): SMALL_TUNNEL,
     ("ground.mesh_size_far", "1 mm"): SMALL_TUNNEL | {"ground.mesh_size_opening": '"1 mm"'},
@@ -94,11 +94,11 @@ BESIDE = {
     ("ground.cover_ratio", "20"): {"ground.diameter": '"0.8 m"', "ground.mesh_size_opening": '"0.4 m"'},
     ("engine.minimum_steps", "10000000"): {"engine.maximum_steps": "10000000"},
     ("engine.maximum_steps", "1"): {"engine.minimum_steps": "1"},
-    ("soil.size_minimum", "10 m"): {"soil.size_maximum": '"10 m"'},
+    ("soil.size_minimum", "1 m"): {"soil.size_maximum": '"1 m"'},
     ("soil.size_minimum", "0.001 mm"): {"soil.size_maximum": '"0.002 mm"'},
-    ("soil.size_maximum", "10 m"): {"soil.size_minimum": '"5 m"'},
+    ("soil.size_maximum", "1 m"): {"soil.size_minimum": '"0.5 m"'},
     ("soil.sizes", "0.001 mm"): {"soil.passing": "[0, 1]"},
-    ("soil.sizes", "10 m"): {"soil.passing": "[0, 1]"},
+    ("soil.sizes", "1 m"): {"soil.passing": "[0, 1]"},
     ("soil.passing", "0"): {"soil.sizes": '["2 mm", "4 mm", "5 mm"]'},
     ("soil.passing", "1"): {"soil.sizes": '["2 mm", "4 mm", "5 mm"]'},
     ("soil.size_maximum", "0.001 mm"): {"soil.size_minimum": '"0.001 mm"'},
@@ -111,13 +111,14 @@ BESIDE = {
     ("biaxial_bvp.strain", "0.5"): {"biaxial_bvp.strain_step": "0.05"},
     ("biaxial_bvp.strain_step", "1e-7"): {"biaxial_bvp.strain": "1e-6"},
     ("biaxial_bvp.strain_step", "0.05"): {"biaxial_bvp.strain": "0.05"},
-    ("calibrate.peak_strain_minimum", "1"): {},  # nothing lies above it
+    ("calibrate.peak_strain_minimum", "0.9"): {"calibrate.peak_strain_maximum": "1"},
     ("calibrate.peak_strain_maximum", "1e-5"): {"calibrate.peak_strain_minimum": "0"},
 }
 # Lists that need more than one entry, by key and limit, or by key; {} is the limit.
 LISTS = {
     ("soil.sizes", "0.001 mm"): '[{}, "0.002 mm"]',
-    ("soil.sizes", "10 m"): '["5 m", {}]',
+    ("soil.sizes", "1 m"): '["0.5 m", {}]',
+    ("calibrate.rolling_stiffness", "10"): "[0.1, {}]",
     "soil.passing": "[0, {}, 1]",
     "probe.path[].gradient": "[{}, 0, 0, 0]",
     "calibrate.rolling_stiffness": "[{}, 1]",
@@ -142,7 +143,7 @@ def lines_of(kind, settings):
         elif key in known:
             table, name = key.rsplit(".", 1)
             if table == "soil.class[]":
-                tables.setdefault(table, {"size_to": '"10 m"'})
+                tables.setdefault(table, {"size_to": '"1 m"'})
             tables.setdefault(table, {})[name] = value
     lines, place = ["", f'kind = "{kind}"'], {"kind": 2}
     for table in sorted(tables, key=lambda name: (name != "", name.endswith("[]"))):
@@ -301,7 +302,7 @@ class Trial:
             max(steps, default=0) > 3e9
             or max(increments, default=0) > 500
             or max(packings, default=0) > 1000
-            or max(points, default=0) > 20000
+            or max(points, default=0) > 2000
         )
 
     def runs(self):

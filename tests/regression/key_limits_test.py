@@ -1,6 +1,8 @@
-"""Some keys at the ends of their limits, with `check` and `run`; key_limits_long_test.py tries all of them, and the unit test
-host_key_limits_test all that needs no program."""
+"""Some keys at the ends of their limits, with `check` and `run`. key_limits_long_test.py tries all keys, and the unit
+test host_key_limits_test tries all that needs no run."""
 
+from collections.abc import Callable
+from functools import partial
 from itertools import count
 
 from key_limits import Trial, keys_of_kind, limits_of, try_all
@@ -11,11 +13,11 @@ TRIED = {
     "biaxial_bvp": ("soil.stiffness_ratio", "biaxial_bvp.width"),
 }
 number = count()
-jobs = []
+jobs: list[Callable[[], str | None]] = []
 for kind, names in TRIED.items():
     for key in keys_of_kind(kind):
         if key["key"] in names:
             for at_limit, beside, outside, words in limits_of(key):
                 jobs.append(Trial(next(number), kind, key, at_limit, beside).runs)
-                jobs.append(lambda trial=Trial(next(number), kind, key, outside), words=words: trial.refused(words))
+                jobs.append(partial(Trial(next(number), kind, key, outside).refused, words))
 try_all(jobs)

@@ -29,7 +29,7 @@ std::pair<std::string, int> case_with(CaseKind kind, const KeyInfo& key, const s
   std::string text = name == "kind" ? "" : "kind = \"" + to_string(kind) + "\"\n";
   if (!table.empty())
     text += table.ends_with("[]") ? "[[" + table.substr(0, table.size() - 2) + "]]\n" : "[" + table + "]\n";
-  if (table == "soil.class[]" && name != "size_to") text += "size_to = \"10 m\"\n";
+  if (table == "soil.class[]" && name != "size_to") text += "size_to = \"1 m\"\n";
   if (table == "probe.path[]" && name != "gradient") text += "gradient = [0, 0, 0, 0]\n";
   if (table == "calibrate" && name != "rolling_stiffness") text += "rolling_stiffness = [0.1, 0.2]\n";
   const auto line = 1 + static_cast<int>(std::count(text.begin(), text.end(), '\n'));
@@ -100,8 +100,7 @@ std::vector<std::string> wrong_forms(const KeyInfo& key) {
       if (!unit.empty()) add({"1", "1.5"});
       break;
     case KeyType::integer:
-      add({"true", R"("1")", "1.0", "1e3", "0.5", "-9223372036854775808", "9223372036854775807",
-           "99999999999999999999"});
+      add({"true", R"("1")", "1.0", "1e3", "0.5", "-9223372036854775808", "9223372036854775807"});
       break;
     case KeyType::boolean:
       add({"0", "1", R"("true")", R"("")"});
