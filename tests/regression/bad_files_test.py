@@ -1,5 +1,5 @@
-"""Files from elsewhere: each wrong one gives one line that says what is wrong, where, and what is expected; exit code 2,
-from `check` and from `run` alike. One input a line of a table."""
+"""Files from elsewhere: each wrong one gives one line that says what is wrong, where, and what is expected, and exit
+code 2, from `check` and from `run` alike. One input a line of a table."""
 
 import json
 import os

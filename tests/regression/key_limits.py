@@ -21,7 +21,7 @@ UNITS = {"length": "m", "pressure": "Pa", "unit weight": "N/m3", "density": "kg/
 
 # A case of each kind that is done in about a second, by table. `soil.class` and `probe.path` are arrays of tables.
 GRAINS = {"packing": {"grains": "40", "folder": '"packings"'}, "engine": {"preset": '"fast"'}}
-TESTS = {"pressures": '["100 kPa"]', "strain": '"2 %"', "window": '"1 %"', "samples": "20", "inertial_number": "1e-2"}
+TESTS = {"pressures": '["100 kPa"]', "strain": '"2 %"', "window": '"1 %"', "samples": "100", "inertial_number": "3e-4"}
 TINY = {
     "pack": GRAINS,
     "probe": GRAINS | {"probe.path[]": {"gradient": "[0, 0, 0, -1e-4]"}},
@@ -36,7 +36,7 @@ TINY = {
             "rounds": "0",
             "confirm_grains": "40",
             "confirm_seeds": "[1, 2]",
-            "confirm_inertial_number": "1e-2",
+            "confirm_inertial_number": "3e-4",
         },
     },
     "column": GRAINS | {"column": {"elements": "2"}, "gravity": {"ratio": "10", "uniform_step": "1"}},

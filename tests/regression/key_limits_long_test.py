@@ -1,5 +1,5 @@
-"""Every key of every kind of case at both ends of its limits: `check` takes the value, and a run of a tiny case ends with
-an answer or says why it has none; one step outside, the refusal names file, line, key and limit."""
+"""Every key of every kind of case at both ends of its limits: `check` takes the value, and a run of a tiny case ends
+with an answer or says why it has none; one step outside, the refusal names file, line, key and limit."""
 
 from collections.abc import Callable
 from functools import partial

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <set>
 #include <string>
@@ -40,6 +41,8 @@ std::pair<std::string, int> case_with(CaseKind kind, const KeyInfo& key, const s
 
 /// What load_case says of the text; empty where it takes the case.
 std::string said_of(const std::string& text) {
+  std::filesystem::remove("case.toml");  // a file written over is synced by some file systems, which takes longer than
+                                         // all else
   std::ofstream("case.toml") << text;
   try {
     static_cast<void>(load_case("case.toml"));
