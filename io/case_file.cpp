@@ -7,12 +7,17 @@
 #include <cmath>
 
 #include "io/case_node.hpp"
+#include "io/text_file.hpp"
 
 namespace voussoir::io {
 
 namespace {
 
 using Kind = CaseNode::Kind;
+
+constexpr std::size_t most_text_bytes = 1000;  ///< of a text, which is a name or a path
+constexpr std::size_t most_entries = 100'000;  ///< of an array; such a list of points or seeds is still read in a
+                                               ///< second
 
 [[noreturn]] void fail(const CaseNode& node, const std::string& sentence) {
   throw InputError(node.place, node.key, sentence);
@@ -43,6 +48,7 @@ std::string written_quantity(const CaseNode& node, Dimension dimension) {
                    kind_name(node.kind)));
 }
 
+/// Reads one quantity in SI and compares it with its limits. A written -0 becomes 0.
 double checked_quantity(const CaseNode& node, const std::string& written, Dimension dimension,
                         const QuantityRule& rule) {
   double value = 0;
@@ -52,15 +58,15 @@ double checked_quantity(const CaseNode& node, const std::string& written, Dimens
     fail(node, error.what());
   }
   if (rule.positive && !(value > 0)) {
-    fail(node, fmt::format("must be positive, is {}", written));
+    fail(node, fmt::format("must be positive, is {}", in_one_line(written)));
   }
   if (rule.at_least && !(value >= parse_quantity(*rule.at_least, dimension))) {
-    fail(node, fmt::format("must be at least {}, is {}", *rule.at_least, written));
+    fail(node, fmt::format("must be at least {}, is {}", *rule.at_least, in_one_line(written)));
   }
   if (rule.at_most && !(value <= parse_quantity(*rule.at_most, dimension))) {
-    fail(node, fmt::format("must be at most {}, is {}", *rule.at_most, written));
+    fail(node, fmt::format("must be at most {}, is {}", *rule.at_most, in_one_line(written)));
   }
-  return value;
+  return value + 0.0;
 }
 
 /// Twelve digits, because equal quantities in two units may differ in the last bit of a double, and no input is known
@@ -69,13 +75,42 @@ std::string significant(double in_si) {
   return fmt::format("{:.12g}", in_si == 0 ? 0.0 : in_si);  // so that -0 is written as "0"
 }
 
+/// Notes what kind of value a key has. `as_toml` is its default; `required` says that it has none and must be given.
+KeyInfo& note(CaseNode& node, KeyType type, std::string as_toml, bool required, bool list = false) {
+  return node.info.emplace(
+      KeyInfo{.key = node.key, .type = type, .list = list, .fallback = std::move(as_toml), .required = required});
+}
+
+KeyInfo& with_limits(KeyInfo& info, Dimension dimension, const QuantityRule& rule) {
+  info.dimension = dimension;
+  info.at_least = rule.at_least.value_or("");
+  info.at_most = rule.at_most.value_or("");
+  info.above_zero = rule.positive;
+  return info;
+}
+
+KeyInfo& with_limits(KeyInfo& info, const IntegerRule& rule) {
+  if (rule.at_least) {
+    info.at_least = fmt::format("{}", *rule.at_least);
+  }
+  if (rule.at_most) {
+    info.at_most = fmt::format("{}", *rule.at_most);
+  }
+  return info;
+}
+
+/// A default as TOML: without quotes where it is a plain number.
+std::string quantity_as_toml(const std::string& written) {
+  const bool is_number = written.find_first_not_of("0123456789+-.eE") == std::string::npos;
+  return is_number ? written : toml_text(written);
+}
+
 /// Reads one quantity and notes it as TOML; `fallback` stands in for a node that the user did not write.
 double read_quantity(CaseNode& node, Dimension dimension, const QuantityRule& rule,
                      const std::optional<std::string>& fallback) {
   const std::string written = node.written ? written_quantity(node, dimension) : fallback.value();
   const double value = checked_quantity(node, written, dimension, rule);
-  const bool is_number = written.find_first_not_of("0123456789+-.eE") == std::string::npos;
-  node.resolved = is_number ? written : toml_text(written);
+  node.resolved = quantity_as_toml(written);
   node.meaning = significant(value);
   return value;
 }
@@ -96,11 +131,18 @@ std::int64_t read_integer(CaseNode& node, const IntegerRule& rule, const std::op
   return value;
 }
 
+/// Reads a text. Control characters are refused: a text becomes a name of a file, or a part of a line of the log.
 std::string read_text(CaseNode& node, const std::optional<std::string>& fallback) {
   if (node.written) {
     expect(node, Kind::text);
   }
   const std::string value = node.written ? std::get<std::string>(node.value) : fallback.value();
+  if (std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; })) {
+    fail(node, fmt::format("must not hold control characters such as line breaks, is \"{}\"", in_one_line(value)));
+  }
+  if (value.size() > most_text_bytes) {
+    fail(node, fmt::format("must have at most {} bytes, has {}", most_text_bytes, value.size()));
+  }
   node.resolved = toml_text(value);
   node.meaning = node.resolved;
   return value;
@@ -111,6 +153,9 @@ template <class T, class Default, class ReadOne>
 std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Default>>& fallback, ReadOne read_one) {
   if (node.written) {
     expect(node, Kind::array);
+    if (node.children.size() > most_entries) {
+      fail(node, fmt::format("must have at most {} entries, has {}", most_entries, node.children.size()));
+    }
   } else if (node.children.empty()) {
     for (std::size_t i = 0; i < fallback->size(); ++i) {
       node.add(fmt::format("[{}]", i), node.place);
@@ -126,6 +171,8 @@ std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Defaul
     meanings.push_back(entry->meaning);
   }
   node.resolved = fmt::format("[{}]", fmt::join(texts, ", "));
+  node.info->fallback = node.written ? "" : node.resolved;
+  node.info->most_entries = most_entries;
   node.meaning = fmt::format("[{}]", fmt::join(meanings, ", "));
   return values;
 }
@@ -156,15 +203,22 @@ CaseNode& Table::take(std::string_view key, bool has_fallback) const {
 bool Table::has(std::string_view key) const { return find(key) != nullptr; }
 
 double Table::quantity(std::string_view key, Dimension dimension, const QuantityRule& rule) const {
-  return read_quantity(take(key, rule.fallback.has_value()), dimension, rule, rule.fallback);
+  CaseNode& node = take(key, rule.fallback.has_value());
+  with_limits(note(node, KeyType::quantity, rule.fallback ? quantity_as_toml(*rule.fallback) : "", !rule.fallback),
+              dimension, rule);
+  return read_quantity(node, dimension, rule, rule.fallback);
 }
 
 std::int64_t Table::integer(std::string_view key, const IntegerRule& rule) const {
-  return read_integer(take(key, rule.fallback.has_value()), rule, rule.fallback);
+  CaseNode& node = take(key, rule.fallback.has_value());
+  with_limits(note(node, KeyType::integer, rule.fallback ? fmt::format("{}", *rule.fallback) : "", !rule.fallback),
+              rule);
+  return read_integer(node, rule, rule.fallback);
 }
 
 bool Table::boolean(std::string_view key, std::optional<bool> fallback) const {
   CaseNode& node = take(key, fallback.has_value());
+  note(node, KeyType::boolean, fallback ? (*fallback ? "true" : "false") : "", !fallback);
   if (node.written) {
     expect(node, Kind::boolean);
   }
@@ -175,47 +229,74 @@ bool Table::boolean(std::string_view key, std::optional<bool> fallback) const {
 }
 
 std::string Table::text(std::string_view key, std::optional<std::string> fallback) const {
-  return read_text(take(key, fallback.has_value()), fallback);
+  CaseNode& node = take(key, fallback.has_value());
+  note(node, KeyType::text, fallback ? toml_text(*fallback) : "", !fallback);
+  return read_text(node, fallback);
 }
 
 std::string Table::choice(std::string_view key, const std::vector<std::string>& choices,
                           std::optional<std::string> fallback) const {
   CaseNode& node = take(key, fallback.has_value());
+  note(node, KeyType::choice, fallback ? toml_text(*fallback) : "", !fallback).choices = choices;
   std::string value = read_text(node, fallback);
   if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    fail(node, fmt::format("must be one of {}, is {}", fmt::join(choices, ", "), value));
+    fail(node, fmt::format("must be one of {}, is {}", fmt::join(choices, ", "), in_one_line(value)));
   }
   return value;
 }
 
-std::filesystem::path Table::path(std::string_view key) const {
-  CaseNode& node = take(key, false);
+namespace {
+
+/// The path that a node names. A path that is written with --set is relative to `folder_of_case`.
+std::filesystem::path read_path(CaseNode& node, const std::filesystem::path& folder_of_case) {
   const std::string written = read_text(node, {});
-  const auto path = (node.place == "--set" ? state_->path.parent_path() : node.folder) / written;
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    fail(node, fmt::format("{} does not exist", path.string()));
+  if (written.empty()) {
+    fail(node, "must be the name of a file, is empty");
+  }
+  const auto path = (node.place == "--set" ? folder_of_case : node.folder) / written;
+  const std::string fault = file_fault(path);
+  if (!fault.empty()) {
+    fail(node, fmt::format("{} {}", in_one_line(path.string()), fault));
   }
   return path;
 }
 
+}  // namespace
+
+std::filesystem::path Table::path(std::string_view key) const {
+  CaseNode& node = take(key, false);
+  note(node, KeyType::path, "", true);
+  return read_path(node, state_->path.parent_path());
+}
+
+std::filesystem::path Table::optional_path(std::string_view key) const {
+  CaseNode& node = take(key, true);
+  note(node, KeyType::path, "", false);
+  return node.written ? read_path(node, state_->path.parent_path()) : std::filesystem::path{};
+}
+
 std::vector<double> Table::quantities(std::string_view key, Dimension dimension, const QuantityRule& rule,
                                       std::optional<std::vector<std::string>> fallback) const {
-  return read_array<double>(take(key, fallback.has_value()), fallback,
-                            [&](CaseNode& entry, const auto& entry_fallback) {
-                              return read_quantity(entry, dimension, rule, entry_fallback);
-                            });
+  CaseNode& node = take(key, fallback.has_value());
+  with_limits(note(node, KeyType::quantity, "", !fallback, true), dimension, rule);
+  return read_array<double>(node, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
+    return read_quantity(entry, dimension, rule, entry_fallback);
+  });
 }
 
 std::vector<std::int64_t> Table::integers(std::string_view key, const IntegerRule& rule,
                                           std::optional<std::vector<std::int64_t>> fallback) const {
-  return read_array<std::int64_t>(
-      take(key, fallback.has_value()), fallback,
-      [&](CaseNode& entry, const auto& entry_fallback) { return read_integer(entry, rule, entry_fallback); });
+  CaseNode& node = take(key, fallback.has_value());
+  with_limits(note(node, KeyType::integer, "", !fallback, true), rule);
+  return read_array<std::int64_t>(node, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
+    return read_integer(entry, rule, entry_fallback);
+  });
 }
 
 std::vector<std::string> Table::texts(std::string_view key, std::optional<std::vector<std::string>> fallback) const {
-  return read_array<std::string>(take(key, fallback.has_value()), fallback, read_text);
+  CaseNode& node = take(key, fallback.has_value());
+  note(node, KeyType::text, "", !fallback, true);
+  return read_array<std::string>(node, fallback, read_text);
 }
 
 Table Table::table(std::string_view key) const {
@@ -250,6 +331,10 @@ InputError Table::error(std::string_view key, const std::string& sentence) const
 
 CaseFile CaseFile::load(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
   return CaseFile(parse_case(path, overrides));
+}
+
+CaseFile CaseFile::of_text(const std::string& text, const std::string& name) {
+  return CaseFile(parse_case_text(text, name));
 }
 
 Table CaseFile::root() const { return {state_, state_->root}; }

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "io/input_error.hpp"
+#include "io/key_info.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::io {
@@ -53,9 +54,11 @@ class Table {
   /// A text that is one of `choices`; the message of an error lists them.
   [[nodiscard]] std::string choice(std::string_view key, const std::vector<std::string>& choices,
                                    std::optional<std::string> fallback = {}) const;
-  /// An existing file or folder. The name is relative to the folder of the file that says it, with --set to that of the
-  /// case file.
+  /// An existing file that can be read. The name is relative to the folder of the file that says it, with --set to that
+  /// of the case file.
   [[nodiscard]] std::filesystem::path path(std::string_view key) const;
+  /// The same for a key that may be left out: the path is empty then.
+  [[nodiscard]] std::filesystem::path optional_path(std::string_view key) const;
 
   /// Reads arrays. The limits of the rule hold for each entry; the rule's fallback is not used.
   [[nodiscard]] std::vector<double> quantities(std::string_view key, Dimension dimension, const QuantityRule& rule = {},
@@ -91,11 +94,16 @@ class CaseFile {
   /// later ones go before earlier ones, the file's own keys before all; an array is taken over or replaced as a whole.
   /// Throws InputError: no such file, bad TOML (with its line), bad override.
   [[nodiscard]] static CaseFile load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
+  /// A case file that is given as text; `name` stands for the file in messages.
+  [[nodiscard]] static CaseFile of_text(const std::string& text, const std::string& name);
 
   [[nodiscard]] Table root() const;
 
   /// Throws InputError for the first key that the program has not read, with the nearest known name as a hint.
   void finish() const;
+
+  /// All keys read so far, with type, default and limits, in the order in which they were read first, table by table.
+  [[nodiscard]] std::vector<KeyInfo> keys() const;
 
   /// All values read so far, as TOML in the units that a user writes; origins ("default", "--set") as comments.
   [[nodiscard]] std::string resolved() const;

@@ -4,12 +4,12 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <fstream>
+#include <cctype>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include "io/case_file.hpp"
+#include "io/text_file.hpp"
 
 namespace voussoir::io {
 
@@ -49,8 +49,9 @@ void fill(CaseNode& node, const toml::node& from, const Origin& origin) {
   }
   if (const auto* table = from.as_table()) {
     node.kind = CaseNode::Kind::table;
+    const bool is_new = node.children.empty();  // the keys of one table differ, so that none of them is searched for
     for (const auto& [key, value] : in_file_order(*table)) {
-      CaseNode* known = node.find(key);
+      CaseNode* known = is_new ? nullptr : node.find(key);
       fill(known != nullptr ? *known : node.add(key, {}), *value, origin);
     }
   } else if (const auto* array = from.as_array()) {
@@ -75,11 +76,35 @@ void fill(CaseNode& node, const toml::node& from, const Origin& origin) {
   }
 }
 
+/// Refuses keys of very many parts, such as "a.a.a.a": tables in tables in tables would exhaust the stack. Tables in
+/// braces are limited by toml++ itself.
+void refuse_deep_keys(const std::string& text, const std::string& file) {
+  constexpr int most_parts = 100;
+  std::size_t line = 1;
+  int parts = 0;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    line += c == '\n' ? 1U : 0U;
+    if (c == '.') {
+      ++parts;
+    } else if (std::isalnum(byte) == 0 && std::string_view("_-\"' \t").find(c) == std::string_view::npos &&
+               byte < 0x80) {
+      parts = 0;
+    }
+    if (parts > most_parts) {
+      throw InputError(fmt::format("{}:{}", file, line), "",
+                       fmt::format("has a key of more than {} parts", most_parts));
+    }
+  }
+}
+
 toml::table parse_toml(const std::string& text, const std::string& file) {
+  refuse_deep_keys(text, file);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}", file, error.source().begin.line), "", std::string(error.description()));
+    throw InputError(fmt::format("{}:{}", file, error.source().begin.line), "",
+                     fmt::format("is no TOML: {}", in_one_line(error.description())));
   }
 }
 
@@ -107,15 +132,21 @@ std::vector<std::string> split_key(std::string_view key) {
 
 /// Reads the value as TOML, or as text where it is none, so that quotes may be left out.
 void fill_override(CaseNode& node, std::string_view value) {
+  constexpr std::size_t most_bytes = 100'000;
+  if (find_wrong_utf8(value) != std::string_view::npos || value.size() > most_bytes) {
+    throw InputError("--set", node.key,
+                     fmt::format("\"{}\" is no text in UTF-8 of at most {} bytes", in_one_line(value), most_bytes));
+  }
   std::optional<toml::table> parsed;
   try {
+    refuse_deep_keys(std::string(value), "--set");
     parsed = toml::parse(fmt::format("value = {}", value));
   } catch (const toml::parse_error&) {
     parsed = toml::table{{"value", std::string(value)}};
   }
   // A line break in the value would make further keys of the text behind it.
   if (parsed->size() != 1) {
-    throw InputError("--set", node.key, fmt::format("\"{}\" is more than one value", value));
+    throw InputError("--set", node.key, fmt::format("\"{}\" is more than one value", in_one_line(value)));
   }
   fill(node, *parsed->get("value"), Origin{});
 }
@@ -123,8 +154,10 @@ void fill_override(CaseNode& node, std::string_view value) {
 void apply_override(CaseNode& root, const std::string& override_text) {
   const auto equals = override_text.find('=');
   const auto parts = split_key(override_text.substr(0, equals));
-  if (equals == std::string::npos || parts.empty()) {
-    throw InputError("--set", "", fmt::format("\"{}\" is not of the form table.key=value", override_text));
+  constexpr std::size_t most_parts = 100;
+  if (equals == std::string::npos || parts.empty() || parts.size() > most_parts ||
+      find_wrong_utf8(override_text.substr(0, equals)) != std::string::npos) {
+    throw InputError("--set", "", fmt::format("\"{}\" is not of the form table.key=value", in_one_line(override_text)));
   }
   CaseNode* node = &root;
   for (const auto& part : parts) {
@@ -144,13 +177,15 @@ void apply_override(CaseNode& root, const std::string& override_text) {
   fill_override(*node, override_text.substr(equals + 1));
 }
 
+constexpr std::size_t most_case_bytes = 4'000'000;  ///< of a case file, whose largest part is a path of a probe
+
 std::string read_whole(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (std::filesystem::is_directory(path) || !file || !(text << file.rdbuf())) {
-    throw InputError(path.string(), "", "cannot be read: it does not exist, is empty, or may not be opened");
+  try {
+    return read_text_file(path, most_case_bytes);
+  } catch (const TextFileError& error) {
+    const std::string name = in_one_line(path.string());
+    throw InputError(error.line > 0 ? fmt::format("{}:{}", name, error.line) : name, "", error.what());
   }
-  return text.str();
 }
 
 /// The names under the key `extends`: one text or an array of them.
@@ -181,9 +216,9 @@ void fill_from_file(CaseNode& root, const std::filesystem::path& path, int depth
   if (const toml::node* written = parsed.get("extends")) {
     const std::string place = origin.place(*written);
     for (const auto& name : extended_names(*written, place)) {
-      std::error_code ignored;
-      if (!std::filesystem::is_regular_file(folder / name, ignored)) {
-        throw InputError(place, "extends", fmt::format("{} does not exist", (folder / name).string()));
+      const std::string fault = name.empty() ? "is no name of a file" : file_fault(folder / name);
+      if (!fault.empty()) {
+        throw InputError(place, "extends", fmt::format("{} {}", in_one_line((folder / name).string()), fault));
       }
       if (depth == most_files) {
         throw InputError(place, "extends", "the files extend one another in a circle, or more than eight deep");
@@ -225,6 +260,15 @@ std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path, const s
   for (const auto& item : overrides) {
     apply_override(state->root, item);
   }
+  return state;
+}
+
+std::shared_ptr<CaseState> parse_case_text(const std::string& text, const std::string& name) {
+  auto state = std::make_shared<CaseState>();
+  state->path = name;
+  state->root.kind = CaseNode::Kind::table;
+  fill(state->root, parse_toml(text, name), Origin{name, {}});
+  state->root.read = true;
   return state;
 }
 

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "io/key_info.hpp"
 
 namespace voussoir::io {
 
@@ -21,10 +24,11 @@ struct CaseNode {
   Kind kind = Kind::absent;
   std::variant<std::monostate, bool, std::int64_t, double, std::string> value = {};
   std::vector<std::unique_ptr<CaseNode>> children = {};
-  bool written = false;       ///< the user wrote it; otherwise the default holds
-  bool read = false;          ///< the program has read it, so that the key is a known one
-  std::string resolved = {};  ///< value as TOML, once read
-  std::string meaning = {};   ///< value in SI, the same however it was written; the fingerprint is made of these
+  bool written = false;              ///< the user wrote it; otherwise the default holds
+  bool read = false;                 ///< the program has read it, so that the key is a known one
+  std::string resolved = {};         ///< value as TOML, once read
+  std::string meaning = {};          ///< value in SI, the same however it was written; the fingerprint is made of these
+  std::optional<KeyInfo> info = {};  ///< type and limits, once read as a value
 
   [[nodiscard]] CaseNode* find(std::string_view child_name);
   CaseNode& add(std::string child_name, std::string child_place);
@@ -38,6 +42,9 @@ struct CaseState {
 /// Reads the file over the files that it extends, and applies the overrides. Throws InputError.
 [[nodiscard]] std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path,
                                                     const std::vector<std::string>& overrides);
+
+/// The same for a text in place of a file; `name` stands for the file in messages. Throws InputError.
+[[nodiscard]] std::shared_ptr<CaseState> parse_case_text(const std::string& text, const std::string& name);
 
 /// "a number", "a table", ... for messages.
 [[nodiscard]] std::string_view kind_name(CaseNode::Kind kind);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/atomic_file.hpp"
+#include "io/text_file.hpp"
 
 namespace voussoir::io {
 
@@ -100,6 +101,10 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
   be_quiet();
+  const std::string fault = file_fault(path);  // HDF5 would wait for a pipe
+  if (!fault.empty()) {
+    throw std::runtime_error(fmt::format("{}: cannot open the file: it {}", in_one_line(path.string()), fault));
+  }
   Hdf5File file(-1, path);
   file.file_ = file.checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open the file");
   return file;

@@ -2,14 +2,16 @@
 
 #include <fmt/format.h>
 
+#include "io/text_file.hpp"
+
 namespace voussoir::io {
 
 namespace {
 
 std::string one_line(const std::string& place, const std::string& key, const std::string& sentence) {
   const std::string separator = place == "--set" ? " " : ": ";
-  return key.empty() ? fmt::format("{}: {}", place, sentence)
-                     : fmt::format("{}{}{}: {}", place, separator, key, sentence);
+  return key.empty() ? fmt::format("{}: {}", in_one_line(place), sentence)
+                     : fmt::format("{}{}{}: {}", in_one_line(place), separator, in_one_line(key), sentence);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "io/text_file.hpp"
+
 namespace voussoir::io {
 
 namespace {
@@ -105,11 +107,15 @@ double parse_quantity(std::string_view text, Dimension expected) {
   const std::string_view whole = trimmed(text);
   double value = 0;
   const auto [end, failure] = std::from_chars(whole.data(), whole.data() + whole.size(), value);
+  const std::string shown = in_one_line(text);
+  if (failure == std::errc::result_out_of_range) {
+    throw UnitError(fmt::format("\"{}\" is too large or too small for a number", shown));
+  }
   if (failure != std::errc{}) {
-    throw UnitError(fmt::format("\"{}\" is no quantity, expected {}", text, expectation(expected)));
+    throw UnitError(fmt::format("\"{}\" is no quantity, expected {}", shown, expectation(expected)));
   }
   if (!std::isfinite(value)) {
-    throw UnitError(fmt::format("\"{}\" is not finite", text));
+    throw UnitError(fmt::format("\"{}\" is not finite", shown));
   }
   const std::string_view symbol = trimmed(whole.substr(static_cast<std::size_t>(end - whole.data())));
   const Unit* found = nullptr;
@@ -119,16 +125,16 @@ double parse_quantity(std::string_view text, Dimension expected) {
     }
   }
   if (found == nullptr) {
-    throw UnitError(fmt::format("unknown unit \"{}\", expected {}", symbol, expectation(expected)));
+    throw UnitError(fmt::format("unknown unit \"{}\", expected {}", in_one_line(symbol), expectation(expected)));
   }
   if (found->dimension != expected) {
-    throw UnitError(symbol.empty() ? fmt::format("\"{}\" has no unit, expected {}", text, expectation(expected))
-                                   : fmt::format("\"{}\" is a {}, expected {}", text, dimension_name(found->dimension),
+    throw UnitError(symbol.empty() ? fmt::format("\"{}\" has no unit, expected {}", shown, expectation(expected))
+                                   : fmt::format("\"{}\" is a {}, expected {}", shown, dimension_name(found->dimension),
                                                  expectation(expected)));
   }
   const double in_si = value * found->factor;
   if (!std::isfinite(in_si)) {
-    throw UnitError(fmt::format("\"{}\" is not finite", text));
+    throw UnitError(fmt::format("\"{}\" is not finite", shown));
   }
   return in_si;
 }

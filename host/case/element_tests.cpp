@@ -18,6 +18,7 @@ BiaxialCase read_biaxial(const io::Table& table) {
   test.pressures = table.quantities("pressures", Dimension::pressure, {.at_least = "100 Pa", .at_most = "10 MPa"},
                                     std::vector<std::string>{"100 kPa", "200 kPa", "400 kPa"});
   if (test.pressures.empty()) throw table.error("pressures", "names no pressure");
+  if (test.pressures.size() > 1000) throw table.error("pressures", "names more than 1000 pressures");
   read_quantity(table, "strain", Dimension::none, test.strain, {.at_least = "1e-4", .at_most = "1"});
   read_quantity(table, "inertial_number", Dimension::none, test.inertial_number,
                 {.at_least = "1e-6", .at_most = "1e-2"});
@@ -74,8 +75,10 @@ ProbeCase read_probe(const io::Table& table) {
 
 namespace {
 
-std::vector<double> read_list(const io::Table& table, const char* key, Dimension dimension, double of_soil) {
-  std::vector<double> list = table.quantities(key, dimension, {.positive = true}, std::vector<std::string>{});
+std::vector<double> read_list(const io::Table& table, const char* key, Dimension dimension, double of_soil,
+                              const io::QuantityRule& rule) {
+  std::vector<double> list = table.quantities(key, dimension, rule, std::vector<std::string>{});
+  if (list.size() > 20) throw table.error(key, "has more than 20 entries, which no grid of tests can hold");
   for (std::size_t k = 1; k < list.size(); ++k) {
     if (list[k] <= list[k - 1]) throw table.error(key, "must ascend");
   }
@@ -86,16 +89,19 @@ std::vector<double> read_list(const io::Table& table, const char* key, Dimension
 
 void read_target(const io::Table& table, const std::string& name, CalibrationTarget& target) {
   read_quantity(table, name.c_str(), Dimension::angle, target.value, {.at_least = "0 deg", .at_most = "80 deg"});
-  read_quantity(table, (name + "_tolerance").c_str(), Dimension::angle, target.tolerance, {.positive = true});
+  read_quantity(table, (name + "_tolerance").c_str(), Dimension::angle, target.tolerance,
+                {.at_least = "0.001 deg", .at_most = "80 deg"});
 }
 
 }  // namespace
 
 CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil) {
   CalibrateCase out;
-  out.rolling_stiffness = read_list(table, "rolling_stiffness", Dimension::none, soil.rolling_stiffness);
-  out.rolling_limit = read_list(table, "rolling_limit", Dimension::none, soil.rolling_limit);
-  out.thickness = read_list(table, "thickness", Dimension::length, soil.thickness);
+  const io::QuantityRule rolling{.at_least = "1e-6", .at_most = "10"};  // a factor searches, which 0 cannot have
+  out.rolling_stiffness = read_list(table, "rolling_stiffness", Dimension::none, soil.rolling_stiffness, rolling);
+  out.rolling_limit = read_list(table, "rolling_limit", Dimension::none, soil.rolling_limit, rolling);
+  out.thickness = read_list(table, "thickness", Dimension::length, soil.thickness,
+                            {.at_least = "1 mm", .at_most = "100 m"});
   if (out.rolling_stiffness.size() < 2 && out.rolling_limit.size() < 2 && out.thickness.size() < 2) {
     throw table.error("rolling_stiffness", "leaves nothing to search: at least one parameter needs two values");
   }
@@ -103,14 +109,19 @@ CalibrateCase read_calibrate(const io::Table& table, const SoilCase& soil) {
   read_target(table, "peak_angle", out.peak);
   read_target(table, "critical_angle", out.critical);
   read_target(table, "dilatancy_angle", out.dilatancy);
-  read_quantity(table, "peak_strain_minimum", Dimension::none, out.peak_strain_minimum, {.at_least = "0"});
-  read_quantity(table, "peak_strain_maximum", Dimension::none, out.peak_strain_maximum, {.positive = true});
-  read_quantity(table, "peak_strain_tolerance", Dimension::none, out.peak_strain_tolerance, {.positive = true});
+  read_quantity(table, "peak_strain_minimum", Dimension::none, out.peak_strain_minimum,
+                {.at_least = "0", .at_most = "0.9"});
+  read_quantity(table, "peak_strain_maximum", Dimension::none, out.peak_strain_maximum,
+                {.at_least = "1e-5", .at_most = "1"});
+  read_quantity(table, "peak_strain_tolerance", Dimension::none, out.peak_strain_tolerance,
+                {.at_least = "1e-5", .at_most = "1"});
   if (out.peak_strain_maximum <= out.peak_strain_minimum) {
     throw table.error("peak_strain_maximum", "is not above peak_strain_minimum");
   }
   read_integer(table, "confirm_grains", out.confirm_grains, {.at_least = 30, .at_most = 20000});
-  out.confirm_seeds = table.integers("confirm_seeds", {.at_least = 0}, out.confirm_seeds);
+  out.confirm_seeds = table.integers("confirm_seeds", {.at_least = 0, .at_most = 9'000'000'000'000'000},
+                                     out.confirm_seeds);
+  if (out.confirm_seeds.size() > 1000) throw table.error("confirm_seeds", "names more than 1000 seeds");
   if (out.confirm_seeds.size() < 2)
     throw table.error("confirm_seeds", "needs at least two seeds: one packing shows no scatter");
   if (std::set<std::int64_t>(out.confirm_seeds.begin(), out.confirm_seeds.end()).size() != out.confirm_seeds.size()) {

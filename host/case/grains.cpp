@@ -1,8 +1,10 @@
 #include "host/case/grains.hpp"
 
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "host/case/keys.hpp"
@@ -15,9 +17,21 @@ using io::Dimension;
 
 namespace {
 
+// Limits that [soil] and its classes share. Within them the engine's numbers stay far from the ends of what a float can
+// hold, and a run ends with an answer or says why it has none; tests/regression/key_limits_test.py tries all of them.
+const io::QuantityRule size_rule{.at_least = "0.001 mm", .at_most = "1 m"};
+const io::QuantityRule modulus_rule{.at_least = "1 MPa", .at_most = "1000 GPa"};
+const io::QuantityRule stiffness_ratio_rule{.at_least = "0", .at_most = "2"};
+const io::QuantityRule friction_rule{.at_least = "0 deg", .at_most = "80 deg"};
+const io::QuantityRule rolling_rule{.at_least = "0", .at_most = "10"};  ///< of rolling_stiffness and rolling_limit
+
+/// Seeds are stored as float64 with the packings, and derived ones are larger by up to a million.
+constexpr std::int64_t largest_seed = 9'000'000'000'000'000;
+constexpr std::size_t most_seeds = 1000;
+
 /// Reads `sizes` and `passing`, a grading curve, which also sets the smallest and the largest size.
 void read_grading(const io::Table& table, SoilCase& soil) {
-  soil.sizes = table.quantities("sizes", Dimension::length, {.positive = true}, std::vector<std::string>{});
+  soil.sizes = table.quantities("sizes", Dimension::length, size_rule, std::vector<std::string>{});
   soil.passing = table.quantities("passing", Dimension::none, {.at_least = "0", .at_most = "1"},
                                   std::vector<std::string>{});
   soil.passing_by = table.choice("passing_by", {"area", "number"}, "area") == "area" ? GradingMeasure::area
@@ -43,13 +57,12 @@ void read_classes(const io::Table& table, SoilCase& soil) {
                           .friction_angle = soil.friction_angle,
                           .rolling_stiffness = soil.rolling_stiffness,
                           .rolling_limit = soil.rolling_limit};
-    grains.size_to = entry.quantity("size_to", Dimension::length, {.positive = true});
-    read_quantity(entry, "modulus", Dimension::pressure, grains.modulus, {.positive = true});
-    read_quantity(entry, "stiffness_ratio", Dimension::none, grains.stiffness_ratio, {.at_least = "0", .at_most = "2"});
-    read_quantity(entry, "friction", Dimension::angle, grains.friction_angle,
-                  {.at_least = "0 deg", .at_most = "80 deg"});
-    read_quantity(entry, "rolling_stiffness", Dimension::none, grains.rolling_stiffness, {.at_least = "0"});
-    read_quantity(entry, "rolling_limit", Dimension::none, grains.rolling_limit, {.at_least = "0"});
+    grains.size_to = entry.quantity("size_to", Dimension::length, size_rule);
+    read_quantity(entry, "modulus", Dimension::pressure, grains.modulus, modulus_rule);
+    read_quantity(entry, "stiffness_ratio", Dimension::none, grains.stiffness_ratio, stiffness_ratio_rule);
+    read_quantity(entry, "friction", Dimension::angle, grains.friction_angle, friction_rule);
+    read_quantity(entry, "rolling_stiffness", Dimension::none, grains.rolling_stiffness, rolling_rule);
+    read_quantity(entry, "rolling_limit", Dimension::none, grains.rolling_limit, rolling_rule);
     if (!soil.classes.empty() && grains.size_to <= soil.classes.back().size_to)
       throw entry.error("size_to", "must ascend");
     soil.classes.push_back(grains);
@@ -60,28 +73,38 @@ void read_classes(const io::Table& table, SoilCase& soil) {
   if (soil.classes.size() > 255) throw table.error("class", "has more than 255 entries");
 }
 
+/// The number of grains in a packing's file. The whole file is read, so that a fault in it is found before a run.
+int grains_of_file(const io::Table& table, const std::filesystem::path& file) {
+  try {
+    const bool ours = file.extension() == ".h5";
+    return static_cast<int>((ours ? io::load_packing(file) : io::load_packing_csv(file)).grains());
+  } catch (const std::runtime_error& error) {
+    throw table.error("file", error.what());
+  }
+}
+
 }  // namespace
 
 SoilCase read_soil(const io::Table& table) {
   SoilCase soil;
   read_grading(table, soil);
   if (soil.sizes.empty()) {
-    read_quantity(table, "size_minimum", Dimension::length, soil.size_minimum, {.positive = true});
-    read_quantity(table, "size_maximum", Dimension::length, soil.size_maximum, {.positive = true});
+    read_quantity(table, "size_minimum", Dimension::length, soil.size_minimum, size_rule);
+    read_quantity(table, "size_maximum", Dimension::length, soil.size_maximum, size_rule);
   }
   if (soil.size_maximum < soil.size_minimum) throw table.error("size_maximum", "is smaller than size_minimum");
   if (soil.size_maximum > 40 * soil.size_minimum) {
     throw table.error("size_maximum",
                       "is more than 40 times size_minimum: an RVE cannot hold grains of so different sizes");
   }
-  read_quantity(table, "modulus", Dimension::pressure, soil.modulus, {.positive = true});
-  read_quantity(table, "stiffness_ratio", Dimension::none, soil.stiffness_ratio, {.at_least = "0", .at_most = "2"});
-  read_quantity(table, "friction", Dimension::angle, soil.friction_angle, {.at_least = "0 deg", .at_most = "80 deg"});
-  read_quantity(table, "rolling_stiffness", Dimension::none, soil.rolling_stiffness, {.at_least = "0"});
-  read_quantity(table, "rolling_limit", Dimension::none, soil.rolling_limit, {.at_least = "0"});
+  read_quantity(table, "modulus", Dimension::pressure, soil.modulus, modulus_rule);
+  read_quantity(table, "stiffness_ratio", Dimension::none, soil.stiffness_ratio, stiffness_ratio_rule);
+  read_quantity(table, "friction", Dimension::angle, soil.friction_angle, friction_rule);
+  read_quantity(table, "rolling_stiffness", Dimension::none, soil.rolling_stiffness, rolling_rule);
+  read_quantity(table, "rolling_limit", Dimension::none, soil.rolling_limit, rolling_rule);
   read_quantity(table, "damping", Dimension::none, soil.damping, {.at_least = "0", .at_most = "0.9"});
-  read_quantity(table, "density", Dimension::density, soil.density, {.positive = true});
-  read_quantity(table, "thickness", Dimension::length, soil.thickness, {.positive = true});
+  read_quantity(table, "density", Dimension::density, soil.density, {.at_least = "1 kg/m3", .at_most = "100000 kg/m3"});
+  read_quantity(table, "thickness", Dimension::length, soil.thickness, {.at_least = "1 mm", .at_most = "100 m"});
   read_classes(table, soil);
   return soil;
 }
@@ -89,8 +112,9 @@ SoilCase read_soil(const io::Table& table) {
 PackingCase read_packing(const io::Table& table) {
   PackingCase packing;
   read_integer(table, "grains", packing.grains, {.at_least = 30, .at_most = 20000});
-  packing.seed = table.integer("seed", {.fallback = packing.seed, .at_least = 0});
-  packing.seeds = table.integers("seeds", {.at_least = 0}, std::vector<std::int64_t>{});
+  packing.seed = table.integer("seed", {.fallback = packing.seed, .at_least = 0, .at_most = largest_seed});
+  packing.seeds = table.integers("seeds", {.at_least = 0, .at_most = largest_seed}, std::vector<std::int64_t>{});
+  if (packing.seeds.size() > most_seeds) throw table.error("seeds", "names more than 1000 seeds");
   if (std::set<std::int64_t>(packing.seeds.begin(), packing.seeds.end()).size() != packing.seeds.size()) {
     throw table.error("seeds", "names a seed twice");
   }
@@ -101,16 +125,13 @@ PackingCase read_packing(const io::Table& table) {
   read_quantity(table, "pressure", Dimension::pressure, packing.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
   packing.mirrored = table.boolean("mirrored", packing.mirrored);
   packing.folder = table.text("folder", packing.folder.string());
-  if (table.has("file")) {
-    packing.file = table.path("file");
-    try {
-      const bool ours = packing.file.extension() == ".h5";
-      packing.grains = static_cast<int>(
-          (ours ? io::load_packing(packing.file) : io::load_packing_csv(packing.file)).grains());
-    } catch (const std::runtime_error& error) {
-      throw table.error("file", error.what());
-    }
-  }
+  std::error_code failure;
+  const auto folder = std::filesystem::status(packing.folder, failure).type();
+  const bool usable = folder == std::filesystem::file_type::directory ||
+                      folder == std::filesystem::file_type::not_found;
+  if (packing.folder.empty() || !usable) throw table.error("folder", "must name a folder, which may be a new one");
+  packing.file = table.optional_path("file");
+  if (!packing.file.empty()) packing.grains = grains_of_file(table, packing.file);
   return packing;
 }
 

@@ -108,22 +108,39 @@ std::string default_title(const std::filesystem::path& file) {
   return stem == "case" && !folder.empty() ? folder : stem;
 }
 
-}  // namespace
+/// Reads the title, which names the folder of the results.
+std::string read_title(const io::Table& root, const std::filesystem::path& file) {
+  constexpr std::size_t longest = 200;  // of 255 bytes that the name of a file may have, the rest is for endings
+  std::string title = root.text("title", default_title(file));
+  if (title.empty() || title.front() == '.' || title.find('/') != std::string::npos) {
+    throw root.error("title", "names the folder of the results: there must be no / in it and no dot at its beginning");
+  }
+  if (title.size() > longest) {
+    throw root.error("title", "names the folder of the results: it must have at most 200 bytes, but has " +
+                                  std::to_string(title.size()));
+  }
+  return title;
+}
 
-Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  const io::CaseFile text = io::CaseFile::load(file, overrides);
+/// Reads all tables of the kind of the case, whose keys are then known to the file.
+Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
   const io::Table root = text.root();
   Case input;
   input.kind = read_kind(root);
-  input.name = root.text("title", default_title(file));
-  if (input.name.empty() || input.name.front() == '.' || input.name.find('/') != std::string::npos) {
-    throw root.error("title", "names the folder of the results: there must be no / in it and no dot at its beginning");
-  }
+  input.name = read_title(root, file);
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
   if (input.engine.backend == kernels::Backend::teams) check_teams(root, input);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   text.finish();
+  return input;
+}
+
+}  // namespace
+
+Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const io::CaseFile text = io::CaseFile::load(file, overrides);
+  Case input = read_case(text, file);
   input.resolved = text.resolved();
   // None of these keys changes a number: a preset acts only through the values that it gives to other keys, and all
   // instruction sets give the same bits.
@@ -132,6 +149,17 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   if (!input.packing.file.empty())
     input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
   return input;
+}
+
+std::vector<io::KeyInfo> keys_of(CaseKind kind) {
+  std::string text = "kind = \"" + to_string(kind) + "\"\n";
+  // One entry of each array of tables, and what cannot be left out: the values do not matter.
+  text += "[[soil.class]]\nsize_to = \"1 m\"\n";
+  if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
+  if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
+  const io::CaseFile file = io::CaseFile::of_text(text, "keys of " + to_string(kind));
+  static_cast<void>(read_case(file, "case.toml"));
+  return file.keys();
 }
 
 }  // namespace voussoir::host

@@ -7,11 +7,15 @@
 #include <vector>
 
 #include "host/case/case.hpp"
+#include "io/key_info.hpp"
 
 namespace voussoir::host {
 
 /// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) where
 /// the input is wrong: unknown keys, wrong units, values outside their limits, values that do not fit together.
 [[nodiscard]] Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// All keys of a kind with their types, defaults and limits, as the readers of the tables state them.
+[[nodiscard]] std::vector<io::KeyInfo> keys_of(CaseKind kind);
 
 }  // namespace voussoir::host

@@ -15,22 +15,25 @@ using io::Dimension;
 
 ElasticCase read_elastic(const io::Table& table) {
   ElasticCase elastic;
-  read_quantity(table, "modulus", Dimension::pressure, elastic.modulus, {.positive = true});
+  read_quantity(table, "modulus", Dimension::pressure, elastic.modulus, {.at_least = "1 kPa", .at_most = "100000 GPa"});
   read_quantity(table, "poisson", Dimension::none, elastic.poisson, {.at_least = "0", .at_most = "0.49"});
   return elastic;
 }
 
 GroundCase read_ground(const io::Table& table, bool with_tunnel) {
   GroundCase ground;
-  read_quantity(table, "unit_weight", Dimension::unit_weight, ground.unit_weight, {.positive = true});
-  read_quantity(table, "surcharge", Dimension::pressure, ground.surcharge, {.positive = true});
-  read_quantity(table, "height", Dimension::length, ground.height, {.positive = true});
+  read_quantity(table, "unit_weight", Dimension::unit_weight, ground.unit_weight,
+                {.at_least = "1 N/m3", .at_most = "1 MN/m3"});
+  read_quantity(table, "surcharge", Dimension::pressure, ground.surcharge, {.at_least = "100 Pa", .at_most = "10 MPa"});
+  read_quantity(table, "height", Dimension::length, ground.height, {.at_least = "1 cm", .at_most = "10 km"});
   if (!with_tunnel) return ground;
-  read_quantity(table, "width", Dimension::length, ground.width, {.positive = true});
-  read_quantity(table, "diameter", Dimension::length, ground.diameter, {.positive = true});
+  read_quantity(table, "width", Dimension::length, ground.width, {.at_least = "1.5 cm", .at_most = "10 km"});
+  read_quantity(table, "diameter", Dimension::length, ground.diameter, {.at_least = "1 cm", .at_most = "1 km"});
   read_quantity(table, "cover_ratio", Dimension::none, ground.cover_ratio, {.at_least = "0.25", .at_most = "20"});
-  read_quantity(table, "mesh_size_opening", Dimension::length, ground.mesh_size_opening, {.positive = true});
-  read_quantity(table, "mesh_size_far", Dimension::length, ground.mesh_size_far, {.positive = true});
+  read_quantity(table, "mesh_size_opening", Dimension::length, ground.mesh_size_opening,
+                {.at_least = "1 mm", .at_most = "500 m"});
+  read_quantity(table, "mesh_size_far", Dimension::length, ground.mesh_size_far,
+                {.at_least = "1 mm", .at_most = "10 km"});
   if (ground.invert_height() < 0.5 * ground.diameter) {
     throw table.error("cover_ratio", "leaves less than D/2 of ground below the invert");
   }
@@ -47,7 +50,7 @@ GroundCase read_ground(const io::Table& table, bool with_tunnel) {
 ColumnCase read_column(const io::Table& table) {
   ColumnCase column;
   read_integer(table, "elements", column.elements, {.at_least = 2, .at_most = 10000});
-  read_quantity(table, "width", Dimension::length, column.width, {.positive = true});
+  read_quantity(table, "width", Dimension::length, column.width, {.at_least = "1 mm", .at_most = "1 km"});
   return column;
 }
 
@@ -60,7 +63,7 @@ GravityCase read_gravity(const io::Table& table) {
 
 VolumeLossCase read_volume_loss(const io::Table& table) {
   VolumeLossCase loss;
-  read_quantity(table, "total", Dimension::none, loss.total, {.at_most = "0.9", .positive = true});
+  read_quantity(table, "total", Dimension::none, loss.total, {.at_least = "1e-6", .at_most = "0.9"});
   read_integer(table, "increments", loss.increments, {.at_least = 1, .at_most = 100000});
   loss.geometry = table.choice("geometry", {"updated_lagrangian", "fixed_mesh"}, "updated_lagrangian") == "fixed_mesh"
                       ? LossGeometry::fixed_mesh
@@ -71,12 +74,12 @@ VolumeLossCase read_volume_loss(const io::Table& table) {
 BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
   BiaxialBvpCase test;
   read_quantity(table, "pressure", Dimension::pressure, test.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
-  read_quantity(table, "width", Dimension::length, test.width, {.positive = true});
-  read_quantity(table, "height", Dimension::length, test.height, {.positive = true});
+  read_quantity(table, "width", Dimension::length, test.width, {.at_least = "0.01 mm", .at_most = "1 km"});
+  read_quantity(table, "height", Dimension::length, test.height, {.at_least = "0.01 mm", .at_most = "1 km"});
   read_integer(table, "columns", test.columns, {.at_least = 1, .at_most = 1000});
   read_integer(table, "rows", test.rows, {.at_least = 1, .at_most = 1000});
-  read_quantity(table, "strain", Dimension::none, test.strain, {.at_most = "0.5", .positive = true});
-  read_quantity(table, "strain_step", Dimension::none, test.strain_step, {.at_most = "0.05", .positive = true});
+  read_quantity(table, "strain", Dimension::none, test.strain, {.at_least = "1e-6", .at_most = "0.5"});
+  read_quantity(table, "strain_step", Dimension::none, test.strain_step, {.at_least = "1e-7", .at_most = "0.05"});
   if (test.strain > 100'000.5 * test.strain_step) throw table.error("strain_step", "makes more than 100000 increments");
   if (std::abs(test.increments() * test.strain_step - test.strain) > 1e-6 * test.strain) {
     throw table.error("strain_step", "must divide the strain into equal increments");
@@ -86,9 +89,9 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
 
 NewtonCase read_newton(const io::Table& table) {
   NewtonCase newton;
-  read_quantity(table, "tolerance", Dimension::none, newton.tolerance, {.at_most = "0.1", .positive = true});
+  read_quantity(table, "tolerance", Dimension::none, newton.tolerance, {.at_least = "1e-15", .at_most = "0.1"});
   read_quantity(table, "displacement_tolerance", Dimension::none, newton.displacement_tolerance,
-                {.at_most = "1", .positive = true});
+                {.at_least = "1e-15", .at_most = "1"});
   read_integer(table, "maximum_iterations", newton.maximum_iterations, {.at_least = 1, .at_most = 10000});
   read_integer(table, "anderson_depth", newton.anderson_depth, {.at_least = 0, .at_most = 50});
   newton.tangent = read_tangent(table, newton.tangent);
@@ -108,7 +111,7 @@ OutputCase read_output(const io::Table& table) {
   OutputCase output;
   read_integer(table, "every", output.every, {.at_least = 1, .at_most = 1'000'000});
   read_integer(table, "checkpoint_every", output.checkpoint_every, {.at_least = 1, .at_most = 1'000'000});
-  output.rves = table.integers("rves", {.at_least = 0}, std::vector<std::int64_t>{});
+  output.rves = table.integers("rves", {.at_least = 0, .at_most = 1'000'000'000}, std::vector<std::int64_t>{});
   const std::set<std::int64_t> different(output.rves.begin(), output.rves.end());
   if (different.size() != output.rves.size()) throw table.error("rves", "names a point twice");
   output.microstructure = read_microstructure(table);

@@ -14,7 +14,7 @@ struct CaseSize {
                               ///< grains
   std::size_t tests = 0;      ///< tests of packings, for kinds without a mesh
   std::size_t packings = 0;   ///< packings to be made or found
-  double memory = 0;          ///< estimate for the first process [bytes]; 0 without a mesh
+  double memory = 0;          ///< estimate for the first process [bytes]
   double result_file = 0;     ///< estimate [bytes]; 0 without a mesh
   double checkpoint = 0;      ///< estimate for one checkpoint, of which two are kept [bytes]
 };

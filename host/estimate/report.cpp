@@ -5,14 +5,11 @@
 #include "io/case_file.hpp"
 
 namespace voussoir::host {
-namespace {
 
 std::string bytes_text(double bytes) {
   if (bytes < 1e6) return fmt::format("{:.0f} kB", bytes * 1e-3);
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
 }
-
-}  // namespace
 
 void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& case_name) {
   for (const std::int64_t point : output.rves) {

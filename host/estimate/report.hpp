@@ -9,6 +9,9 @@
 
 namespace voussoir::host {
 
+/// A number of bytes for the user: "12 MB".
+[[nodiscard]] std::string bytes_text(double bytes);
+
 /// Throws io::InputError where output.rves names a point that the mesh does not have.
 void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& case_name);
 

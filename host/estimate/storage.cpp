@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/case/result_fields.hpp"
+#include "host/packing/packings.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 constexpr double process_bytes = 73e6;    ///< memory of the program with its libraries
 constexpr double memory_a_grain = 360.0;  ///< committed and trial state with room for four contacts a grain, and
                                           ///< the copies of which a checkpoint is made
+constexpr double memory_a_point = 6e3;    ///< matrix and factors; measured on rectangles of 1e4 to 1e5 elements
 constexpr double contacts_a_grain = 1.93;
 constexpr double nodes_a_point = 0.79;  ///< of the study's meshes: 3.16 nodes an element
 constexpr double file_overhead = 30e3;  ///< attributes and groups of a result file
@@ -24,7 +26,7 @@ bool is_wanted(const OutputCase& output, const ResultField& field) {
 
 /// Size of a result file, with the copies for ParaView: vectors with a third component, and the means over the four
 /// points of an element.
-double result_file_bytes(MaterialKind material, const PackingCase& packing, const OutputCase& output, double points,
+double result_file_bytes(MaterialKind material, const PackingCase& recipe, const OutputCase& output, double points,
                          double nodes) {
   double bytes = file_overhead;
   for (const ResultField& field : result_field_table) {
@@ -32,17 +34,27 @@ double result_file_bytes(MaterialKind material, const PackingCase& packing, cons
     bytes += 8.0 * field.components * (field.location == io::FieldLocation::node ? 2.5 * nodes : 1.25 * points);
   }
   const double snapshot = 32.0 + 48.0 * contacts_a_grain;  // bytes a grain
-  return bytes + static_cast<double>(output.rves.size()) * packing.grains * snapshot;
+  return bytes + static_cast<double>(output.rves.size()) * recipe.grains * snapshot;
 }
 
 }  // namespace
 
-void add_storage(CaseSize& size, MaterialKind material, const PackingCase& packing, const OutputCase& output) {
+void add_storage(CaseSize& size, MaterialKind material, const PackingCase& recipe, const OutputCase& output) {
   const auto points = static_cast<double>(size.points);
-  size.result_file = result_file_bytes(material, packing, output, points, nodes_a_point * points);
+  const auto made = recipe.file.empty() ? static_cast<double>(seeds_of(recipe).size()) : 1.0;
+  // Packings are made side by side in one batch, and so are tests. A mesh has its own matrix and its factors.
+  const bool grains = material == MaterialKind::grains;
+  const double side_by_side = grains ? recipe.grains * std::max(made, static_cast<double>(size.tests)) : 0.0;
+  size.memory = process_bytes + memory_a_grain * std::max(size.grains, side_by_side) + memory_a_point * points;
+  if (size.points == 0) return;
+  size.result_file = result_file_bytes(material, recipe, output, points, nodes_a_point * points);
   // A checkpoint holds committed RVEs (position and rotation, key and history of each contact) and the mesh's state.
   size.checkpoint = size.grains * (24.0 + 20.0 * contacts_a_grain) + 300.0 * points;
-  size.memory = process_bytes + memory_a_grain * size.grains;
+}
+
+void add_curves(CaseSize& size, const BiaxialCase& test) {
+  constexpr double bytes_a_sample = 300.0;  // a point of a curve, and its columns in the result file
+  size.memory += bytes_a_sample * static_cast<double>(size.tests) * test.samples;
 }
 
 }  // namespace voussoir::host

@@ -6,7 +6,10 @@
 
 namespace voussoir::host {
 
-/// Sets memory, result files and checkpoints of a size whose points and grains are known.
+/// Sets memory, result files and checkpoints of a size whose points, grains and tests are known.
 void add_storage(CaseSize& size, MaterialKind material, const PackingCase& packing, const OutputCase& output);
+
+/// Adds the memory of the curves of biaxial tests.
+void add_curves(CaseSize& size, const BiaxialCase& test);
 
 }  // namespace voussoir::host

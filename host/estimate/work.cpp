@@ -153,7 +153,8 @@ CaseSize case_size(const Case& input) {
     size = specimen_size(input.biaxial_bvp, input.material, input.soil, input.packing, input.engine);
   if (input.kind == CaseKind::calibrate) size = search_size(input.calibrate, input.biaxial, input.soil, input.packing);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) size = ground_size(input);
-  if (size.points > 0) add_storage(size, input.material, input.packing, input.output);
+  add_storage(size, input.material, input.packing, input.output);
+  if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) add_curves(size, input.biaxial);
   size.packings = packings(input.packing) * (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
   return size;
 }

@@ -24,6 +24,7 @@ namespace {
 
 struct Arguments {
   std::string file;
+  std::string kind;
   std::string output;
   std::vector<std::string> overrides;
   bool resume = false;
@@ -97,6 +98,10 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
     outcome = command_sweep(a.file, {a.output, std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads,
                                      a.resume, a.take_over});
   });
+
+  CLI::App* keys = app.add_subcommand("keys", "print all keys of a kind of case: type, default, limits");
+  keys->add_option("kind", a.kind, "kind of the case")->required();
+  keys->callback([&] { code = command_keys(a.kind); });
 
   CLI::App* info = app.add_subcommand("info", "print where a result comes from, and its increments");
   CLI::Option_group* what = info->add_option_group("what");

@@ -8,16 +8,17 @@
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
 #include "host/estimate/report.hpp"
-#include "host/estimate/work.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
 #include "host/process/threads.hpp"
+#include "host/program/accept_case.hpp"
 #include "host/program/run_case.hpp"
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
 #include "io/input_error.hpp"
 #include "io/result_file.hpp"
 #include "kernels/isa/choose_lanes.hpp"
+#include "io/text_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -37,13 +38,14 @@ std::string table_of(const std::vector<io::IncrementInfo>& increments) {
 
 Outcome command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
                     RunOptions options) {
-  const Case input = load_case(case_file, overrides);
+  const AcceptedCase accepted = accept_case(case_file, overrides);
+  const Case& input = accepted.input;
   const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
   check_folder(options, input.fingerprint);
-  if (!input.output.rves.empty()) check_snapshot_points(input.output, case_size(input), input.name);
   const KokkosSession kokkos(options.threads);
   start_ranks(options.threads, input.engine.isa);
+  refuse_too_large(input, accepted.size, rank_count());
   options.threads = kokkos.threads().count;
   options.threads_note = kokkos.threads().note;
   // Only a kind that advances in increments can stop between two of them; the others end at once.
@@ -63,16 +65,23 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
 }
 
 Outcome command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
-  const Case input = load_case(case_file, overrides);
-  const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
+  const auto [input, size] = accept_case(case_file, overrides);
+  refuse_too_large(input, size, rank_count());
   std::string answer = input.resolved + "\n";
   if (uses_engine(input.kind, input.material)) answer += "# " + engine_note(input.engine) + "\n";
-  answer += "# " + kernels::lanes_sentence(lanes) + "\n";
-  const CaseSize size = case_size(input);
-  check_snapshot_points(input.output, size, input.name);
+  answer += "# " + kernels::lanes_sentence(kernels::choose_lanes(input.engine.isa)) + "\n";
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";
   return print_answer(answer);
+}
+
+Outcome command_keys(const std::string& kind) {
+  for (const auto& [candidate, name] : case_kind_names) {
+    if (kind == name) return print_answer(io::key_table(keys_of(candidate)));
+  }
+  std::string names;
+  for (const auto& [candidate, name] : case_kind_names) names += (names.empty() ? "" : ", ") + std::string(name);
+  throw io::InputError("keys", "", "the kind must be one of " + names + ", is " + io::in_one_line(kind));
 }
 
 Outcome command_info(const std::filesystem::path& result_file) {

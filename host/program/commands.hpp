@@ -18,6 +18,9 @@ namespace voussoir::host {
 /// `voussoir check`: prints every value after defaults and overrides, and the estimated cost of the run.
 [[nodiscard]] Outcome command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides);
 
+/// `voussoir keys`: prints all keys of a kind with their types, defaults and limits.
+[[nodiscard]] Outcome command_keys(const std::string& kind);
+
 /// `voussoir info`: prints where a result comes from, and its table of increments.
 [[nodiscard]] Outcome command_info(const std::filesystem::path& result_file);
 

@@ -16,7 +16,6 @@
 #include "host/stages/biaxial_bvp.hpp"
 #include "host/stages/column.hpp"
 #include "host/stages/tunnel.hpp"
-#include "io/case_file.hpp"
 
 namespace voussoir::host {
 namespace {

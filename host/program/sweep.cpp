@@ -19,10 +19,10 @@
 #include <thread>
 #include <vector>
 
-#include "host/case/load_case.hpp"
 #include "host/process/cores.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
+#include "host/program/accept_case.hpp"
 #include "host/program/commands.hpp"
 #include "host/program/sweep_outcome.hpp"
 #include "host/ranks/session.hpp"
@@ -65,7 +65,7 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
     if (!names.insert(run.name).second) throw table.error("name", "is the name of two runs");
     run.folder = options.folder / run.name;
     check_folder({.folder = run.folder, .resume = options.resume, .command = {}},
-                 load_case(sweep.base, run.overrides).fingerprint);
+                 accept_case(sweep.base, run.overrides).input.fingerprint);
     expect_unlocked(run.folder);
     sweep.runs.push_back(std::move(run));
   }

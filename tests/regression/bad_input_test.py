@@ -32,12 +32,14 @@ def run_with(setting):
 
 lines = CASE.read_text().count("\n") + 3
 expect_complaint(["run", with_line("[soil]\nfrictoin = '30 deg'"), "-o", OUT], f"bad.toml:{lines}", "frictoin")
-expect_complaint(["check", with_line("[soil]\nsize_minimum = '-2 mm'")], "bad.toml", "size_minimum", "positive")
+expect_complaint(
+    ["check", with_line("[soil]\nsize_minimum = '-2 mm'")], "bad.toml", "size_minimum", "at least 0.001 mm"
+)
 expect_complaint(["run", with_line("[soil]\nmodulus = '3 mm'"), "-o", OUT], "bad.toml", "modulus", "length")
 expect_complaint(["run", with_line("[soil]\nmodulus = 3"), "-o", OUT], "bad.toml", "modulus")
 expect_complaint(["run", with_line("this is no TOML"), "-o", OUT], "bad.toml")
 expect_complaint(["run", "no_such_case.toml", "-o", OUT], "no_such_case.toml")
-expect_complaint(run_with("ground.diameter=-5 m"), "ground.diameter", "positive")
+expect_complaint(run_with("ground.diameter=-5 m"), "ground.diameter", "at least 1 cm")
 expect_complaint(run_with("ground.diameter=5 kPa"), "ground.diameter", "pressure")
 expect_complaint(run_with("ground.depth=5 m"), "ground.depth", "unknown")
 expect_complaint(run_with("ground.cover_ratio=6"), "ground.cover_ratio", "invert")

@@ -147,7 +147,7 @@ TEST(Case, WrongValuesAreRefusedAtTheirPlace) {
   expect_refused({tunnel, {"ground.cover_ratio=10"}, 0, "ground.cover_ratio", "below the invert"});
   expect_refused({tunnel, {"ground.width=6 m"}, 0, "ground.width", "less than 1.5 tunnel diameters"});
   expect_refused({tunnel, {"ground.mesh_size_far=10 cm"}, 0, "ground.mesh_size_far", "smaller than mesh_size_opening"});
-  expect_refused({tunnel, {"newton.tolerance=0"}, 0, "newton.tolerance", "must be positive, is 0"});
+  expect_refused({tunnel, {"newton.tolerance=0"}, 0, "newton.tolerance", "must be at least 1e-15, is 0"});
   expect_refused({tunnel + "[packing]\npressure = '2 kPa'\n[ground]\nsurcharge = '1 kPa'\n",
                   {},
                   5,

@@ -137,7 +137,7 @@ TEST_F(PackingFileTest, BadPairsSayWhereTheyAreBad) {
   };
   says(message("id,x,y\n", meta_), "a_particles.csv: line 1: must be");
   says(message(particles_ + "2,0.1,0.2\n", meta_), "line 4: must be five numbers");
-  says(message(particles_ + "2,0.1,0.2,nan,0\n", meta_), "line 4: must be five numbers");
+  says(message(particles_ + "2,0.1,0.2,nan,0\n", meta_), "line 4: r_m must be a finite number, is \"nan\"");
   says(message(particles_ + "2,0.1,0.2,-0.001,0\n", meta_), "line 4: radius must be positive");
   says(message("id,x_m,y_m,r_m,theta_z_rad\n", meta_), "has no grains");
   says(message(particles_, ""), "a_meta.json: cannot be read");

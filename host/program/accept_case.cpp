@@ -1,0 +1,76 @@
+#include "host/program/accept_case.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "host/case/engine.hpp"
+#include "host/case/load_case.hpp"
+#include "host/estimate/report.hpp"
+#include "host/estimate/work.hpp"
+#include "host/packing/packing_check.hpp"
+#include "host/process/resources.hpp"
+#include "io/input_error.hpp"
+
+namespace voussoir::host {
+namespace {
+
+/// True where the run needs grains.
+bool has_grains(const Case& input) { return !runs_on_a_mesh(input.kind) || input.material == MaterialKind::grains; }
+
+/// The skin of the neighbour lists with which this case runs; 0 where [engine] decides nothing.
+double skin_of(const Case& input) { return uses_engine(input.kind, input.material) ? input.engine.skin : 0.0; }
+
+void check_packings(const Case& input, const std::string& place) {
+  try {
+    check_packing_file(input.soil, input.packing, skin_of(input));
+  } catch (const std::runtime_error& fault) {
+    throw io::InputError(place, "packing.file", fault.what());
+  }
+  if (!has_grains(input)) return;
+  const char* key = "packing.grains";
+  try {
+    if (input.packing.file.empty()) check_recipe(input.soil, input.packing.grains, skin_of(input));
+    key = "calibrate.confirm_grains";
+    if (input.kind == CaseKind::calibrate) check_recipe(input.soil, input.calibrate.confirm_grains, 0.0);
+  } catch (const std::runtime_error& fault) {
+    throw io::InputError(place, key, fault.what());
+  }
+}
+
+/// The size of the case. What the mesh generator refuses is a fault of the ground's lengths.
+CaseSize checked_size(const Case& input, const std::string& place) {
+  try {
+    return case_size(input);
+  } catch (const std::invalid_argument& fault) {
+    throw io::InputError(place, "ground", fault.what());
+  } catch (const std::runtime_error& fault) {
+    throw io::InputError(place, "ground", fault.what());
+  }
+}
+
+}  // namespace
+
+AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  AcceptedCase accepted{load_case(file, overrides), {}};
+  const std::string place = file.string();
+  check_packings(accepted.input, place);
+  accepted.size = checked_size(accepted.input, place);
+  check_snapshot_points(accepted.input.output, accepted.size, place);
+  return accepted;
+}
+
+void refuse_too_large(const Case& input, const CaseSize& size, int ranks) {
+  const double needed = size.memory / ranks, there = memory_limit();
+  if (needed <= there) return;
+  const char* key = !has_grains(input) ? (input.kind == CaseKind::biaxial_bvp ? "biaxial_bvp.columns" : "ground")
+                                       : "packing.grains";
+  throw io::InputError(
+      input.name, key,
+      fmt::format("the run takes about {} of memory, but this machine allows {}: it needs fewer points, "
+                  "grains, packings or tests",
+                  bytes_text(needed), bytes_text(there)));
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,26 @@
+#pragma once
+/// The one way from a case file to a case that can be run, for `run`, `check` and `sweep` alike: what `run` would
+/// refuse, `check` refuses with the same line.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/case/case.hpp"
+#include "host/estimate/case_size.hpp"
+
+namespace voussoir::host {
+
+struct AcceptedCase {
+  Case input;
+  CaseSize size;
+};
+
+/// Loads a case, reads the packing's file whole, makes the mesh to count its points, and estimates the memory. Throws
+/// io::InputError where any of these shows that the case cannot be run.
+[[nodiscard]] AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+/// Throws io::InputError where a run on so many ranks takes more memory than this machine allows.
+void refuse_too_large(const Case& input, const CaseSize& size, int ranks);
+
+}  // namespace voussoir::host
