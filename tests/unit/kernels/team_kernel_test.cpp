@@ -37,6 +37,7 @@ void expect_same_report(const RveReport& a, const RveReport& b, std::size_t rve)
   EXPECT_EQ(a.unbalanced, b.unbalanced) << rve;
   EXPECT_EQ(a.inertial_number, b.inertial_number) << rve;
   EXPECT_EQ(a.largest_overlap, b.largest_overlap) << rve;
+  EXPECT_EQ(a.mean_overlap, b.mean_overlap) << rve;
 }
 
 void expect_same_state(const RveStates& a, const RveStates& b, std::size_t rve, std::size_t grains) {
