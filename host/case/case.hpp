@@ -238,6 +238,7 @@ struct Case {
   BiaxialBvpCase biaxial_bvp;
   CalibrateCase calibrate;
 
+  std::vector<std::string> remarks;  ///< sentences for `check` and the log: keys that are given and not used, ...
   std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
   std::string resolved;     ///< TOML of every value after defaults and overrides
   std::string fingerprint;  ///< made of all values that decide the results, in SI to 12 digits: the same values in

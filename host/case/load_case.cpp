@@ -7,11 +7,14 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "host/case/element_tests.hpp"
 #include "host/case/engine.hpp"
 #include "host/case/grains.hpp"
+#include "host/case/idle_keys.hpp"
 #include "host/case/mesh.hpp"
+#include "host/case/packing_origin.hpp"
 #include "io/case_file.hpp"
 #include "io/hash.hpp"
 
@@ -123,11 +126,12 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
   if (input.engine.backend == kernels::Backend::teams) check_teams(root, input);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
+  check_packing_origin(root, input);
+  declare_idle_keys(root, input);
   text.finish();
+  for (std::string& line : text.idle_keys()) input.remarks.push_back(std::move(line));
   input.resolved = text.resolved();
-  // None of these keys changes a number: a preset acts only through the values that it gives to other keys.
-  const std::array<std::string, 4> without{"title", "output", "packing.folder", "engine.preset"};
-  input.fingerprint = text.fingerprint(without);
+  input.fingerprint = text.fingerprint(keys_without_results);
   if (!input.packing.file.empty())
     input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
   return input;

@@ -25,6 +25,7 @@ struct PackedRve {
   double pressure = 0;                                     ///< [Pa]
   double coordination = 0;                                 ///< 2 contacts / grains [-]
   double unbalanced = 0;                                   ///< [-]
+  double mean_overlap = 0;  ///< mean over the contacts of overlap / (r_i + r_j) [-]; 0 where it is not known
   double bias = std::numeric_limits<double>::quiet_NaN();  ///< see bias.hpp [-]; NaN: not measured
   kernels::RveStatus status = kernels::RveStatus::converged;  ///< of the consolidation
 };

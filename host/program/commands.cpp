@@ -8,6 +8,7 @@
 
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
+#include "host/estimate/range.hpp"
 #include "host/estimate/report.hpp"
 #include "host/estimate/work.hpp"
 #include "host/process/exit_code.hpp"
@@ -20,22 +21,31 @@
 namespace voussoir::host {
 namespace {
 
+/// "converged", or with the number of RVEs that were not at rest.
+std::string status_of(const io::IncrementInfo& info) {
+  const auto restless = info.extra.find("step_limit_points");
+  if (restless == info.extra.end() || !(restless->second.value > 0)) return info.converged ? "converged" : "not converged";
+  return fmt::format("{}, {:.0f} RVEs not at rest", info.converged ? "in equilibrium" : "not converged",
+                     restless->second.value);
+}
+
 void print_increments(const std::vector<io::IncrementInfo>& increments) {
-  std::printf("%5s  %-12s %5s  %12s  %6s  %5s  %9s  %10s  %8s\n", "file", "stage", "index", "load", "iter.", "cuts",
-              "residual", "part.steps", "wall [s]");
+  std::printf("%5s  %-12s %5s  %12s  %6s  %5s  %9s  %10s  %8s  %s\n", "file", "stage", "index", "load", "iter.", "cuts",
+              "residual", "part.steps", "wall [s]", "status");
   for (const io::IncrementInfo& info : increments) {
-    std::printf("%5d  %-12s %5d  %12.6g  %6d  %5d  %9.2e  %10.3g  %8.2f\n", info.index, info.stage.c_str(),
+    std::printf("%5d  %-12s %5d  %12.6g  %6d  %5d  %9.2e  %10.3g  %8.2f  %s\n", info.index, info.stage.c_str(),
                 info.stage_index, info.load_parameter, info.iterations, info.cuts, info.residual, info.particle_steps,
-                info.wall_s);
+                info.wall_s, status_of(info).c_str());
   }
 }
 
 }  // namespace
 
 int command_run(const std::filesystem::path& case_file, const std::vector<std::string>& overrides, RunOptions options) {
-  const Case input = load_case(case_file, overrides);
+  Case input = load_case(case_file, overrides);
+  for (std::string& warning : foretell(input).warnings) input.remarks.push_back(std::move(warning));
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
-  check_folder(options, input.fingerprint);
+  check_folder(options, input.fingerprint, input.resolved);
   Kokkos::InitializationSettings settings;
   settings.set_disable_warnings(true);
   if (options.threads > 0) settings.set_num_threads(options.threads);
@@ -55,6 +65,11 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
   check_snapshot_points(input.output, size, input.name);
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     std::printf("# %s\n", line.c_str());
+  const Foretold range = foretell(input);
+  if (!range.line.empty()) std::printf("# %s\n", range.line.c_str());
+  for (const std::vector<std::string>* remarks : {&range.warnings, &input.remarks}) {
+    for (const std::string& remark : *remarks) std::printf("# warning: %s\n", remark.c_str());
+  }
   return exit_ok;
 }
 

@@ -11,6 +11,7 @@
 #include "fem/mesh_rectangle.hpp"
 #include "host/case/engine.hpp"
 #include "host/record/provenance.hpp"
+#include "host/record/remarks.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/ground_run.hpp"
 #include "host/stages/stage_driver.hpp"
@@ -158,6 +159,7 @@ RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
     return RunStatus::finished;
   }
   if (uses_engine(input.kind, input.material)) log.line(engine_note(input.engine));
+  say_remarks(input, log);
   MaterialCase material = material_case(input);
   material.packing.pressure = test.pressure;
   run.open_ground(material, [&log](const std::string& text) { log.line(text); });
