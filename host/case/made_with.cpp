@@ -174,7 +174,8 @@ KeyTexts engine_keys_of(const io::Packing& file) { return labels_of(file, "engin
 std::vector<io::KeyDifference> differences(const KeyTexts& ours, const KeyTexts& theirs) {
   std::vector<io::KeyDifference> found;
   for (const auto& [key, text] : theirs) {
-    const auto mine = std::find_if(ours.begin(), ours.end(), [&k = key](const auto& entry) { return entry.first == k; });
+    const auto mine = std::find_if(ours.begin(), ours.end(),
+                                   [&k = key](const auto& entry) { return entry.first == k; });
     if (mine == ours.end()) {
       found.push_back({key, "nothing", text});
     } else if (!is_same(mine->second, text)) {

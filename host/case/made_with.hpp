@@ -1,6 +1,6 @@
 #pragma once
-/// The keys that a stored packing or state was made with, and their comparison with a case. io/FORMAT.md says where they
-/// are kept.
+/// The keys that a stored packing or state was made with, and their comparison with a case. io/FORMAT.md says where
+/// they are kept.
 
 #include <map>
 #include <string>
@@ -24,8 +24,8 @@ using KeyTexts = std::vector<std::pair<std::string, std::string>>;
 /// the state is looked at anew with the case's own settings.
 [[nodiscard]] KeyTexts engine_keys(const EngineCase& engine);
 
-/// The soil that a packing file says it was made with: its labels "soil.*", else its label "recipe", else the numbers of
-/// a meta file of Yade. Empty where the file says nothing.
+/// The soil that a packing file says it was made with: its labels "soil.*", else its label "recipe", else the numbers
+/// of a meta file of Yade. Empty where the file says nothing.
 [[nodiscard]] KeyTexts soil_keys_of(const io::Packing& file);
 
 /// The labels "engine.*" of a packing file.

@@ -20,8 +20,8 @@ constexpr std::size_t soil_prefix = 5;  ///< "soil."
 /// The error at the key's own place, where the case has this key.
 [[noreturn]] void refuse(const io::Table& root, const io::KeyDifference& difference, const std::string& maker) {
   const std::string key = difference.key.substr(soil_prefix);
-  throw root.table("soil").error(key, fmt::format("this case has {}, {} was made with {}", difference.ours, maker,
-                                                  difference.theirs));
+  throw root.table("soil").error(
+      key, fmt::format("this case has {}, {} was made with {}", difference.ours, maker, difference.theirs));
 }
 
 void check_state(const io::Table& root, const io::Packing& file, Case& input) {
@@ -35,15 +35,17 @@ void check_state(const io::Table& root, const io::Packing& file, Case& input) {
   }
   const KeyTexts soil = soil_keys_of(file);
   if (soil.empty()) {
-    throw packing.error("file", "does not say which soil its state was made with, because an older version of this "
-                                "program wrote it: make the state anew");
+    throw packing.error("file",
+                        "does not say which soil its state was made with, because an older version of this "
+                        "program wrote it: make the state anew");
   }
   const std::vector<io::KeyDifference> different = differences(soil_keys(input.soil), soil);
   if (!different.empty()) refuse(root, different.front(), maker);
   for (const io::KeyDifference& d : differences(engine_keys(input.engine), engine_keys_of(file))) {
-    input.remarks.push_back(fmt::format("{}: this case has {}, {} was made with {}; the two may differ, because the run "
-                                        "begins with a look at the state and says whether it is at rest",
-                                        d.key, d.ours, maker, d.theirs));
+    input.remarks.push_back(
+        fmt::format("{}: this case has {}, {} was made with {}; the two may differ, because the run "
+                    "begins with a look at the state and says whether it is at rest",
+                    d.key, d.ours, maker, d.theirs));
   }
 }
 
@@ -52,9 +54,9 @@ void check_foreign_packing(const io::Table& root, const io::Packing& file, Case&
   const auto length = [](double x) { return io::format_quantity(x, io::Dimension::length); };
   if (input.soil.thickness != file.thickness) {
     if (root.table("soil").has("thickness")) {
-      throw root.table("soil").error("thickness", fmt::format("this case has {}, {} was made with {}",
-                                                              length(input.soil.thickness), maker,
-                                                              length(file.thickness)));
+      throw root.table("soil").error(
+          "thickness", fmt::format("this case has {}, {} was made with {}", length(input.soil.thickness), maker,
+                                   length(file.thickness)));
     }
     input.remarks.push_back(fmt::format("soil.thickness: {} has {}, which the run takes; the case gives none", maker,
                                         length(file.thickness)));
@@ -67,9 +69,10 @@ void check_foreign_packing(const io::Table& root, const io::Packing& file, Case&
     // The sizes of the grains are those of the file, whatever curve the case gives.
     const bool is_size = d.key.find(".size") != std::string::npos || d.key.find(".passing") != std::string::npos;
     if (is_size || d.ours == "nothing" || d.key == "soil.thickness") continue;
-    input.remarks.push_back(fmt::format("{}: this case has {}, {} was made with {}; the two may differ, because the "
-                                        "packing comes to rest anew with this case's soil",
-                                        d.key, d.ours, maker, d.theirs));
+    input.remarks.push_back(
+        fmt::format("{}: this case has {}, {} was made with {}; the two may differ, because the "
+                    "packing comes to rest anew with this case's soil",
+                    d.key, d.ours, maker, d.theirs));
   }
 }
 

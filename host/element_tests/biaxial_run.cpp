@@ -194,10 +194,11 @@ int run_biaxial(const Case& input, const RunOptions& options) {
   const auto beyond = std::count_if(curves.begin(), curves.end(),
                                     [](const BiaxialCurve& curve) { return curve.mean_overlap > most_mean_overlap; });
   if (beyond > 0) {
-    std::fprintf(stderr,
-                 "biaxial: %td of %zu tests are invalid because the mean overlap of their contacts passed %.0f %% of r_i + "
-                 "r_j, beyond which the contact law is not good for strengths (docs/range.md)\n",
-                 beyond, curves.size(), most_mean_overlap * 100.0);
+    std::fprintf(
+        stderr,
+        "biaxial: %td of %zu tests are invalid because the mean overlap of their contacts passed %.0f %% of r_i + "
+        "r_j, beyond which the contact law is not good for strengths (docs/range.md)\n",
+        beyond, curves.size(), most_mean_overlap * 100.0);
   }
   if (curves.size() < wanted) {
     std::fprintf(stderr, "biaxial: %zu of %zu tests were left out because their packings do not come to rest\n",

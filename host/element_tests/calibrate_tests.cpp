@@ -129,8 +129,9 @@ std::vector<SetTests> test_sets(const TestProgram& program, std::span<const Para
     of.curves.push_back(std::move(curves[c]));
   }
   if (beyond > 0 && note) {
-    note(fmt::format("{} of {} tests do not count, because the mean overlap of their contacts passed {:.0f} % of r_i + r_j",
-                     beyond, owner.size(), 100 * most_mean_overlap));
+    note(fmt::format(
+        "{} of {} tests do not count, because the mean overlap of their contacts passed {:.0f} % of r_i + r_j", beyond,
+        owner.size(), 100 * most_mean_overlap));
   }
   for (SetTests& one : out) {
     summarise(one, seeds_of(program.packing), test.pressures);

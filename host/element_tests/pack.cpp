@@ -14,8 +14,8 @@ int run_pack(const Case& input) {
   const std::vector<std::int64_t> seeds = seeds_of(input.packing);
   const std::size_t made = obtain_packings(input.soil, input.packing, seeds, print).size();
   if (made == seeds.size() || !input.packing.file.empty()) return exit_ok;
-  std::fprintf(stderr, "pack: %zu of %zu packings do not come to rest or are refused (see above), and are not stored\n", seeds.size() - made,
-               seeds.size());
+  std::fprintf(stderr, "pack: %zu of %zu packings do not come to rest or are refused (see above), and are not stored\n",
+               seeds.size() - made, seeds.size());
   return exit_numerical;
 }
 

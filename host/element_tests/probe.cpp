@@ -106,9 +106,10 @@ io::Packing end_of_path(const PackedRve& rve, const Case& input) {
 /// Says that a packing does not begin at rest. Its first row has the status `step_limit` then.
 void say_restless(const PackedRve& rve, const kernels::RveReport& start, const EngineCase& engine) {
   if (start.status != kernels::RveStatus::step_limit) return;
-  std::fprintf(stderr,
-               "probe: seed %lld does not begin at rest: its unbalanced ratio is %.2g, and engine.hold_tolerance is %.2g\n",
-               static_cast<long long>(rve.seed), start.unbalanced, engine.hold_tolerance);
+  std::fprintf(
+      stderr,
+      "probe: seed %lld does not begin at rest: its unbalanced ratio is %.2g, and engine.hold_tolerance is %.2g\n",
+      static_cast<long long>(rve.seed), start.unbalanced, engine.hold_tolerance);
 }
 
 /// Counts what the rows of a path or of probes are not: at rest, and within the contact law's range.
@@ -126,10 +127,11 @@ struct Doubts {
                    static_cast<long long>(rve.seed), restless, rows, what);
     }
     if (beyond > 0) {
-      std::fprintf(stderr,
-                   "probe: seed %lld: %d of %d %s have a mean overlap above %.0f %% of r_i + r_j, beyond which the contact "
-                   "law is not good (docs/range.md)\n",
-                   static_cast<long long>(rve.seed), beyond, rows, what, most_mean_overlap * 100.0);
+      std::fprintf(
+          stderr,
+          "probe: seed %lld: %d of %d %s have a mean overlap above %.0f %% of r_i + r_j, beyond which the contact "
+          "law is not good (docs/range.md)\n",
+          static_cast<long long>(rve.seed), beyond, rows, what, most_mean_overlap * 100.0);
     }
   }
 };
@@ -229,8 +231,7 @@ int run_probe(const Case& input, const RunOptions& options) {
   for (PackedRve& rve : rves) {
     if (!input.probe.path.empty()) {
       if (note_failure(take_path(input.probe, input.engine, rve, tables))) continue;
-      io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed),
-                       end_of_path(rve, input));
+      io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed), end_of_path(rve, input));
     }
     note_failure(take_probes(input.probe, input.engine, rve, tables, &rve == &rves.front()));
   }

@@ -24,8 +24,8 @@ Load largest_load(const Case& input) {
   constexpr double strong = 40 * std::numbers::pi / 180;  // friction angle of dense sand and gravel at the peak
   constexpr double k0 = 0.5;
   const auto test = [](double pressure) {
-    return Load{mean_stress_at(pressure, strong), fmt::format("at the peak of a test at {:.4g} kPa (phi = 40 deg)",
-                                                              pressure * 1e-3)};
+    return Load{mean_stress_at(pressure, strong),
+                fmt::format("at the peak of a test at {:.4g} kPa (phi = 40 deg)", pressure * 1e-3)};
   };
   switch (input.kind) {
     case CaseKind::biaxial:
@@ -42,8 +42,8 @@ Load largest_load(const Case& input) {
       break;
   }
   const double vertical = input.ground.surcharge + input.ground.unit_weight * input.ground.height;
-  return {vertical * (1 + k0) / 2, fmt::format("at the deepest point (vertical stress {:.4g} kPa, K0 = 0.5)",
-                                               vertical * 1e-3)};
+  return {vertical * (1 + k0) / 2,
+          fmt::format("at the deepest point (vertical stress {:.4g} kPa, K0 = 0.5)", vertical * 1e-3)};
 }
 
 /// A packing with the grains of the case: those of a file, or a sample of the grading.
@@ -67,21 +67,24 @@ Foretold foretell(const Case& input) {
   const double kappa = stiffness_number(grains, load.pressure);
   const double overlap = foretold_overlap(kappa);
   Foretold out;
-  out.line = fmt::format("mean stress {:.4g} kPa {}: kappa = {:.3g}, mean overlap about {:.2g} % of r_i + r_j (the contact "
-                         "law is good for {:.0f} %, docs/range.md)",
-                         load.pressure * 1e-3, load.where, kappa, 100 * overlap, 100 * most_mean_overlap);
+  out.line = fmt::format(
+      "mean stress {:.4g} kPa {}: kappa = {:.3g}, mean overlap about {:.2g} % of r_i + r_j (the contact "
+      "law is good for {:.0f} %, docs/range.md)",
+      load.pressure * 1e-3, load.where, kappa, 100 * overlap, 100 * most_mean_overlap);
   if (overlap > most_mean_overlap) {
-    out.warnings.push_back(fmt::format("the mean stress of {:.4g} kPa {} is beyond what the contact law is good for: kappa "
-                                       "= {:.3g}, mean overlap about {:.2g} % of r_i + r_j, where {:.0f} % are allowed; "
-                                       "strengths from there are invalid",
-                                       load.pressure * 1e-3, load.where, kappa, 100 * overlap, 100 * most_mean_overlap));
+    out.warnings.push_back(
+        fmt::format("the mean stress of {:.4g} kPa {} is beyond what the contact law is good for: kappa "
+                    "= {:.3g}, mean overlap about {:.2g} % of r_i + r_j, where {:.0f} % are allowed; "
+                    "strengths from there are invalid",
+                    load.pressure * 1e-3, load.where, kappa, 100 * overlap, 100 * most_mean_overlap));
   }
   constexpr double loose_ratio = 0.19;  // void ratio of a dense packing of coarse sand at little pressure
   const double left = (1 + loose_ratio) * (1 - overlap) * (1 - overlap) - 1, least = least_void_ratio(grains);
   if (left < least && overlap > most_mean_overlap) {
-    out.warnings.push_back(fmt::format("the grains will interpenetrate: a void ratio of {:.2g} at little pressure becomes "
-                                       "about {:.2g} there, below {:.3g}, that of the densest packing of rigid grains",
-                                       loose_ratio, left, least));
+    out.warnings.push_back(
+        fmt::format("the grains will interpenetrate: a void ratio of {:.2g} at little pressure becomes "
+                    "about {:.2g} there, below {:.3g}, that of the densest packing of rigid grains",
+                    loose_ratio, left, least));
   }
   return out;
 }

@@ -60,9 +60,6 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
   }
 }
 
-/// Version of a record; it must be raised when the meaning of the bytes changes.
-constexpr std::uint64_t record_version = 3;
-
 }  // namespace
 
 std::uint64_t RvePool::identity() const {

@@ -36,9 +36,10 @@ double foretold_overlap(double kappa) { return 0.92 / (kappa + 1.6 * std::sqrt(k
 std::string interpenetration(const PackedRve& rve) {
   const double least = least_void_ratio(rve.packing);
   if (rve.void_ratio >= least) return {};
-  return fmt::format("its void ratio of {:.4f} is below {:.4f}, that of the densest packing of rigid grains of its sizes: "
-                     "its grains interpenetrate, with a mean overlap of {:.1f} % of r_i + r_j at kappa = {:.3g}",
-                     rve.void_ratio, least, 100 * rve.mean_overlap, stiffness_number(rve.packing, rve.pressure));
+  return fmt::format(
+      "its void ratio of {:.4f} is below {:.4f}, that of the densest packing of rigid grains of its sizes: "
+      "its grains interpenetrate, with a mean overlap of {:.1f} % of r_i + r_j at kappa = {:.3g}",
+      rve.void_ratio, least, 100 * rve.mean_overlap, stiffness_number(rve.packing, rve.pressure));
 }
 
 }  // namespace voussoir::host

@@ -23,9 +23,10 @@ namespace {
 std::string table_line(const PackedRve& rve) {
   std::string bias = std::isnan(rve.bias) ? "" : fmt::format("  bias {:.4f}", rve.bias);
   if (rve.mean_overlap > most_mean_overlap) {
-    bias += fmt::format("  warning: the mean overlap of {:.1f} % of r_i + r_j is beyond the {:.0f} % that the contact law "
-                        "is good for",
-                        100 * rve.mean_overlap, 100 * most_mean_overlap);
+    bias += fmt::format(
+        "  warning: the mean overlap of {:.1f} % of r_i + r_j is beyond the {:.0f} % that the contact law "
+        "is good for",
+        100 * rve.mean_overlap, 100 * most_mean_overlap);
   }
   return fmt::format(
       "seed {:5d}  grains {:5d}  mu_t {:.3f}  void ratio {:.4f}  p {:.1f} Pa  coordination {:.3f}  unbalanced {:.1e}{}",

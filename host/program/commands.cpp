@@ -24,7 +24,8 @@ namespace {
 /// "converged", or with the number of RVEs that were not at rest.
 std::string status_of(const io::IncrementInfo& info) {
   const auto restless = info.extra.find("step_limit_points");
-  if (restless == info.extra.end() || !(restless->second.value > 0)) return info.converged ? "converged" : "not converged";
+  if (restless == info.extra.end() || !(restless->second.value > 0))
+    return info.converged ? "converged" : "not converged";
   return fmt::format("{}, {:.0f} RVEs not at rest", info.converged ? "in equilibrium" : "not converged",
                      restless->second.value);
 }

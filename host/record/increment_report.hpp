@@ -24,11 +24,12 @@ struct EquilibriumReport {
   double noise_floor = 0;             ///< the part of the bound that is noise [N/m]
   std::size_t open_points = 0;        ///< RVEs without any contact
   std::size_t step_limit_points = 0;  ///< RVEs whose hold ended at its cap: their grains are not at rest
-  /// RVEs beyond what the contact law is good for (packing/law_range.hpp): they count, but their overlaps are not small.
+  /// RVEs beyond what the contact law is good for (packing/law_range.hpp): they count, but their overlaps are not
+  /// small.
   std::optional<std::size_t> out_of_range_points = {};
   std::optional<double> mean_overlap = {};  ///< the largest mean overlap over r_i + r_j of an RVE [-]
-  /// If the stresses of the RVEs at the step limit were wrong by as much as their pressure, the residual would be wrong by this share
-  /// of the tolerance [-].
+  /// If the stresses of the RVEs at the step limit were wrong by as much as their pressure, the residual would be wrong
+  /// by this share of the tolerance [-].
   double unsettled = 0;
   std::optional<std::size_t> slowest_point = {};  ///< the RVE that took most steps; none for a continuum
   std::optional<int> slowest_steps = {};          ///< the steps that it took

@@ -21,7 +21,8 @@ std::vector<std::string> resume_differences(const io::Provenance& begun, const i
   std::vector<std::string> lines;
   const auto compare = [&](const char* what, const auto& before, const auto& after, const char* effect) {
     if (before != after) {
-      lines.push_back(fmt::format("{}: this process has {}, the run was begun with {}; {}", what, after, before, effect));
+      lines.push_back(
+          fmt::format("{}: this process has {}, the run was begun with {}; {}", what, after, before, effect));
     }
   };
   constexpr const char* no_number = "the two may differ, because no number depends on it";
@@ -33,7 +34,8 @@ std::vector<std::string> resume_differences(const io::Provenance& begun, const i
   }
   compare("threads", begun.threads, now.threads, no_number);
   compare("ranks", begun.ranks, now.ranks, no_number);
-  compare("the program", begun.version + " (" + begun.git_hash + ")", now.version + " (" + now.git_hash + ")", last_bits);
+  compare("the program", begun.version + " (" + begun.git_hash + ")", now.version + " (" + now.git_hash + ")",
+          last_bits);
   compare("the compiler", begun.build_compiler, now.build_compiler, last_bits);
   compare("Kokkos", begun.kokkos, now.kokkos, last_bits);
   return lines;

@@ -10,7 +10,8 @@
 
 namespace voussoir::host {
 
-/// Writes the remarks about a case (Case::remarks) as warnings, to the log or, for kinds without one, to standard output.
+/// Writes the remarks about a case (Case::remarks) as warnings, to the log or, for kinds without one, to standard
+/// output.
 void say_remarks(const Case& input, RunLog& log);
 void say_remarks(const Case& input);
 

@@ -118,7 +118,8 @@ std::string range_line(const StageTotals& stage, std::size_t points) {
   const auto increments = std::count_if(beyond.begin(), beyond.end(), [](double n) { return n > 0; });
   if (increments == 0) return {};
   return fmt::format(
-      "{}: in {} of {} increments RVEs were pressed beyond what the contact law is good for, up to {} of {}: their mean "
+      "{}: in {} of {} increments RVEs were pressed beyond what the contact law is good for, up to {} of {}: their "
+      "mean "
       "overlap passed {:.0f} % of r_i + r_j (the largest was {:.1f} %), or their void ratio fell below that of the "
       "densest packing (docs/range.md)",
       stage.stage, increments, beyond.size(), *std::max_element(beyond.begin(), beyond.end()), points,

@@ -22,7 +22,8 @@ template <class Run>
 template <class Run>
 [[nodiscard]] KOKKOS_FUNCTION typename Run::V overlap_sum(const Run& run) {
   typename Run::V sum(0);
-  for (int p = 0; p < run.listed(); ++p) sum = sum + overlap_ratio(run.at.branches(p).overlap, run.at.springs(p).weight);
+  for (int p = 0; p < run.listed(); ++p)
+    sum = sum + overlap_ratio(run.at.branches(p).overlap, run.at.springs(p).weight);
   return sum;
 }
 
