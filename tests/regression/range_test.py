@@ -57,12 +57,12 @@ check(
 )
 with h5py.File("beyond/run.h5") as opened:
     strength = opened["tables/strength"]
-    check(list(strength["valid"]) == [0] and strength["mean_overlap"][0] > 0.04, "the table calls the test valid")
+    check(list(strength["valid"]) == [0] and strength["mean_overlap"][0] > 0.06, "the table calls the test valid")
 
 # Ground: counted in the table, one warning at the stage's end, and nothing of it within the range.
 run(words("run", "column.toml", folder="shallow"))
 rows = table("shallow")
-check(all(row["out_of_range_points"] == 0 and 0 < row["mean_overlap"] < 0.04 for row in rows), f"400 kPa: {rows}")
+check(all(row["out_of_range_points"] == 0 and 0 < row["mean_overlap"] < 0.06 for row in rows), f"400 kPa: {rows}")
 check("beyond what the contact law" not in Path("shallow/run.log").read_text(), "a false alarm at 400 kPa")
 run(words("run", "column.toml", "ground.unit_weight=500 kN/m3", folder="deep"), code=None)
 rows = table("deep")
