@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +30,9 @@ struct BatchReport {
   std::size_t step_limit = 0;  ///< points whose hold ended at its cap
   /// Rms over all points of the stress error that points at `step_limit` may have: each its own pressure [Pa].
   double unsettled_stress = 0;
-  std::size_t deferred = 0;  ///< points that answered by their last tangent
+  std::size_t out_of_range = 0;  ///< points beyond what their law is good for; their stresses count all the same
+  std::optional<double> mean_overlap = {};  ///< of grains: the largest mean overlap of a point [-]
+  std::size_t deferred = 0;                 ///< points that answered by their last tangent
   /// Largest error of such answers, earlier ones, that the grains have shown in this call, over the pressure [-].
   double deferral_error = 0;
   std::size_t slowest = 0;  ///< the point that took most steps

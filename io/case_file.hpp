@@ -72,6 +72,11 @@ class Table {
   /// The [[key]] tables in the order of the file; empty where there are none.
   [[nodiscard]] std::vector<Table> tables(std::string_view key) const;
 
+  /// Declares that this key, which the program has read, does not count in this case: `reason` completes the sentence
+  /// "KEY is not used: ...". The key may be a path ("relax_below", "class[0].modulus") or "" for the whole table. Only
+  /// keys that the user wrote are reported (CaseFile::idle_keys).
+  void declare_idle(std::string_view key, const std::string& reason) const;
+
   /// An error at this key's place in the file, for checks that need more than one value.
   [[nodiscard]] InputError error(std::string_view key, const std::string& sentence) const;
 
@@ -104,6 +109,9 @@ class CaseFile {
 
   /// All keys read so far, with type, default and limits, in the order in which they were read first, table by table.
   [[nodiscard]] std::vector<KeyInfo> keys() const;
+  /// One sentence for each reason of declare_idle that holds for keys which the user wrote: "newton.relax_near,
+  /// newton.relax_attempts (case.toml:8): not used, because ...".
+  [[nodiscard]] std::vector<std::string> idle_keys() const;
 
   /// All values read so far, as TOML in the units that a user writes; origins ("default", "--set") as comments.
   [[nodiscard]] std::string resolved() const;

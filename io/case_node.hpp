@@ -28,6 +28,7 @@ struct CaseNode {
   bool read = false;                 ///< the program has read it, so that the key is a known one
   std::string resolved = {};         ///< value as TOML, once read
   std::string meaning = {};          ///< value in SI, the same however it was written; the fingerprint is made of these
+  std::string idle = {};             ///< why the key does not count in this case; empty where it counts
   std::optional<KeyInfo> info = {};  ///< type and limits, once read as a value
 
   [[nodiscard]] CaseNode* find(std::string_view child_name);

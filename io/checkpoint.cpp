@@ -9,6 +9,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/checksum.hpp"
+#include "io/input_error.hpp"
 
 namespace voussoir::io {
 
@@ -222,8 +223,9 @@ std::optional<CheckpointStore::Loaded> CheckpointStore::load_latest() const {
       continue;
     }
     if (content.fingerprint != fingerprint_) {
-      throw std::runtime_error(fmt::format("{}: belongs to another case (fingerprint {}, this case has {})",
-                                           it->second.string(), content.fingerprint, fingerprint_));
+      throw InputError(
+          "--resume", it->second.string(),
+          fmt::format("belongs to another case (fingerprint {}, this case has {})", content.fingerprint, fingerprint_));
     }
     loaded.increment = it->first;
     loaded.checkpoint = std::move(content.checkpoint);

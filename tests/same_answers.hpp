@@ -19,6 +19,7 @@ inline void expect_same_report(const RveReport& a, const RveReport& b, std::size
   EXPECT_EQ(a.unbalanced, b.unbalanced) << rve;
   EXPECT_EQ(a.inertial_number, b.inertial_number) << rve;
   EXPECT_EQ(a.largest_overlap, b.largest_overlap) << rve;
+  EXPECT_EQ(a.mean_overlap, b.mean_overlap) << rve;
 }
 
 inline void expect_same_state(const RveStates& a, const RveStates& b, std::size_t rve, std::size_t grains) {

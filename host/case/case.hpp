@@ -243,8 +243,9 @@ struct Case {
   BiaxialBvpCase biaxial_bvp;
   CalibrateCase calibrate;
 
-  std::string name;         ///< title of the run: the key `title`, else the case file's folder or stem
-  std::string resolved;     ///< TOML of every value after defaults and overrides
+  std::vector<std::string> remarks;  ///< sentences for `check` and the log: keys that are given and not used, ...
+  std::string name;                  ///< title of the run: the key `title`, else the case file's folder or stem
+  std::string resolved;              ///< TOML of every value after defaults and overrides
   std::string fingerprint;  ///< made of all values that decide the results, in SI to 12 digits: the same values in
                             ///< other units have the same fingerprint
 };

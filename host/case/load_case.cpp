@@ -7,11 +7,14 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "host/case/element_tests.hpp"
 #include "host/case/engine.hpp"
 #include "host/case/grains.hpp"
+#include "host/case/idle_keys.hpp"
 #include "host/case/mesh.hpp"
+#include "host/case/packing_origin.hpp"
 #include "io/case_file.hpp"
 #include "io/hash.hpp"
 
@@ -132,6 +135,8 @@ Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
   if (input.engine.backend == kernels::Backend::teams) check_teams(root, input);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
+  check_packing_origin(root, input);
+  declare_idle_keys(root, input);
   text.finish();
   return input;
 }
@@ -141,11 +146,9 @@ Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
 Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const io::CaseFile text = io::CaseFile::load(file, overrides);
   Case input = read_case(text, file);
+  for (std::string& line : text.idle_keys()) input.remarks.push_back(std::move(line));
   input.resolved = text.resolved();
-  // None of these keys changes a number: a preset acts only through the values that it gives to other keys, and all
-  // instruction sets give the same bits.
-  const std::array<std::string, 5> without{"title", "output", "packing.folder", "engine.preset", "engine.isa"};
-  input.fingerprint = text.fingerprint(without);
+  input.fingerprint = text.fingerprint(keys_without_results);
   if (!input.packing.file.empty())
     input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
   return input;

@@ -8,6 +8,20 @@
 
 namespace voussoir::host {
 
+namespace {
+
+/// See BiaxialCurve::mean_overlap. A test that failed has no report of its end; its packing's overlap stands in.
+double largest_overlap(const BiaxialCurve& curve, const PackedRve& start, const kernels::RveReport& end) {
+  double most = 0;
+  for (const BiaxialPoint& point : curve.points) most = std::max(most, point.p());
+  const bool has_end = end.mean_overlap > 0 && end.pressure() > 0;
+  const double overlap = has_end ? end.mean_overlap : start.mean_overlap;
+  const double pressure = has_end ? end.pressure() : start.pressure;
+  return pressure > 0 ? overlap * std::max(most, pressure) / pressure : overlap;
+}
+
+}  // namespace
+
 std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double strain, double inertial_number,
                                         int samples, const kernels::EngineSettings& settings,
                                         const kernels::MicrostructureRequest& microstructure) {
@@ -42,6 +56,7 @@ std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double 
       curves[k].points.push_back(
           {-s.strain_y, -s.strain_x, -s.stress_xx, -s.stress_yy, -s.stress_xy, s.unbalanced, s.microstructure});
     }
+    curves[k].mean_overlap = largest_overlap(curves[k], rves[k], reports[k]);
   }
   return curves;
 }

@@ -38,6 +38,9 @@ struct BiaxialCurve {
   double pressure = 0;         ///< confining pressure [Pa]
   double void_ratio = 0;       ///< at the start [-]
   double inertial_number = 0;  ///< inertial number of the axial rate at the confining pressure [-]
+  /// The mean overlap over r_i + r_j at the largest mean stress: that of the test's end, in proportion to the stress,
+  /// because contacts only become fewer after the peak [-].
+  double mean_overlap = 0;
   kernels::RveStatus status = kernels::RveStatus::converged;
   std::vector<BiaxialPoint> points;
 

@@ -13,8 +13,10 @@
 #include "host/case/result_fields.hpp"
 #include "host/element_tests/biaxial.hpp"
 #include "host/element_tests/strength.hpp"
+#include "host/packing/law_range.hpp"
 #include "host/packing/packings.hpp"
 #include "host/record/provenance.hpp"
+#include "host/record/remarks.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -72,22 +74,23 @@ std::vector<PackedRve> packings_of(const SoilCase& soil, PackingCase recipe, std
 }
 
 const char* outcome(const BiaxialCurve& curve, const Strength& s) {
-  return curve.status == kernels::RveStatus::converged && !held(curve, s) ? "sigma_xx not held"
-                                                                          : kernels::name_of(curve.status);
+  if (curve.status != kernels::RveStatus::converged) return kernels::name_of(curve.status);
+  if (held(curve, s)) return "valid";  // not "converged": a test moves at its rate and never rests
+  return curve.mean_overlap > most_mean_overlap ? "invalid: beyond the contact law's range" : "sigma_xx not held";
 }
 
 void print(const BiaxialCurve& curve, const Strength& s) {
   std::printf(
       "seed %4lld  %7.1f kPa  phi_p %5.1f deg at %4.1f %%  phi_cs %5.1f deg  psi_max %5.1f deg  contraction %.3f %%  "
-      "sigma_xx off by %.2f %%, scatters by %.1f %%  I %.1e  %s\n",
+      "sigma_xx off by %.2f %%, scatters by %.1f %%  I %.1e  overlap %.2f %%  %s\n",
       static_cast<long long>(curve.seed), curve.pressure * 1e-3, s.peak_angle / degree, s.peak_strain * 100.0,
       s.critical_angle / degree, s.dilatancy / degree, s.contraction * 100.0, s.lateral_error * 100.0,
-      s.lateral_scatter * 100.0, curve.inertial_number, outcome(curve, s));
+      s.lateral_scatter * 100.0, curve.inertial_number, curve.mean_overlap * 100.0, outcome(curve, s));
 }
 
 struct Summary {
   std::vector<double> seed, pressure, peak, peak_p, peak_strain, critical, critical_p, dilatancy, contraction;
-  std::vector<double> lateral, scatter, inertial, valid;
+  std::vector<double> lateral, scatter, inertial, overlap, valid;
 
   void add(const BiaxialCurve& curve, const Strength& s, bool is_valid) {
     seed.push_back(static_cast<double>(curve.seed));
@@ -103,6 +106,7 @@ struct Summary {
     scatter.push_back(s.lateral_scatter);
     valid.push_back(is_valid ? 1.0 : 0.0);
     inertial.push_back(curve.inertial_number);
+    overlap.push_back(curve.mean_overlap);
   }
 
   [[nodiscard]] std::vector<io::TableColumn> table() const {
@@ -116,6 +120,7 @@ struct Summary {
             {"lateral_error", "-", lateral},
             {"lateral_scatter", "-", scatter},
             {"inertial_number", "-", inertial},
+            {"mean_overlap", "-", overlap},
             {"valid", "-", valid}};
   }
 
@@ -160,6 +165,7 @@ Outcome run_biaxial(const Case& input, const RunOptions& options) {
     return *before;
   }
   if (options.resume) std::printf("biaxial tests run all at once and have no checkpoint: they begin anew\n");
+  say_remarks(input);
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
   const std::vector<PackedRve> rves = packings_of(input.soil, input.packing, test.pressures, note);
   const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
@@ -184,6 +190,15 @@ Outcome run_biaxial(const Case& input, const RunOptions& options) {
         common_angle(summary.of_valid(summary.peak), summary.of_valid(summary.peak_p)) / degree,
         common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
         *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
+  }
+  const auto beyond = std::count_if(curves.begin(), curves.end(),
+                                    [](const BiaxialCurve& curve) { return curve.mean_overlap > most_mean_overlap; });
+  if (beyond > 0) {
+    std::fprintf(
+        stderr,
+        "biaxial: %td of %zu tests are invalid because the mean overlap of their contacts passed %.0f %% of r_i + "
+        "r_j, beyond which the contact law is not good for strengths (docs/range.md)\n",
+        beyond, curves.size(), most_mean_overlap * 100.0);
   }
   if (curves.size() < wanted) {
     std::fprintf(stderr, "biaxial: %zu of %zu tests were left out because their packings do not come to rest\n",

@@ -9,6 +9,7 @@
 
 #include "host/element_tests/calibrate_tests.hpp"
 #include "host/record/provenance.hpp"
+#include "host/record/remarks.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -158,7 +159,8 @@ std::vector<io::TableColumn> test_table(const std::vector<SetTests>& sets) {
                                  {"dilatancy_angle", "rad", {}},
                                  {"contraction", "-", {}},
                                  {"lateral_error", "-", {}},
-                                 {"inertial_number", "-", {}}};
+                                 {"inertial_number", "-", {}},
+                                 {"mean_overlap", "-", {}}};
   for (std::size_t k = 0; k < sets.size(); ++k) {
     for (std::size_t t = 0; t < sets[k].curves.size(); ++t) {
       const BiaxialCurve& curve = sets[k].curves[t];
@@ -172,7 +174,8 @@ std::vector<io::TableColumn> test_table(const std::vector<SetTests>& sets) {
                             s.dilatancy,
                             s.contraction,
                             s.lateral_error,
-                            curve.inertial_number};
+                            curve.inertial_number,
+                            curve.mean_overlap};
       for (std::size_t i = 0; i < c.size(); ++i) c[i].values.push_back(row[i]);
     }
   }
@@ -183,6 +186,7 @@ std::vector<io::TableColumn> test_table(const std::vector<SetTests>& sets) {
 
 Outcome run_calibrate(const Case& input, const RunOptions& options) {
   const PackingNote note = [](const std::string& line) { std::printf("%s\n", line.c_str()); };
+  say_remarks(input);
   const CalibrateCase& targets = input.calibrate;
   const TestProgram program{input.soil, input.packing, input.engine, input.biaxial};
   const SearchBox box(targets, program.soil);

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "host/case/engine.hpp"
-#include "host/process/exit_code.hpp"
+#include "host/packing/law_range.hpp"
 
 namespace voussoir::host {
 
@@ -118,12 +118,19 @@ std::vector<SetTests> test_sets(const TestProgram& program, std::span<const Para
   const BiaxialCase& test = program.biaxial;
   std::vector<BiaxialCurve> curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
                                                    engine_settings(program.engine));
+  std::size_t beyond = 0;
   for (std::size_t c = 0; c < curves.size(); ++c) {
     SetTests& of = out[owner[c]];
+    if (curves[c].mean_overlap > most_mean_overlap) ++beyond;
     of.strengths.push_back(strength_of(curves[c], test.window));
     of.tests += 1;
     of.valid += held(curves[c], of.strengths.back()) ? 1 : 0;
     of.curves.push_back(std::move(curves[c]));
+  }
+  if (beyond > 0 && note) {
+    note(fmt::format(
+        "{} of {} tests do not count, because the mean overlap of their contacts passed {:.0f} % of r_i + r_j", beyond,
+        owner.size(), 100 * most_mean_overlap));
   }
   for (SetTests& one : out) {
     summarise(one, seeds_of(program.packing), test.pressures);

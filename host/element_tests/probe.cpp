@@ -9,11 +9,14 @@
 #include <stdexcept>
 
 #include "host/case/engine.hpp"
+#include "host/case/made_with.hpp"
 #include "host/element_tests/strain_path.hpp"
 #include "host/material/answers.hpp"
 #include "host/material/rve_pool.hpp"
+#include "host/packing/law_range.hpp"
 #include "host/packing/packings.hpp"
 #include "host/packing/stored_packing.hpp"
+#include "host/record/remarks.hpp"
 #include "io/atomic_file.hpp"
 
 namespace voussoir::host {
@@ -55,19 +58,19 @@ struct Tables {
   std::string path =
       "seed,replica,increment,evaluations,strain_xx,strain_yy,strain_xy,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,void_"
       "ratio,"
-      "steps,unbalanced_ratio,inertial_number,status\n";
+      "steps,unbalanced_ratio,inertial_number,mean_overlap,status\n";
   std::string probe =
       "seed,replica,probe,stress_xx_Pa,stress_yy_Pa,stress_xy_Pa,change_xx_Pa,change_yy_Pa,change_xy_Pa,"
       "tangent_xxxx_Pa,tangent_xxyy_Pa,tangent_xxxy_Pa,tangent_yyyy_Pa,tangent_yyxy_Pa,tangent_xyxy_Pa,"
       "tangent_yyxx_Pa,tangent_xyxx_Pa,tangent_xyyy_Pa,tangent,"
       "tangent_after_xxxx_Pa,tangent_after_xxyy_Pa,tangent_after_xxxy_Pa,tangent_after_yyyy_Pa,tangent_after_yyxy_Pa,"
       "tangent_after_xyxy_Pa,tangent_after_yyxx_Pa,tangent_after_xyxx_Pa,tangent_after_xyyy_Pa,tangent_after,"
-      "steps,unbalanced_ratio,inertial_number,status\n";
+      "steps,unbalanced_ratio,inertial_number,mean_overlap,status\n";
 };
 
 std::string end_of_row(const kernels::RveReport& report) {
-  return fmt::format("{},{:.6g},{:.6g},{}\n", report.steps, report.unbalanced, report.inertial_number,
-                     kernels::name_of(report.status));
+  return fmt::format("{},{:.6g},{:.6g},{:.6g},{}\n", report.steps, report.unbalanced, report.inertial_number,
+                     report.mean_overlap, kernels::name_of(report.status));
 }
 
 std::string cells_of(const kernels::RveReport& report) {
@@ -92,17 +95,61 @@ void print_tangent(const kernels::RveReport& report) {
   std::printf("%s\n", report.tangent_capped ? "; the iterations ended before its tolerance was met" : "");
 }
 
+/// The end of a path as a file, with the keys of the soil and of the engine that it was made with.
+io::Packing end_of_path(const PackedRve& rve, const Case& input) {
+  io::Packing file = stored_packing(rve, input.soil, "path of " + input.name, input.fingerprint);
+  for (const auto& [key, text] : engine_keys(input.engine)) file.labels[key] = text;
+  return file;
+}
+
+/// Says that a packing does not begin at rest. Its first row has the status `step_limit` then.
+void say_restless(const PackedRve& rve, const kernels::RveReport& start, const EngineCase& engine) {
+  if (start.status != kernels::RveStatus::step_limit) return;
+  std::fprintf(
+      stderr,
+      "probe: seed %lld does not begin at rest: its unbalanced ratio is %.2g, and engine.hold_tolerance is %.2g\n",
+      static_cast<long long>(rve.seed), start.unbalanced, engine.hold_tolerance);
+}
+
+/// Counts what the rows of a path or of probes are not: at rest, and within the contact law's range.
+struct Doubts {
+  int rows = 0, restless = 0, beyond = 0;
+
+  void see(const kernels::RveReport& report) {
+    ++rows;
+    if (report.status == kernels::RveStatus::step_limit) ++restless;
+    if (report.mean_overlap > most_mean_overlap) ++beyond;
+  }
+  void say(const PackedRve& rve, const char* what) const {
+    if (restless > 0) {
+      std::fprintf(stderr, "probe: seed %lld: %d of %d %s ended at the step limit, not at rest\n",
+                   static_cast<long long>(rve.seed), restless, rows, what);
+    }
+    if (beyond > 0) {
+      std::fprintf(
+          stderr,
+          "probe: seed %lld: %d of %d %s have a mean overlap above %.0f %% of r_i + r_j, beyond which the contact "
+          "law is not good (docs/range.md)\n",
+          static_cast<long long>(rve.seed), beyond, rows, what, most_mean_overlap * 100.0);
+    }
+  }
+};
+
 /// Takes the path and stores its end in `rve`. Returns a sentence about a failure, empty without one.
 std::string take_path(const ProbeCase& probe, const EngineCase& engine, PackedRve& rve, Tables& tables) {
   const std::vector<double> scale = scales(probe.replicas);
   RvePool pool(rve, {engine}, scale.size());
+  say_restless(rve, pool.committed_reports().front(), engine);
+  Doubts doubts;
   const PathEnd end = walk_path(pool, probe.path, scale, [&](const PathPoint& at) {
     tables.path += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, at.rve,
                                at.increment, at.evaluations, at.strain.xx, at.strain.yy,
                                0.5 * (at.strain.xy + at.strain.yx), at.stress(0), at.stress(1), at.stress(2),
                                at.void_ratio) +
                    end_of_row(*at.report);
+    if (at.increment > 0) doubts.see(*at.report);
   });
+  doubts.say(rve, "rows of the path");
   if (end.missed > 0) {
     const std::string said = fmt::format(
         "seed {}: {} increments of the path did not hold sigma_xx, which was off by up to {:.2g} % of its value; "
@@ -135,11 +182,13 @@ std::string take_probes(const ProbeCase& wanted, const EngineCase& engine, const
   std::vector<fem::Tangent> unused(n);
   pool.committed(before, unused);
   const kernels::RveReport start = pool.committed_reports().front();
+  if (wanted.path.empty()) say_restless(rve, start, engine);
   const fem::BatchReport report = pool.evaluate(gradients, after, unused);
   pool.commit();
   if (show)
     std::printf("%-9s %12s %12s %12s   change of stress over strain [MPa], tension positive\n", "probe", "xx", "yy",
                 "xy");
+  Doubts doubts;
   for (std::size_t k = 0; k < n; ++k) {
     const Probe& probe = all[k % all.size()];
     const fem::Stress change = after[k] - before[k];
@@ -147,7 +196,9 @@ std::string take_probes(const ProbeCase& wanted, const EngineCase& engine, const
     tables.probe += fmt::format("{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, k / all.size(),
                                 probe.name, after[k](0), after[k](1), after[k](2), change(0), change(1), change(2)) +
                     cells_of(start) + cells_of(pool.committed_reports()[k]) + end_of_row(pool.committed_reports()[k]);
+    doubts.see(pool.committed_reports()[k]);
   }
+  doubts.say(rve, "probes");
   if (show) print_tangent(start);
   return report.usable ? "" : fmt::format("seed {}, {}", rve.seed, report.message);
 }
@@ -166,6 +217,7 @@ std::vector<PackedRve> packings_to_probe(const SoilCase& soil, PackingCase recip
 
 Outcome run_probe(const Case& input, const RunOptions& options) {
   std::printf("%s\n", engine_note(input.engine).c_str());
+  say_remarks(input);
   std::vector<PackedRve> rves = packings_to_probe(input.soil, input.packing, input.probe.pressure);
   std::filesystem::create_directories(options.folder);
   io::remove_leftovers(options.folder);
@@ -180,8 +232,7 @@ Outcome run_probe(const Case& input, const RunOptions& options) {
     if (!input.probe.path.empty()) {
       if (note_failure(take_path(input.probe, input.engine, rve, tables))) continue;
       confirm_lock(options, print);
-      io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed),
-                       stored_packing(rve, "path of " + input.name, input.fingerprint));
+      io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed), end_of_path(rve, input));
     }
     note_failure(take_probes(input.probe, input.engine, rve, tables, &rve == &rves.front()));
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/packing/law_range.hpp"
+
 namespace voussoir::host {
 
 namespace {
@@ -69,7 +71,8 @@ double mean_stress_at(double pressure, double angle) { return pressure / (1.0 - 
 
 bool held(const BiaxialCurve& curve, const Strength& strength) {
   constexpr double most_scatter = 0.1;  // with more scatter the test is not one at a constant lateral stress
-  return curve.status == kernels::RveStatus::converged && strength.lateral_scatter <= most_scatter;
+  return curve.status == kernels::RveStatus::converged && strength.lateral_scatter <= most_scatter &&
+         curve.mean_overlap <= most_mean_overlap;
 }
 
 double common_angle(std::span<const double> angles, std::span<const double> p) {

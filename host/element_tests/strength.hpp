@@ -25,7 +25,8 @@ struct Strength {
 /// The mean stress p [Pa] at which a test under `pressure` [Pa] on x mobilises the friction angle `angle` [rad].
 [[nodiscard]] double mean_stress_at(double pressure, double angle);
 
-/// True if the test reached its end and sigma_xx was held with a scatter below a tenth.
+/// True if the test reached its end, sigma_xx was held with a scatter below a tenth, and the overlaps stayed within
+/// what the contact law is good for (packing/law_range.hpp).
 [[nodiscard]] bool held(const BiaxialCurve& curve, const Strength& strength);
 
 /// Friction angle of several tests: sin phi is the slope of a line q against p through the origin, fitted to each

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/packing/law_range.hpp"
+
 namespace voussoir::host {
 
 namespace {
@@ -43,8 +45,9 @@ void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::St
   }
 }
 
-fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor) {
+fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor, double least_area) {
   fem::BatchReport out;
+  out.mean_overlap = 0;
   double noise = 0;
   double unsettled = 0;
   std::size_t failures = 0;
@@ -59,6 +62,8 @@ fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double p
     }
     if (r.steps == 0) ++out.deferred;
     if (r.status == kernels::RveStatus::open) ++out.open;
+    if (r.mean_overlap > most_mean_overlap || r.cell_area < least_area) ++out.out_of_range;
+    out.mean_overlap = std::max(*out.mean_overlap, r.mean_overlap);
     if (r.status == kernels::RveStatus::step_limit) {
       ++out.step_limit;
       unsettled += r.pressure() * r.pressure();

@@ -10,6 +10,7 @@
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
+#include "host/packing/law_range.hpp"
 #include "kernels/state/committed_contacts.hpp"
 #include "kernels/state/describe_committed.hpp"
 
@@ -45,6 +46,7 @@ RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n
       trial_reports_(n),
       committed_reports_(n),
       deferral_(engine_.defer, settings_.pressure_floor) {
+  least_area_ = (1 + least_void_ratio(rve.packing)) * rve.packing.solid_area();
   for (std::size_t k = 0; k < n; ++k) store_rve(rve, batch_, k);
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
   for (auto& report : committed_reports_) {
@@ -52,8 +54,9 @@ RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n
       throw std::invalid_argument(
           fmt::format("the packing of seed {} cannot start: {}", rve.seed, kernels::name_of(report.status)));
     }
-    if (report.status == kernels::RveStatus::step_limit)
-      report.status = kernels::RveStatus::converged;  // no motion was asked for
+    // No motion was asked for, so that the engine cannot tell rest from a hold that ended at once.
+    if (report.status == kernels::RveStatus::step_limit && report.unbalanced <= settings_.hold_tolerance)
+      report.status = kernels::RveStatus::converged;
   }
   deferral_.start(committed_reports_);
 }
@@ -117,7 +120,7 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
                                    std::span<fem::Tangent> tangent) {
   const kernels::Work work = advance(gradients, !tangent.empty());
   copy_answers(trial_reports_, stress, tangent);
-  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor);
+  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor, least_area_);
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_.error();
@@ -184,6 +187,7 @@ PackedRve RvePool::packed(std::size_t rve) const {
   out.pressure = report.pressure();
   out.coordination = 2.0 * report.contacts / out.packing.size();
   out.unbalanced = report.unbalanced;
+  out.mean_overlap = report.mean_overlap;
   return out;
 }
 

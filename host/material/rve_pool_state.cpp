@@ -24,6 +24,8 @@ void transfer_report(Transfer& transfer, Report& r) {
   transfer(&r.unbalanced, 1);
   transfer(&r.inertial_number, 1);
   transfer(&r.largest_overlap, 1);
+  transfer(&r.mean_overlap, 1);
+  transfer(&r.cell_area, 1);
 }
 
 /// Transfers the deferral's record of one RVE; nothing where no RVE may be deferred.
@@ -57,9 +59,6 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
     }
   }
 }
-
-/// Version of a record; it must be raised when the meaning of the bytes changes.
-constexpr std::uint64_t record_version = 2;
 
 }  // namespace
 

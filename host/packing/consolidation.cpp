@@ -47,6 +47,7 @@ void take_results(std::span<PackedRve> rves, const kernels::RveBatch& batch,
     rve.pressure = reports[k].pressure();
     rve.coordination = 2.0 * reports[k].contacts / rve.packing.size();
     rve.unbalanced = reports[k].unbalanced;
+    rve.mean_overlap = reports[k].mean_overlap;
     rve.status = reports[k].status;
   }
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "host/packing/bias.hpp"
+#include "host/packing/law_range.hpp"
 #include "host/packing/packing_locks.hpp"
 #include "host/packing/recipe.hpp"
 #include "host/packing/stored_packing.hpp"
@@ -23,7 +24,13 @@ namespace voussoir::host {
 namespace {
 
 std::string table_line(const PackedRve& rve) {
-  const std::string bias = std::isnan(rve.bias) ? "" : fmt::format("  bias {:.4f}", rve.bias);
+  std::string bias = std::isnan(rve.bias) ? "" : fmt::format("  bias {:.4f}", rve.bias);
+  if (rve.mean_overlap > most_mean_overlap) {
+    bias += fmt::format(
+        "  warning: the mean overlap of {:.1f} % of r_i + r_j is beyond the {:.0f} % that the contact law "
+        "is good for",
+        100 * rve.mean_overlap, 100 * most_mean_overlap);
+  }
   return fmt::format(
       "seed {:5d}  grains {:5d}  mu_t {:.3f}  void ratio {:.4f}  p {:.1f} Pa  coordination {:.3f}  unbalanced {:.1e}{}",
       rve.seed, rve.packing.size(), rve.consolidation_friction, rve.void_ratio, rve.pressure, rve.coordination,
@@ -33,11 +40,15 @@ std::string table_line(const PackedRve& rve) {
 void keep(const SoilCase& soil, const PackingCase& recipe, const PackedRve& rve) {
   const std::string text = recipe_text(soil, recipe, rve.seed);
   const std::string fingerprint = io::fingerprint_of(text);
-  io::save_packing(io::packing_path(recipe.folder, fingerprint), stored_packing(rve, text, fingerprint));
+  io::save_packing(io::packing_path(recipe.folder, fingerprint), stored_packing(rve, soil, text, fingerprint));
 }
 
 std::optional<PackedRve> find(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
-  const auto file = io::find_packing(recipe.folder, io::fingerprint_of(recipe_text(soil, recipe, seed)));
+  const std::string text = recipe_text(soil, recipe, seed);
+  const auto file = io::find_packing(recipe.folder, io::fingerprint_of(text));
+  // Two recipes may have one fingerprint; the recipe itself tells them apart.
+  const auto kept = file ? file->labels.find("recipe") : std::map<std::string, std::string>::const_iterator{};
+  if (file && (kept == file->labels.end() || kept->second != text)) return std::nullopt;
   auto rve = file ? restored_packing(*file, soil) : std::nullopt;
   return rve && rve->packing.size() == recipe.grains ? rve : std::nullopt;
 }
@@ -46,15 +57,23 @@ PackingLock lock_of(const SoilCase& soil, const PackingCase& recipe, std::int64_
   return {io::packing_path(recipe.folder, io::fingerprint_of(recipe_text(soil, recipe, seed))), seed, note};
 }
 
+/// True for a packing that cannot be one of grains. An older version may have stored such packings.
+bool is_refused(const PackedRve& rve, const PackingNote& note) {
+  const std::string fault = interpenetration(rve);
+  if (!fault.empty() && note) note(fmt::format("packing of seed {} is refused and left out: {}", rve.seed, fault));
+  return !fault.empty();
+}
+
 /// Makes the packings of these seeds side by side, stores those that come to rest and notes the others.
 void make_and_keep(const SoilCase& soil, const PackingCase& recipe, std::span<const std::int64_t> seeds,
                    const PackingNote& note) {
   for (const PackedRve& rve : make_packings(soil, recipe, seeds)) {
-    if (rve.status == kernels::RveStatus::converged) {
+    if (rve.status != kernels::RveStatus::converged) {
+      if (note)
+        note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
+                         kernels::name_of(rve.status)));
+    } else if (!is_refused(rve, note)) {
       keep(soil, recipe, rve);
-    } else if (note) {
-      note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
-                       kernels::name_of(rve.status)));
     }
   }
 }
@@ -133,6 +152,9 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
     if (!rve)
       throw io::InputError("packing.file", recipe.file.string(),
                            "is not a complete packing of this program and its contact law");
+    if (const std::string fault = interpenetration(*rve); !fault.empty() && note) {
+      note("warning: the state in " + recipe.file.string() + ": " + fault);
+    }
     if (note) note("packing read:  " + table_line(*rve));
     return {std::move(*rve)};
   }
@@ -141,6 +163,9 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
     if (rve.status != kernels::RveStatus::converged) {
       throw NoEquilibrium(
           fmt::format("{} does not come to rest: {}", recipe.file.string(), kernels::name_of(rve.status)));
+    }
+    if (const std::string fault = interpenetration(rve); !fault.empty()) {
+      throw std::runtime_error(recipe.file.string() + ": " + fault);
     }
     if (note)
       note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe are not used)");
@@ -151,7 +176,8 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
   const std::vector<std::int64_t> made_here = make_missing(soil, recipe, seeds, note);
   std::vector<PackedRve> out;
   for (const std::int64_t seed : seeds) {
-    if (auto rve = find(soil, recipe, seed)) out.push_back(std::move(*rve));
+    auto rve = find(soil, recipe, seed);
+    if (rve && !is_refused(*rve, note)) out.push_back(std::move(*rve));
   }
   if (out.empty()) throw NoEquilibrium("no packing of this recipe comes to rest");
   if (bias == Bias::measured && out.size() > 1) measure_bias(soil, recipe, out, note);

@@ -5,6 +5,8 @@
 #include <functional>
 #include <limits>
 
+#include "host/case/made_with.hpp"
+
 namespace voussoir::host {
 
 namespace {
@@ -15,7 +17,8 @@ std::vector<std::string> history_names() {
 }
 }  // namespace
 
-io::Packing stored_packing(const PackedRve& rve, const std::string& recipe, const std::string& fingerprint) {
+io::Packing stored_packing(const PackedRve& rve, const SoilCase& soil, const std::string& recipe,
+                           const std::string& fingerprint) {
   io::Packing file;
   file.radius = rve.packing.radii;
   for (std::size_t i = 0; i < rve.packing.radii.size(); ++i) {
@@ -35,10 +38,14 @@ io::Packing stored_packing(const PackedRve& rve, const std::string& recipe, cons
                   {"pressure", rve.pressure},
                   {"coordination", rve.coordination},
                   {"unbalanced_ratio", rve.unbalanced},
+                  {"mean_overlap", rve.mean_overlap},
                   {"consolidation_friction", rve.consolidation_friction},
                   {"bias", rve.bias},
                   {"seed", static_cast<double>(rve.seed)}};
   file.labels = {{"recipe", recipe}, {"recipe_fingerprint", fingerprint}};
+  SoilCase made = soil;
+  made.thickness = rve.packing.thickness;  // a packing of another code has its own
+  for (const auto& [key, text] : soil_keys(made)) file.labels[key] = text;
   return file;
 }
 
@@ -74,6 +81,8 @@ std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCas
   rve.coordination = number("coordination");
   rve.unbalanced = number("unbalanced_ratio");
   rve.bias = number("bias");
+  // Files of older versions lack it.
+  if (file.numbers.contains("mean_overlap")) rve.mean_overlap = number("mean_overlap");
   rve.consolidation_friction = number("consolidation_friction");
   const double seed = number("seed");
   if (!ascending || !finite || file.history_names != history_names() || !(rve.cell.det() > 0) ||

@@ -10,7 +10,8 @@
 
 namespace voussoir::host {
 
-[[nodiscard]] io::Packing stored_packing(const PackedRve& rve, const std::string& recipe,
+/// @param soil the soil that the RVE was made of; the file keeps its keys, with which a reader compares its own
+[[nodiscard]] io::Packing stored_packing(const PackedRve& rve, const SoilCase& soil, const std::string& recipe,
                                          const std::string& fingerprint);
 
 /// Grains and cell of a packing of any code, without contacts. The grains get the materials of `soil`.

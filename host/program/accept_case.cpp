@@ -7,11 +7,13 @@
 
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
+#include "host/estimate/range.hpp"
 #include "host/estimate/report.hpp"
 #include "host/estimate/work.hpp"
 #include "host/packing/packing_check.hpp"
 #include "host/process/resources.hpp"
 #include "io/input_error.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -58,6 +60,8 @@ AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<st
   check_packings(accepted.input, place);
   accepted.size = checked_size(accepted.input, place);
   check_snapshot_points(accepted.input.output, accepted.size, place);
+  static_cast<void>(kernels::choose_lanes(accepted.input.engine.isa));
+  for (std::string& warning : foretell(accepted.input).warnings) accepted.input.remarks.push_back(std::move(warning));
   return accepted;
 }
 

@@ -101,7 +101,7 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
 
   CLI::App* keys = app.add_subcommand("keys", "print all keys of a kind of case: type, default, limits");
   keys->add_option("kind", a.kind, "kind of the case")->required();
-  keys->callback([&] { code = command_keys(a.kind); });
+  keys->callback([&] { outcome = command_keys(a.kind); });
 
   CLI::App* info = app.add_subcommand("info", "print where a result comes from, and its increments");
   CLI::Option_group* what = info->add_option_group("what");

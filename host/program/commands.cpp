@@ -7,6 +7,7 @@
 
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
+#include "host/estimate/range.hpp"
 #include "host/estimate/report.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
@@ -23,13 +24,22 @@
 namespace voussoir::host {
 namespace {
 
+/// "converged", or with the number of RVEs that were not at rest.
+std::string status_of(const io::IncrementInfo& info) {
+  const auto restless = info.extra.find("step_limit_points");
+  if (restless == info.extra.end() || !(restless->second.value > 0))
+    return info.converged ? "converged" : "not converged";
+  return fmt::format("{}, {:.0f} RVEs not at rest", info.converged ? "in equilibrium" : "not converged",
+                     restless->second.value);
+}
+
 std::string table_of(const std::vector<io::IncrementInfo>& increments) {
-  std::string text = fmt::format("{:>5}  {:<12} {:>5}  {:>12}  {:>6}  {:>5}  {:>9}  {:>10}  {:>8}\n", "file", "stage",
-                                 "index", "load", "iter.", "cuts", "residual", "part.steps", "wall [s]");
+  std::string text = fmt::format("{:>5}  {:<12} {:>5}  {:>12}  {:>6}  {:>5}  {:>9}  {:>10}  {:>8}  {}\n", "file", "stage",
+                                 "index", "load", "iter.", "cuts", "residual", "part.steps", "wall [s]", "status");
   for (const io::IncrementInfo& info : increments) {
-    text += fmt::format("{:5d}  {:<12} {:5d}  {:12.6g}  {:6d}  {:5d}  {:9.2e}  {:10.3g}  {:8.2f}\n", info.index,
+    text += fmt::format("{:5d}  {:<12} {:5d}  {:12.6g}  {:6d}  {:5d}  {:9.2e}  {:10.3g}  {:8.2f}  {}\n", info.index,
                         info.stage, info.stage_index, info.load_parameter, info.iterations, info.cuts, info.residual,
-                        info.particle_steps, info.wall_s);
+                        info.particle_steps, info.wall_s, status_of(info));
   }
   return text;
 }
@@ -42,7 +52,7 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
   const Case& input = accepted.input;
   const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
-  check_folder(options, input.fingerprint);
+  check_folder(options, input.fingerprint, input.resolved);
   const KokkosSession kokkos(options.threads);
   start_ranks(options.threads, input.engine.isa);
   refuse_too_large(input, accepted.size, rank_count());
@@ -53,7 +63,8 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
   // A case of this kind writes into the folder of packings only, but it removes what lies in its own with --replace.
   if (input.kind != CaseKind::pack || std::filesystem::exists(options.folder)) {
     options.lock = std::make_shared<RunLock>(options.folder, options.take_over);
-    check_folder(options, input.fingerprint);  // once more: another run may have ended between the check and the lock
+    // Once more, since another run may have ended between the check and the lock.
+    check_folder(options, input.fingerprint, input.resolved);
   }
   if (!runs_on_a_mesh(input.kind)) std::printf("%s\n", kernels::lanes_sentence(lanes).c_str());  // others have a log
   const Outcome outcome = run_case(input, options);
@@ -72,6 +83,9 @@ Outcome command_check(const std::filesystem::path& case_file, const std::vector<
   answer += "# " + kernels::lanes_sentence(kernels::choose_lanes(input.engine.isa)) + "\n";
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";
+  const Foretold range = foretell(input);
+  if (!range.line.empty()) answer += "# " + range.line + "\n";
+  for (const std::string& remark : input.remarks) answer += "# warning: " + remark + "\n";
   return print_answer(answer);
 }
 

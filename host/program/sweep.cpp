@@ -64,8 +64,8 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
       throw table.error("name", "must consist of letters, digits and _ . - and must not begin with a dot");
     if (!names.insert(run.name).second) throw table.error("name", "is the name of two runs");
     run.folder = options.folder / run.name;
-    check_folder({.folder = run.folder, .resume = options.resume, .command = {}},
-                 accept_case(sweep.base, run.overrides).input.fingerprint);
+    const Case input = accept_case(sweep.base, run.overrides).input;
+    check_folder({.folder = run.folder, .resume = options.resume, .command = {}}, input.fingerprint, input.resolved);
     expect_unlocked(run.folder);
     sweep.runs.push_back(std::move(run));
   }

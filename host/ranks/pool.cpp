@@ -162,7 +162,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
     ledger_.bytes += static_cast<double>(replies[r - 1].size());
   }
   copy_answers(trial_, stress, tangent);
-  fem::BatchReport report = summarise(trial_, own_->pressure_floor());
+  fem::BatchReport report = summarise(trial_, own_->pressure_floor(), own_->least_area());
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_error;

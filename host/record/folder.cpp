@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "host/case/load_case.hpp"
 #include "io/atomic_file.hpp"
+#include "io/case_compare.hpp"
 #include "io/input_error.hpp"
 #include "io/result_file.hpp"
 
@@ -32,13 +34,25 @@ bool is_left_by_a_probe(const std::filesystem::directory_entry& entry) {
   return name == "probe.csv" || name == "path.csv" || is_end || is_left_by_a_start(entry);
 }
 
-/// Fingerprint of the case that made the results; throws io::InputError where run.h5 is no result of this program.
-std::string fingerprint_of_results(const RunOptions& options) {
+/// Where the results of a folder come from; throws io::InputError where run.h5 is no result of this program.
+io::Provenance origin_of_results(const RunOptions& options) {
   try {
-    return io::read_provenance(options.folder / "run.h5").fingerprint;
+    return io::read_provenance(options.folder / "run.h5");
   } catch (const std::runtime_error& error) {
     throw io::InputError("--output", options.folder.string(),
                          std::string("its run.h5 cannot be used: ") + error.what());
+  }
+}
+
+/// A sentence that names the keys in which a run's case and this case differ.
+std::string difference(const io::Provenance& theirs, const std::string& fingerprint, const std::string& resolved) {
+  const std::string otherwise = "all keys agree, but the fingerprint is " + theirs.fingerprint + " and not " +
+                                fingerprint + ": the files of packing.file, or the program, have changed";
+  try {
+    const std::vector<io::KeyDifference> keys = io::differences(resolved, theirs.input, keys_without_results);
+    return keys.empty() ? otherwise : io::describe(keys, "the run");
+  } catch (const std::runtime_error&) {  // the file is from elsewhere
+    return otherwise;
   }
 }
 
@@ -49,7 +63,7 @@ void confirm_lock(const RunOptions& options, const std::function<void(const std:
   if (!changed.empty()) note(changed);
 }
 
-void check_folder(const RunOptions& options, const std::string& fingerprint) {
+void check_folder(const RunOptions& options, const std::string& fingerprint, const std::string& resolved) {
   namespace fs = std::filesystem;
   const std::string folder = options.folder.string();
   if (!fs::exists(options.folder)) return;
@@ -65,12 +79,12 @@ void check_folder(const RunOptions& options, const std::string& fingerprint) {
     if (ours) return;  // a probe that has failed may have left the ends of its paths without probe.csv
     throw io::InputError("--output", folder, "holds files that are no results of this program; choose another folder");
   }
-  const std::string theirs = fingerprint_of_results(options);
+  const io::Provenance theirs = origin_of_results(options);
   if (options.resume) {
-    if (theirs == fingerprint) return;
+    if (theirs.fingerprint == fingerprint) return;
     throw io::InputError("--resume", folder,
-                         "was made by another case (fingerprint " + theirs + ", this case has " + fingerprint +
-                             "): resume needs the same case file and --set values");
+                         "was made by another case: " + difference(theirs, fingerprint, resolved) +
+                             "; resume needs the same case file and --set values");
   }
   if (!options.replace) {
     throw io::InputError("--output", folder,

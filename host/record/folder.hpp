@@ -28,7 +28,8 @@ void confirm_lock(const RunOptions& options, const std::function<void(const std:
 /// Throws io::InputError where the run of the case with this fingerprint must not start: the folder holds results and
 /// neither resume nor replace is asked for; it holds other files and no results; or resume is asked for and the results
 /// belong to another case. A run that was killed before it had a run.h5 leaves files that are no obstacle.
-void check_folder(const RunOptions& options, const std::string& fingerprint);
+/// @param resolved the case as TOML (Case::resolved), with which an error names the keys that differ
+void check_folder(const RunOptions& options, const std::string& fingerprint, const std::string& resolved = {});
 
 /// Removes everything that a run of any kind leaves in options.folder, which check_folder has accepted before. Called
 /// where options.replace is set.

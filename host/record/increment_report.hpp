@@ -24,8 +24,12 @@ struct EquilibriumReport {
   double noise_floor = 0;             ///< the part of the bound that is noise [N/m]
   std::size_t open_points = 0;        ///< RVEs without any contact
   std::size_t step_limit_points = 0;  ///< RVEs whose hold ended at its cap: their grains are not at rest
-  /// If the stresses of these RVEs were wrong by as much as their pressure, the residual would be wrong by this share
-  /// of the tolerance [-].
+  /// RVEs beyond what the contact law is good for (packing/law_range.hpp): they count, but their overlaps are not
+  /// small.
+  std::optional<std::size_t> out_of_range_points = {};
+  std::optional<double> mean_overlap = {};  ///< the largest mean overlap over r_i + r_j of an RVE [-]
+  /// If the stresses of the RVEs at the step limit were wrong by as much as their pressure, the residual would be wrong
+  /// by this share of the tolerance [-].
   double unsettled = 0;
   std::optional<std::size_t> slowest_point = {};  ///< the RVE that took most steps; none for a continuum
   std::optional<int> slowest_steps = {};          ///< the steps that it took
@@ -49,6 +53,8 @@ inline constexpr auto equilibrium_columns = std::to_array<Column<EquilibriumRepo
     {"open_points", "-", &EquilibriumReport::open_points},
     {"step_limit_points", "-", &EquilibriumReport::step_limit_points},
     {"unsettled", "-", &EquilibriumReport::unsettled},
+    {"out_of_range_points", "-", &EquilibriumReport::out_of_range_points},
+    {"mean_overlap", "-", &EquilibriumReport::mean_overlap},
     {"slowest_point", "-", &EquilibriumReport::slowest_point},
     {"slowest_steps", "-", &EquilibriumReport::slowest_steps},
     {"relaxations", "-", &EquilibriumReport::relaxations},

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "host/record/remarks.hpp"
+
 namespace voussoir::host {
 namespace {
 
@@ -23,6 +25,13 @@ std::string remarks(const EquilibriumReport& found) {
   if (found.relaxations > 0) text += fmt::format(", relaxed in {} substeps", found.relaxations);
   if (found.open_points > 0) text += fmt::format(", {} RVEs without contacts", found.open_points);
   if (found.step_limit_points > 0) text += fmt::format(", {} RVEs at the step limit", found.step_limit_points);
+  if (found.step_limit_points > 0 && found.unsettled > 1) {
+    text += fmt::format(": not converged, because they may put the residual off by {:.2g} of its tolerance",
+                        found.unsettled);
+  }
+  if (found.out_of_range_points.value_or(0) > 0) {
+    text += fmt::format(", {} RVEs beyond the contact law's range", *found.out_of_range_points);
+  }
   if (found.deferred_points.value_or(0) > 0) text += fmt::format(", {} RVEs deferred", *found.deferred_points);
   if (found.deferral_error.value_or(0) > 0) {
     text += fmt::format(", deferred answers were off by up to {:.1e} of the pressure", *found.deferral_error);
@@ -58,6 +67,7 @@ RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& proven
   sequence_ = loaded_->increment;
   totals_ = totals_from(checkpoint);
   if (std::filesystem::exists(folder_ / "run.h5")) provenance_ = io::read_provenance(folder_ / "run.h5");
+  for (const std::string& line : resume_differences(provenance_, provenance)) log_.line(line);
   if (!finished_) writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
 }
 

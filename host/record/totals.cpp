@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "host/packing/law_range.hpp"
+
 namespace voussoir::host {
 namespace {
 
@@ -60,6 +62,8 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
     checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.step_limit_points);
     checkpoint.put_doubles(fmt::format("totals_unsettled_share_{}", k), t.unsettled);
+    checkpoint.put_doubles(fmt::format("totals_out_of_range_{}", k), t.out_of_range_points);
+    checkpoint.put_doubles(fmt::format("totals_mean_overlap_{}", k), t.mean_overlap);
     if (!t.deferral_error.empty()) checkpoint.put_doubles(fmt::format("totals_deferral_{}", k), t.deferral_error);
   }
   checkpoint.put_text("totals", names);
@@ -76,6 +80,10 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
     t.evaluations = checkpoint.get_doubles(fmt::format("totals_evaluations_{}", totals.size()));
     t.step_limit_points = checkpoint.get_doubles(fmt::format("totals_unsettled_{}", totals.size()));
     t.unsettled = checkpoint.get_doubles(fmt::format("totals_unsettled_share_{}", totals.size()));
+    const std::string range = fmt::format("totals_out_of_range_{}", totals.size());
+    if (checkpoint.has(range)) t.out_of_range_points = checkpoint.get_doubles(range);
+    const std::string overlap = fmt::format("totals_mean_overlap_{}", totals.size());
+    if (checkpoint.has(overlap)) t.mean_overlap = checkpoint.get_doubles(overlap);
     const std::string deferral = fmt::format("totals_deferral_{}", totals.size());
     if (checkpoint.has(deferral)) t.deferral_error = checkpoint.get_doubles(deferral);
     const std::string lanes = fmt::format("totals_lane_steps_{}", totals.size());
@@ -103,6 +111,19 @@ std::string unsettled_line(const StageTotals& stage, std::size_t points) {
       stage.stage, increments, stage.step_limit_points.size(),
       *std::max_element(stage.step_limit_points.begin(), stage.step_limit_points.end()), points,
       *std::max_element(stage.unsettled.begin(), stage.unsettled.end()));
+}
+
+std::string range_line(const StageTotals& stage, std::size_t points) {
+  const auto& beyond = stage.out_of_range_points;
+  const auto increments = std::count_if(beyond.begin(), beyond.end(), [](double n) { return n > 0; });
+  if (increments == 0) return {};
+  return fmt::format(
+      "{}: in {} of {} increments RVEs were pressed beyond what the contact law is good for, up to {} of {}: their "
+      "mean "
+      "overlap passed {:.0f} % of r_i + r_j (the largest was {:.1f} %), or their void ratio fell below that of the "
+      "densest packing (docs/range.md)",
+      stage.stage, increments, beyond.size(), *std::max_element(beyond.begin(), beyond.end()), points,
+      100 * most_mean_overlap, 100 * *std::max_element(stage.mean_overlap.begin(), stage.mean_overlap.end()));
 }
 
 std::string deferral_line(const StageTotals& stage, double bound) {

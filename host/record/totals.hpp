@@ -11,9 +11,12 @@ namespace voussoir::host {
 
 struct StageTotals {
   std::string stage;
-  std::vector<double> evaluations;        ///< evaluations of each increment, those of tries that were cut included
-  std::vector<double> step_limit_points;  ///< EquilibriumReport::step_limit_points of each increment
-  std::vector<double> unsettled;          ///< EquilibriumReport::unsettled of each increment [-]
+  std::vector<double> evaluations;          ///< evaluations of each increment, those of tries that were cut included
+  std::vector<double> step_limit_points;    ///< EquilibriumReport::step_limit_points of each increment
+  std::vector<double> unsettled;            ///< EquilibriumReport::unsettled of each increment [-]
+  std::vector<double> out_of_range_points;  ///< EquilibriumReport::out_of_range_points of each increment; of grains
+                                            ///< only
+  std::vector<double> mean_overlap;         ///< EquilibriumReport::mean_overlap of each increment; of grains only [-]
   std::vector<double> deferral_error;  ///< EquilibriumReport::deferral_error of each increment; empty without deferral
   int cuts = 0;                        ///< tries that did not converge
   double particle_steps = 0;           ///< steps of grains
@@ -31,6 +34,10 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint);
 /// A sentence that says how many of the stage's increments ended with RVEs that are not at rest; empty where none did.
 /// @param points number of points of the mesh
 [[nodiscard]] std::string unsettled_line(const StageTotals& stage, std::size_t points);
+
+/// A sentence that says how many of the stage's increments ended with RVEs beyond what the contact law is good for;
+/// empty where none did. @param points number of points of the mesh
+[[nodiscard]] std::string range_line(const StageTotals& stage, std::size_t points);
 
 /// A sentence that says by how much the stage's deferred answers were off (host/material/deferral.hpp); empty where
 /// RVEs may not be deferred.

@@ -10,6 +10,7 @@
 #include "fem/boundary.hpp"
 #include "fem/mesh_rectangle.hpp"
 #include "host/record/provenance.hpp"
+#include "host/record/remarks.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/ground_run.hpp"
 #include "host/stages/stage_driver.hpp"
@@ -159,6 +160,7 @@ RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
     return RunStatus::finished;
   }
   log_engine(input, log);
+  say_remarks(input, log);
   MaterialCase material = material_case(input);
   material.packing.pressure = test.pressure;
   run.open_ground(material, [&log](const std::string& text) { log.line(text); });

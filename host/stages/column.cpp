@@ -10,6 +10,7 @@
 
 #include "fem/mesh_rectangle.hpp"
 #include "host/record/provenance.hpp"
+#include "host/record/remarks.hpp"
 #include "host/stages/ground_loads.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/stage_driver.hpp"
@@ -119,6 +120,7 @@ ColumnResult measure_k0(const ColumnSetup& setup, const RunOptions& options, con
 RunStatus run_column(const Case& input, const RunOptions& options) {
   RunLog log = open_log(options);
   log_engine(input, log);
+  say_remarks(input, log);
   const ColumnResult column = measure_k0(column_setup(input), options, provenance_of(options, input, "column"), log);
   for (const std::string& line : totals_table(column.totals)) log.line(line);
   return column.status;

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "io/input_error.hpp"
+
 namespace voussoir::host {
 namespace {
 
@@ -19,8 +21,9 @@ void put_list(io::Checkpoint& checkpoint, const std::string& name, const std::ve
 std::vector<double> get_sized(const io::Checkpoint& checkpoint, const std::string& name, std::size_t size) {
   std::vector<double> values = checkpoint.get_doubles(name);
   if (values.size() != size) {
-    throw std::runtime_error("the checkpoint's " + name + " has " + std::to_string(values.size()) + " numbers, but " +
-                             std::to_string(size) + " are needed");
+    throw io::InputError("--resume", "mesh",
+                         "this case's mesh needs " + std::to_string(size) + " numbers of " + name +
+                             ", the checkpoint was made with " + std::to_string(values.size()));
   }
   return values;
 }

@@ -7,7 +7,7 @@
 namespace voussoir::host {
 
 void save(const Ground& ground, io::Checkpoint& checkpoint);
-/// Throws std::runtime_error where the checkpoint belongs to another mesh.
+/// Throws io::InputError where the checkpoint belongs to another mesh.
 void restore(Ground& ground, const io::Checkpoint& checkpoint);
 
 }  // namespace voussoir::host

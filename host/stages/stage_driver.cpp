@@ -27,6 +27,8 @@ void report_totals(GroundRun& run, const std::string& stage) {
                                   deferral_line(totals, run.settings().defer)}) {
     if (!line.empty()) run.log().line(line);
   }
+  const std::string beyond = range_line(totals, run.ground().strain.size());
+  if (!beyond.empty()) run.log().warning(beyond);
 }
 
 }  // namespace

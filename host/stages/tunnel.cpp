@@ -6,6 +6,7 @@
 
 #include "fem/mesh_tunnel.hpp"
 #include "host/record/provenance.hpp"
+#include "host/record/remarks.hpp"
 #include "host/stages/column.hpp"
 #include "host/stages/gravity.hpp"
 #include "host/stages/ground_record.hpp"
@@ -70,6 +71,7 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   log.line(fmt::format("{}: the mesh has {} elements and {} points of the material {}", input.name, mesh.n_elements(),
                        mesh.n_points(), to_string(input.material)));
   log_engine(input, log);
+  say_remarks(input, log);
 
   const ColumnResult column = run_own_column(input, options, log);
   RunStatus status = column.status;

@@ -15,6 +15,7 @@ struct Homogenised {
   SweepSums<V> sums;
   V tangent[6] = {V(0), V(0), V(0), V(0), V(0), V(0)};  ///< xxxx, xxyy, xxxy, yyyy, yyxy, xyxy [N m]
   V contacts = V(0);
+  V overlaps = V(0);  ///< sum of overlap / (r_i + r_j) over the contacts
 };
 
 /// A spring of stiffness k along a direction: k s (x) s with s = sym(direction (x) branch) in Voigt form.
@@ -70,6 +71,13 @@ KOKKOS_FORCEINLINE_FUNCTION RestingPair<V> rest(PairLanes<Law>& pair, const Pair
   return out;
 }
 
+/// overlap / (r_i + r_j) from e = -g/R^2; 0 where the pair does not touch (`weight` 0).
+template <class V>
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION V overlap_ratio(const V& e, const V& weight) {
+  const V zero(0), one(1);
+  return Kokkos::Experimental::condition(zero < weight, one - Kokkos::sqrt(one - smaller(e, one)), zero);
+}
+
 /// Adds the pair to the sums.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION void add_pair(Homogenised<V>& out, const RestingPair<V>& pair, const PairGeometry<V>& at) {
@@ -78,6 +86,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_pair(Homogenised<V>& out, const RestingPair
     out.tangent[c] = pair.tangential.added_to(c, pair.normal.added_to(c, out.tangent[c]));
   }
   out.contacts = out.contacts + pair.weight;
+  out.overlaps = out.overlaps + overlap_ratio(pair.overlap, pair.weight);
   out.sums.largest_measure = larger(out.sums.largest_measure, pair.overlap);
 }
 

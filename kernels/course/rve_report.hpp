@@ -31,6 +31,8 @@ KOKKOS_INLINE_FUNCTION void fill_report(const RveCourse<Drive>& course, const Ho
   for (int k = 0; k < 6; ++k) report.tangent[k] = static_cast<double>(h.tangent[k][l]) / volume;
   report.contacts = static_cast<int>(h.contacts[l]);
   report.largest_overlap = relative_overlap(static_cast<double>(h.sums.largest_measure[l]));
+  report.cell_area = volume / scales.thickness;
+  if (report.contacts > 0) report.mean_overlap = static_cast<double>(h.overlaps[l]) / report.contacts;
   const double p = Kokkos::max(report.pressure(), settings.pressure_floor);
   report.inertial_number = course.drive.strain_rate() * inertial_time(scales.mean_mobility, scales.thickness, p);
   double all = volume;

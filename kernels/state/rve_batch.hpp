@@ -105,6 +105,8 @@ struct RveReport {
   double unbalanced = 0;        ///< rms|f| / (max(p, floor) t d) at the last look [-]
   double inertial_number = 0;   ///< of the strain phase, at the final pressure [-]
   double largest_overlap = 0;   ///< overlap / (r_i + r_j) [-]
+  double mean_overlap = 0;      ///< the same, mean over the contacts at the end [-]
+  double cell_area = 0;         ///< at the end [m^2]
 
   /// Compression positive [Pa].
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double pressure() const { return -0.5 * (stress[0] + stress[3]); }

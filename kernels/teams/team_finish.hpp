@@ -18,6 +18,15 @@ template <class Run>
   return sum;
 }
 
+/// The sum of the contacts' overlaps, in the order of the list.
+template <class Run>
+[[nodiscard]] KOKKOS_FUNCTION typename Run::V overlap_sum(const Run& run) {
+  typename Run::V sum(0);
+  for (int p = 0; p < run.listed(); ++p)
+    sum = sum + overlap_ratio(run.at.branches(p).overlap, run.at.springs(p).weight);
+  return sum;
+}
+
 /// Computes all pairs at rest, and their sums.
 template <class Run>
 KOKKOS_FUNCTION void homogenise_team(const Run& run) {
@@ -37,13 +46,14 @@ KOKKOS_FUNCTION void homogenise_team(const Run& run) {
     return pair.weight[0] > 0;
   });
   const real overlap = largest_measure(run);
-  each(run, 11, [&](int q) {
+  each(run, 12, [&](int q) {
     if (q < 4) set_stress(out.sums, q, stress_sum(run, q));
     if (q >= 4 && q < 10) out.tangent[q - 4] = tangent_sum(run, q - 4);
     if (q == 10) {
       out.contacts = V(static_cast<real>(contacts));
       out.sums.largest_measure = V(overlap);
     }
+    if (q == 11) out.overlaps = overlap_sum(run);
   });
 }
 

@@ -53,6 +53,7 @@ TEST(EngineStiffness, FromFiftyToTenMillionEveryRveRestsAndShears) {
       const double mean_overlap = report.pressure() / 1e4 / kappa;
       EXPECT_GT(report.largest_overlap, mean_overlap) << kappa;
       EXPECT_LT(report.largest_overlap, 30.0 * mean_overlap) << kappa;
+      EXPECT_NEAR(report.mean_overlap / mean_overlap, 1.0, 0.5) << kappa;
     }
   }
 }

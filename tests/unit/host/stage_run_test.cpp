@@ -113,6 +113,35 @@ TEST_F(Steps, StateAtTheEndIsThatOfTheLast) {
   EXPECT_EQ(found.largest_nodal_ratio, 43.0);
 }
 
+// An increment is not called converged where RVEs that are not at rest may put its residual beyond the tolerance.
+TEST_F(Steps, ThatRestlessRvesLeaveOpenAreNotConverged) {
+  StageRun stage(*run_, stage_);
+  const double tolerance = run_->settings().newton.tolerance;
+  for (const double share : {0.5, 2.0}) {
+    fem::NewtonReport report = report_of(1, fem::NewtonStatus::converged);
+    report.residual_bound = tolerance;  // of a reference force of 1 N/m
+    report.unsettled_force = share * tolerance;
+    EXPECT_TRUE(stage.converged(step(0, share, true, report)));
+    EXPECT_EQ(recorded_.back().info.converged, share < 1);
+    report.material.step_limit = 0;
+    EXPECT_TRUE(stage.converged(step(0, share, true, report)));
+    EXPECT_TRUE(recorded_.back().info.converged);
+  }
+}
+
+TEST_F(Steps, BeyondTheLawsRangeAreCountedOfGrainsOnly) {
+  StageRun stage(*run_, stage_);
+  fem::NewtonReport report = report_of(1, fem::NewtonStatus::converged);
+  EXPECT_TRUE(stage.converged(step(0, 1, true, report)));
+  EXPECT_FALSE(recorded_.back().equilibrium.value().out_of_range_points.has_value());
+  report.material.mean_overlap = 0.05;
+  report.material.out_of_range = 3;
+  EXPECT_TRUE(stage.converged(step(1, 2, true, report)));
+  EXPECT_EQ(recorded_.back().equilibrium.value().out_of_range_points, 3U);
+  EXPECT_EQ(recorded_.back().equilibrium.value().mean_overlap, 0.05);
+  EXPECT_EQ(run_->recorder().stage_totals().out_of_range_points, (std::vector<double>{3}));
+}
+
 TEST_F(Steps, OfTheNextIncrementAreCountedFromNothing) {
   StageRun stage(*run_, stage_);
   const fem::NewtonReport first = report_of(10, fem::NewtonStatus::converged);

@@ -134,7 +134,7 @@ TEST_F(StrainPath, AnImpossibleIncrementEndsIt) {
 TEST_F(StrainPath, TheStoredEndIsTheSameState) {
   RvePool pool(rve_, {EngineCase{}}, 1);
   (void)walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 5, .constant_xx = true}}, {1.0});
-  const auto stored = restored_packing(stored_packing(pool.packed(0), "test", "0"), SoilCase{});
+  const auto stored = restored_packing(stored_packing(pool.packed(0), SoilCase{}, "test", "0"), SoilCase{});
   ASSERT_TRUE(stored.has_value());
   RvePool again(*stored, {EngineCase{}}, 1);
   fem::Gradient h;

@@ -25,6 +25,8 @@ std::vector<StageTotals> two_stages() {
   loss.deferral_error = {0, 2e-3, 5e-4};
   loss.step_limit_points = {0, 2, 1};
   loss.unsettled = {0, 0.02, 0.7};
+  loss.out_of_range_points = {0, 40, 3};
+  loss.mean_overlap = {0.01, 0.071, 0.05};
   loss.cuts = 2;
   return {gravity, loss};
 }
@@ -42,6 +44,8 @@ TEST(RunTotals, ComeBackFromACheckpoint) {
     EXPECT_EQ(read[k].deferral_error, written[k].deferral_error);
     EXPECT_EQ(read[k].step_limit_points, written[k].step_limit_points);
     EXPECT_EQ(read[k].unsettled, written[k].unsettled);
+    EXPECT_EQ(read[k].out_of_range_points, written[k].out_of_range_points);
+    EXPECT_EQ(read[k].mean_overlap, written[k].mean_overlap);
     EXPECT_EQ(read[k].cuts, written[k].cuts);
     EXPECT_EQ(read[k].particle_steps, written[k].particle_steps);
     EXPECT_EQ(read[k].lane_steps, written[k].lane_steps);
@@ -90,6 +94,15 @@ TEST(RunTotals, SayWhichPointsWereNotAtRest) {
   EXPECT_NE(line.find("2 of 3 increments"), std::string::npos) << line;
   EXPECT_NE(line.find("up to 2 of 984"), std::string::npos) << line;
   EXPECT_NE(line.find("by 0.7 of its tolerance"), std::string::npos) << line;
+}
+
+TEST(RunTotals, SayWhereTheContactLawEnds) {
+  const std::vector<StageTotals> stages = two_stages();
+  EXPECT_EQ(range_line(stages[0], 984), "");
+  const std::string line = range_line(stages[1], 984);
+  EXPECT_NE(line.find("in 2 of 3 increments"), std::string::npos) << line;
+  EXPECT_NE(line.find("up to 40 of 984"), std::string::npos) << line;
+  EXPECT_NE(line.find("the largest was 7.1 %"), std::string::npos) << line;
 }
 
 TEST(RunTotals, TableSumsTheStages) {

@@ -82,6 +82,7 @@ TEST(HertzLaw, TwoGrainsPushAndStiffenAsTheFormulasSay) {
     EXPECT_NEAR(r.tangent[3] * area / (stiffness * length), 1.0, 1e-9) << overlap;  // springs in series, b = length
     EXPECT_EQ(r.stress[0], 0.0);
     EXPECT_NEAR(r.largest_overlap * Column::sum / overlap, 1.0, 1e-9);
+    EXPECT_NEAR(r.mean_overlap * Column::sum / overlap, 1.0, 1e-9);
   }
 }
 

@@ -1,0 +1,120 @@
+#include "host/case/idle_keys.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace voussoir::host {
+
+namespace {
+
+using Condition = bool (*)(const Case&);
+
+/// Keys of one table that do not count where the condition holds; without keys it is the whole table.
+struct IdleRule {
+  const char* table;
+  std::vector<const char*> keys;
+  Condition when;
+  const char* reason;  ///< completes "not used, because ..."
+};
+
+bool on_a_mesh(const Case& c) { return runs_on_a_mesh(c.kind); }
+bool is_elastic(const Case& c) { return on_a_mesh(c) && c.material == MaterialKind::linear_elastic; }
+bool has_file(const Case& c) { return !c.packing.file.empty(); }
+bool has_state(const Case& c) { return c.packing.file.extension() == ".h5"; }
+bool has_seeds(const Case& c) { return !c.packing.seeds.empty(); }
+bool searches_void_ratio(const Case& c) { return c.packing.void_ratio > 0; }
+bool is_pack(const Case& c) { return c.kind == CaseKind::pack; }
+bool runs_tests(const Case& c) { return c.kind == CaseKind::biaxial || c.kind == CaseKind::calibrate; }
+bool has_own_pressure(const Case& c) {
+  return runs_tests(c) || c.kind == CaseKind::probe || c.kind == CaseKind::biaxial_bvp;
+}
+
+/// The rules go from the widest reason to the narrowest, because a key is reported with the first reason that holds.
+const std::vector<IdleRule>& rules() {
+  static const std::vector<IdleRule> all{
+      {"soil", {}, is_elastic, "material is \"linear_elastic\""},
+      {"engine", {}, is_elastic, "material is \"linear_elastic\""},
+      {"packing",
+       {"grains", "seed", "seeds", "candidates", "consolidation_friction", "void_ratio", "mirrored", "folder", "file"},
+       is_elastic,
+       "material is \"linear_elastic\""},
+      {"newton", {"tangent", "tangent_strain"}, is_elastic, "material is \"linear_elastic\""},
+      {"output", {"microstructure", "rves"}, is_elastic, "material is \"linear_elastic\", which has no grains"},
+      {"elastic", {}, [](const Case& c) { return on_a_mesh(c) && !is_elastic(c); }, "material is \"grains\""},
+      {"engine", {}, is_pack, "packings are made with settings of their own"},
+      {"engine",
+       {"inertial_number", "hold_cap", "minimum_steps", "maximum_steps"},
+       runs_tests,
+       "tests have the rate of biaxial.inertial_number and no hold"},
+      {"packing",
+       {"grains", "seed", "seeds", "candidates", "consolidation_friction", "void_ratio", "folder"},
+       has_file,
+       "packing.file has grains of its own"},
+      {"packing", {"pressure"}, has_state, "packing.file is a stored state, which has its own pressure"},
+      {"probe", {"pressure"}, has_state, "packing.file is a stored state, which has its own pressure"},
+      {"packing", {"seed", "candidates"}, has_seeds, "packing.seeds names the seeds"},
+      {"packing", {"consolidation_friction"}, searches_void_ratio, "packing.void_ratio searches it"},
+      {"packing", {"pressure"}, has_own_pressure, "the kind's own table says the pressure of its packings"},
+      {"packing",
+       {"mirrored"},
+       [](const Case& c) { return !on_a_mesh(c); },
+       "only kinds with a mesh have mirror images"},
+      {"soil", {"density"}, [](const Case&) { return true; }, "the motion is quasi-static, with masses of its own"},
+      {"soil",
+       {"passing_by"},
+       [](const Case& c) { return c.soil.sizes.empty(); },
+       "there is no grading curve (soil.sizes, soil.passing)"},
+      {"newton",
+       {"tangent_strain"},
+       [](const Case& c) { return on_a_mesh(c) && c.newton.tangent != kernels::TangentKind::loading; },
+       "newton.tangent is not \"loading\""},
+      {"newton",
+       {"relax_below", "relax_attempts", "relax_near"},
+       [](const Case& c) { return on_a_mesh(c) && c.newton.relax_substeps == 0; },
+       "newton.relax_substeps = 0 forbids relaxation"},
+      {"newton",
+       {"relax_attempts", "relax_near", "relax_substeps"},
+       [](const Case& c) { return on_a_mesh(c) && c.newton.relax_below == 0; },
+       "newton.relax_below = 0 forbids relaxation"},
+  };
+  return all;
+}
+
+/// A grading curve sets the smallest and the largest size, which are keys of their own without a curve.
+void declare_sizes(const io::Table& soil) {
+  for (const char* key : {"size_minimum", "size_maximum"}) {
+    if (!soil.has(key)) continue;
+    static_cast<void>(soil.quantity(key, io::Dimension::length));
+    soil.declare_idle(key, "soil.sizes has the smallest and the largest size");
+  }
+}
+
+/// A number of [soil] is the default of the classes; where each class has its own, the number of [soil] has no grains.
+void declare_class_defaults(const io::Table& soil) {
+  const std::vector<io::Table> classes = soil.tables("class");
+  for (const char* key : {"modulus", "stiffness_ratio", "friction", "rolling_stiffness", "rolling_limit"}) {
+    const bool everywhere = std::all_of(classes.begin(), classes.end(),
+                                        [key](const io::Table& entry) { return entry.has(key); });
+    if (everywhere && !classes.empty()) soil.declare_idle(key, "each soil.class has its own");
+  }
+}
+
+}  // namespace
+
+void declare_idle_keys(const io::Table& root, const Case& input) {
+  for (const IdleRule& rule : rules()) {
+    if (!rule.when(input)) continue;
+    const io::Table table = root.table(rule.table);
+    if (rule.keys.empty()) table.declare_idle("", rule.reason);
+    for (const char* key : rule.keys) {
+      if (table.has(key)) table.declare_idle(key, rule.reason);
+    }
+  }
+  const io::Table soil = root.table("soil");
+  if (!input.soil.sizes.empty()) declare_sizes(soil);
+  // A calibration searches parameters as factors of [soil], which therefore counts.
+  if (input.kind != CaseKind::calibrate) declare_class_defaults(soil);
+}
+
+}  // namespace voussoir::host

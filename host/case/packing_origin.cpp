@@ -1,0 +1,90 @@
+#include "host/case/packing_origin.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
+#include <string>
+#include <vector>
+
+#include "host/case/made_with.hpp"
+#include "io/packing_file.hpp"
+#include "io/units.hpp"
+#include "kernels/contact/engine_law.hpp"
+
+namespace voussoir::host {
+
+namespace {
+
+constexpr std::size_t soil_prefix = 5;  ///< "soil."
+
+/// The error at the key's own place, where the case has this key.
+[[noreturn]] void refuse(const io::Table& root, const io::KeyDifference& difference, const std::string& maker) {
+  const std::string key = difference.key.substr(soil_prefix);
+  throw root.table("soil").error(
+      key, fmt::format("this case has {}, {} was made with {}", difference.ours, maker, difference.theirs));
+}
+
+void check_state(const io::Table& root, const io::Packing& file, Case& input) {
+  const std::string maker = "the state in " + input.packing.file.string();
+  const io::Table packing = root.table("packing");
+  constexpr auto& names = kernels::PlainEngineLaw::history_names;
+  const std::vector<std::string> ours(names.begin(), names.end());
+  if (file.history_names != ours) {
+    throw packing.error("file", fmt::format("law: this program's contact law keeps [{}], {} has [{}]",
+                                            fmt::join(ours, ", "), maker, fmt::join(file.history_names, ", ")));
+  }
+  const KeyTexts soil = soil_keys_of(file);
+  if (soil.empty()) {
+    throw packing.error("file",
+                        "does not say which soil its state was made with, because an older version of this "
+                        "program wrote it: make the state anew");
+  }
+  const std::vector<io::KeyDifference> different = differences(soil_keys(input.soil), soil);
+  if (!different.empty()) refuse(root, different.front(), maker);
+  for (const io::KeyDifference& d : differences(engine_keys(input.engine), engine_keys_of(file))) {
+    input.remarks.push_back(
+        fmt::format("{}: this case has {}, {} was made with {}; the two may differ, because the run "
+                    "begins with a look at the state and says whether it is at rest",
+                    d.key, d.ours, maker, d.theirs));
+  }
+}
+
+void check_foreign_packing(const io::Table& root, const io::Packing& file, Case& input) {
+  const std::string maker = "the packing in " + input.packing.file.string();
+  const auto length = [](double x) { return io::format_quantity(x, io::Dimension::length); };
+  if (input.soil.thickness != file.thickness) {
+    if (root.table("soil").has("thickness")) {
+      throw root.table("soil").error(
+          "thickness", fmt::format("this case has {}, {} was made with {}", length(input.soil.thickness), maker,
+                                   length(file.thickness)));
+    }
+    input.remarks.push_back(fmt::format("soil.thickness: {} has {}, which the run takes; the case gives none", maker,
+                                        length(file.thickness)));
+    input.soil.thickness = file.thickness;
+  }
+  if (input.kind == CaseKind::calibrate && !input.calibrate.thickness.empty()) {
+    throw root.table("calibrate").error("thickness", "cannot be searched: packing.file has a thickness of its own");
+  }
+  for (const io::KeyDifference& d : differences(soil_keys(input.soil), soil_keys_of(file))) {
+    // The sizes of the grains are those of the file, whatever curve the case gives.
+    const bool is_size = d.key.find(".size") != std::string::npos || d.key.find(".passing") != std::string::npos;
+    if (is_size || d.ours == "nothing" || d.key == "soil.thickness") continue;
+    input.remarks.push_back(
+        fmt::format("{}: this case has {}, {} was made with {}; the two may differ, because the "
+                    "packing comes to rest anew with this case's soil",
+                    d.key, d.ours, maker, d.theirs));
+  }
+}
+
+}  // namespace
+
+void check_packing_origin(const io::Table& root, Case& input) {
+  if (input.packing.file.empty() || (runs_on_a_mesh(input.kind) && input.material != MaterialKind::grains)) return;
+  if (input.packing.file.extension() == ".h5") {
+    check_state(root, io::load_packing(input.packing.file), input);
+  } else {
+    check_foreign_packing(root, io::load_packing_csv(input.packing.file), input);
+  }
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,19 @@
+#pragma once
+/// Whether a case presses its grains beyond what the contact law is good for, told before it is run.
+
+#include <string>
+#include <vector>
+
+#include "host/case/case.hpp"
+
+namespace voussoir::host {
+
+struct Foretold {
+  std::string line;                   ///< kappa and mean overlap at the largest pressure; empty without grains
+  std::vector<std::string> warnings;  ///< what of them is beyond the law's range (packing/law_range.hpp)
+};
+
+/// The largest pressure of the case's own loads, and what it does to the grains. Paths of `probe` are not foretold.
+[[nodiscard]] Foretold foretell(const Case& input);
+
+}  // namespace voussoir::host
