@@ -1,6 +1,7 @@
 """Settlement troughs at the surface and below it, with their modified Gauss curves."""
 
 import csv
+import io
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from matplotlib.axes import Axes
 
 from . import q8, trough_fit
 from .result import Increment, Missing, Result, remembered
+from .output import write
 from .style import colours, percent, save
 
 COLUMNS = (
@@ -148,8 +150,9 @@ def _add(axis: Axes, trough: Trough, colour: np.ndarray) -> None:
 
 
 def _write_table(path: Path, troughs: Iterable[Trough]) -> None:
-    with path.open("w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS)
-        for trough in troughs:
-            writer.writerow([f"{value:.6g}" for value in trough.row()])
+    table = io.StringIO()
+    writer = csv.writer(table)
+    writer.writerow(COLUMNS)
+    for trough in troughs:
+        writer.writerow([f"{value:.6g}" for value in trough.row()])
+    write(path, table.getvalue())
