@@ -34,8 +34,8 @@ def main():
             say(f"left out: {reason if str(folder) in str(reason) else f'{folder}: {reason}'}", error=True)
             figures.unreadable()
             continue
-        for reason in results[-1].left_out:
-            say(f"left out: {reason}", error=True)
+        for lost in results[-1].left_out:
+            say(f"left out: {lost}", error=True)
             figures.unreadable()
     if not results:
         raise Missing("there is no tunnel with a volume loss to compare")

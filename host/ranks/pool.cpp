@@ -89,7 +89,8 @@ RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std
 RankPool::~RankPool() {
   try {
     describe_costs();
-    // NOLINTNEXTLINE(bugprone-empty-catch): the log or a rank is gone; another exception, which is on its way, says why.
+    // NOLINTNEXTLINE(bugprone-empty-catch): the log or a rank is gone; another exception, which is on its way, says
+    // why.
   } catch (const std::exception&) {
   }
 }

@@ -139,7 +139,7 @@ class Result:
             raise Missing("the run has no mesh")
         for name in names:
             if name not in self.geometry:
-                raise Missing(f"run.h5:/mesh/geometry has no attribute {name}")
+                raise Missing(f"the run's ground has no {name} (run.h5:/mesh/geometry)")
         return [self.geometry[name] for name in names]
 
     def stage(self, *names: str) -> list[Increment]:
@@ -227,9 +227,6 @@ class Result:
             return "gravel"
         loose = packing.get("void_ratio", 0) > 0.22 or packing.get("consolidation_friction", 0) > 0.1
         return "medium dense sand" if loose else "dense sand"
-
-
-
 
 
 def _check_folder(folder: Path, index: Path) -> None:

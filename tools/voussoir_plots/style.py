@@ -38,11 +38,6 @@ def colours(name: str, count: int) -> np.ndarray:
     return plt.get_cmap(name)(np.linspace(0.0, 0.87, max(count, 2)))[:count]
 
 
-def percent(fraction: float) -> str:
-    """0.125 -> '12.5 %'"""
-    return f"{100 * fraction:.3g} %"
-
-
 def save(figure: Figure, path: Path) -> None:
     picture = io.BytesIO()  # so that a full disk is met by `write` alone
     figure.savefig(picture, format="png")

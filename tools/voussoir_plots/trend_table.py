@@ -7,6 +7,7 @@ import numpy as np
 
 from . import output, paths, points, profiles, rotation, settlements, trends, troughs, widths
 from .reaction import curve
+from .resolution import percent
 from .result import Increment, Missing, Result
 
 # Places and two stresses along a line, at an increment.
@@ -16,11 +17,12 @@ BAND = 0.05  # eps_q from which soil counts as sheared
 
 
 def write(result: Result, path: Path) -> None:
-    rows, faults = table(result)
     (diameter,) = result.need("diameter")
+    last = result.volume_loss[-1]
+    rows, faults = table(result)
     about = (
         f"C/D = {result.cover / diameter:.3g}, D = {diameter:g} m, {result.soil}, {len(result.connectivity)} "
-        f"elements; V_l to {trends.percent(result.volume_loss[-1])} in {len(result.loss_increments) - 1} increments. "
+        f"elements; V_l to {percent(last)} in {len(result.loss_increments) - 1} increments. "
         "The trends are those of the study (tools/voussoir_plots/README.md says how each is judged)."
     )
     lines = [
@@ -69,7 +71,7 @@ def describe(result: Result, point: points.Point) -> str:
 
 
 def table(result: Result) -> tuple[list[trends.Trend], list[Exception]]:
-    """All trends of a tunnel's run, and the faults of this tool that were met. A trend whose data are missing says so."""
+    """All trends of a tunnel's run, and the faults of this tool. A trend whose data are missing says so."""
     rows: list[trends.Trend] = []
     faults: list[Exception] = []
     for make in (_settlements, _bands, _troughs, _stresses, _reaction, _paths, _rotation, _localisation):

@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import resolution
+from .resolution import percent
+
 SEEN, NOT_SEEN, NOT_APPLICABLE = "seen", "not seen", "not applicable"
 NOT_REACHED, NO_DATA = "not reached", "no data"  # the run ends before, or lacks a field
 
@@ -38,53 +41,11 @@ def not_reached(statement: str, wanted: float, last: float) -> Trend:
     return Trend(statement, NOT_REACHED, f"needs V_l = {percent(wanted)}, the run ends at {percent(last)}")
 
 
-# Largest distance of two states that a trend of the whole path may have between them [-]: in a coarser run minima and
-# peaks fall between the states.
-RESOLVED = 0.025
-
-
-def too_coarse(statement: str, loss: np.ndarray, low: float, high: float, least: int) -> Trend | None:
-    """The answer where the run has fewer than `least` states with low <= V_l <= high, else None."""
-    count = int(np.sum((loss >= low - 1e-9) & (loss <= high + 1e-9)))
-    if count >= least:
-        return None
-    return Trend(
-        statement,
-        NOT_REACHED,
-        f"needs {least} states from V_l = {percent(low)} to {percent(high)}, the run has {count} there",
-    )
-
-
-def path_too_coarse(statement: str, loss: np.ndarray) -> Trend | None:
-    """The answer where states of the run lie too far from one another to show a minimum or a peak, else None."""
-    gap = float(np.max(np.diff(loss), initial=0.0)) if len(loss) > 1 else float(loss[0])
-    if gap <= RESOLVED * (1 + 1e-6):
-        return None
-    return Trend(
-        statement,
-        NOT_REACHED,
-        f"needs a state every {percent(RESOLVED)} of V_l, the run has states {percent(gap)} apart",
-    )
-
-
-def resolved(loss: np.ndarray, where: float) -> bool:
-    """True where the states beside a V_l are near enough to interpolate: not farther apart than half of this V_l, or 1 %
-    where this is more."""
-    after = int(np.searchsorted(loss, where - 1e-9))
-    if after == len(loss) or (after == 0 and loss[0] > where + 1e-9):
-        return False
-    return abs(loss[after] - where) < 1e-9 or bool(loss[after] - loss[after - 1] <= max(0.01, 0.5 * where) + 1e-9)
-
-
 def at_the_end(statement: str, holds: bool | np.bool, text: str, loss: np.ndarray) -> Trend:
     """A trend that a longer run may still break. If it holds in a run that ends before 20 %, nothing is known."""
     if holds and loss[-1] < 0.199:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
     return Trend(statement, verdict(holds), text)
-
-
-def percent(fraction: float) -> str:
-    return f"{100 * fraction:.3g} %"
 
 
 def numbers(values: Iterable[float], form: str = "{:.3g}") -> str:
@@ -107,8 +68,8 @@ def settlement_slows(loss: np.ndarray, settlements: Mapping[float, np.ndarray], 
     if loss[-1] < 0.0999:
         return not_reached(statement, 0.10, loss[-1])
     for low, high in ((0.0, 0.02), (0.08, 0.10)):
-        if few := too_coarse(statement, loss, low, high, 2):
-            return few
+        if why := resolution.few_states(loss, low, high, 2):
+            return Trend(statement, NOT_REACHED, why)
     pairs = {
         z: (slope(loss, s, 0, 0.02) / diameter, slope(loss, s, 0.08, 0.10) / diameter) for z, s in settlements.items()
     }
@@ -122,8 +83,8 @@ def surface_accelerates(loss: np.ndarray, settlement: np.ndarray, diameter: floa
     if loss[-1] < 0.1749:
         return not_reached(statement, 0.175, loss[-1])
     for v in (0.10, 0.125, 0.15, 0.175):
-        if few := too_coarse(statement, loss, v - 0.0125, v + 0.0125, 2):
-            return few
+        if why := resolution.few_states(loss, v - 0.0125, v + 0.0125, 2):
+            return Trend(statement, NOT_REACHED, why)
     rates = {v: slope(loss, settlement, v - 0.0125, v + 0.0125) / diameter for v in (0.10, 0.125, 0.15, 0.175)}
     before, after = rates[0.10], max(rates[0.15], rates[0.175])
     text = ", ".join(f"{rate:.3f} at {percent(v)}" for v, rate in rates.items())
@@ -174,14 +135,15 @@ def gauss_fits(misfits: Mapping[float, np.ndarray], at_bounds: Mapping[float, np
 
 def troughs_narrow(loss: np.ndarray, inflection: Mapping[float, np.ndarray]) -> Trend:
     """inflection: {z/C: i [m] over the losses}."""
+    statement = "Troughs narrow with V_l"
     if loss[-1] < 0.0299:
-        return not_reached("Troughs narrow with V_l", 0.03, loss[-1])
-    if few := too_coarse("Troughs narrow with V_l", loss, 0.0, 0.02, 1):
-        return few
+        return not_reached(statement, 0.03, loss[-1])
+    if why := resolution.few_states(loss, 0.0, 0.02, 1):
+        return Trend(statement, NOT_REACHED, why)
     first = int(np.argmin(np.abs(loss - 0.01)))
     text = "; ".join(f"z/C = {z:g}: {i[first]:.2f} to {i[-1]:.2f} m" for z, i in inflection.items())
     return Trend(
-        "Troughs narrow with V_l",
+        statement,
         verdict(all(i[-1] < 0.95 * i[first] for i in inflection.values())),
         f"inflection from V_l = {percent(loss[first])} to {percent(loss[-1])}: {text}",
     )
@@ -191,8 +153,8 @@ def surface_width_in_range(loss: np.ndarray, width: np.ndarray, low: float, high
     statement = f"K_s lies mostly in Mair and Taylor's range ({low:g} to {high:g})"
     if loss[-1] < 0.0499:
         return not_reached(statement, 0.05, loss[-1])
-    if coarse := path_too_coarse(statement, np.insert(loss, 0, 0.0)):
-        return coarse
+    if why := resolution.coarse_path(np.insert(loss, 0, 0.0)):
+        return Trend(statement, NOT_REACHED, why)
     inside = (width >= low) & (width <= high)
     return Trend(
         statement,
@@ -202,13 +164,9 @@ def surface_width_in_range(loss: np.ndarray, width: np.ndarray, low: float, high
     )
 
 
-def no_states_near(statement: str, where: float) -> Trend:
-    return Trend(statement, NOT_REACHED, f"the run has no states near V_l = {percent(where)} to interpolate between")
-
-
 def stresses_text(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarray) -> str:
     """Both stresses at the volume losses that the run resolves."""
-    wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if resolved(loss, v)] or [loss[-1]]
+    wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if not resolution.no_states_near(loss, v)] or [loss[-1]]
     return "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
 
 
@@ -216,8 +174,8 @@ def stresses_above(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarra
     """Mean stresses above the crown over their values at V_l = 0."""
     last = min(until, loss[-1])
     statement = f"Above the crown sigma_xx rises and sigma_yy falls (at V_l = {percent(last)})"
-    if not resolved(loss, last):
-        return no_states_near(statement, last)
+    if why := resolution.no_states_near(loss, last):
+        return Trend(statement, NOT_REACHED, why)
     holds = at(loss, horizontal, last) > 1.05 and at(loss, vertical, last) < 0.95
     text = stresses_text(loss, horizontal, vertical)
     return Trend(
@@ -230,8 +188,8 @@ def stresses_above(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarra
 def stresses_beside(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarray, until: float = 0.02) -> Trend:
     last = min(until, loss[-1])
     statement = f"At the sides the opposite: sigma_xx falls and sigma_yy rises (at V_l = {percent(last)})"
-    if not resolved(loss, last):
-        return no_states_near(statement, last)
+    if why := resolution.no_states_near(loss, last):
+        return Trend(statement, NOT_REACHED, why)
     holds = at(loss, horizontal, last) < 0.98 and at(loss, vertical, last) > 1.02
     text = stresses_text(loss, horizontal, vertical)
     return Trend(
@@ -255,8 +213,8 @@ def reaction(loss: np.ndarray, ratio: np.ndarray, soil: str) -> Trend:
         if loose
         else "The ground reaction curve drops to a minimum, then recovers (dense soils)"
     )
-    if coarse := path_too_coarse(statement, loss):
-        return coarse
+    if why := resolution.coarse_path(loss):
+        return Trend(statement, NOT_REACHED, why)
     if loose:
         return at_the_end(statement, recovery < 0.02, text, loss)
     if recovery < 0.02 and loss[-1] < 0.199:
@@ -270,8 +228,8 @@ def falls_linearly(loss: np.ndarray, ratios: Mapping[str, np.ndarray], until: fl
     if loss[-1] < until - 1e-9:
         return not_reached(statement, until, loss[-1])
     # Two states lie on a straight line whatever the ground does.
-    if few := too_coarse(statement, loss, 0.0, until, 3):
-        return few
+    if why := resolution.few_states(loss, 0.0, until, 3):
+        return Trend(statement, NOT_REACHED, why)
     inside = loss <= until + 1e-9
     found, unknown = {}, []
     for name, ratio in ratios.items():
@@ -323,8 +281,8 @@ def softening_order(loss: np.ndarray, ratios: Mapping[str, np.ndarray]) -> Trend
     ratios = compressed(ratios)
     if "Aa" not in ratios:
         return Trend(statement, NO_DATA, "the point Aa does not exist, or it is hardly compressed")
-    if coarse := path_too_coarse(statement, loss):
-        return coarse
+    if why := resolution.coarse_path(loss):
+        return Trend(statement, NOT_REACHED, why)
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
     text = "; ".join(
         f"{name}: {value:.2f} at V_l = {percent(v)}, {'falls after it' if fell else 'no softening until the end'}"
@@ -343,8 +301,8 @@ def no_softening(loss: np.ndarray, ratios: Mapping[str, np.ndarray], soil: str) 
     ratios = compressed(ratios)
     if not ratios:
         return Trend(statement, NO_DATA, "no point is compressed")
-    if coarse := path_too_coarse(statement, loss):
-        return coarse
+    if why := resolution.coarse_path(loss):
+        return Trend(statement, NOT_REACHED, why)
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
     text = "; ".join(
         f"{name}: end over peak {ratio[np.isfinite(ratio)][-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items()
@@ -354,8 +312,8 @@ def no_softening(loss: np.ndarray, ratios: Mapping[str, np.ndarray], soil: str) 
 
 def contracts_until(loss: np.ndarray, volumetric: np.ndarray, wanted: float = 0.15) -> Trend:
     statement = f"Ac contracts until V_l = {percent(wanted)}"
-    if coarse := path_too_coarse(statement, loss):
-        return coarse
+    if why := resolution.coarse_path(loss):
+        return Trend(statement, NOT_REACHED, why)
     most = int(np.argmax(volumetric))
     text = (
         f"largest contraction {percent(volumetric[most])} at V_l = {percent(loss[most])}, {percent(volumetric[-1])} at "

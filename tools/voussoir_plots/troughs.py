@@ -10,9 +10,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from . import q8, trough_fit
-from .result import Increment, Missing, Result, remembered
 from .output import write
-from .style import colours, percent, save
+from .resolution import percent
+from .result import Increment, Missing, Result, remembered
+from .style import colours, save
 
 COLUMNS = (
     "z_over_C",

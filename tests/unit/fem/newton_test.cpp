@@ -82,7 +82,8 @@ TEST(Newton, TheNodalRatioCountsTheNodesOwnLoad) {
   Increment increment;
   const NewtonReport report = solver.solve_increment(state, load, increment);
   ASSERT_EQ(report.status, NewtonStatus::max_iterations) << "a residual is left";
-  const double scale = internal_force(mesh, increment.points, increment.stress).magnitude[loaded] + std::hypot(1e4, 2e4);
+  const double scale = internal_force(mesh, increment.points, increment.stress).magnitude[loaded] +
+                       std::hypot(1e4, 2e4);
   EXPECT_NEAR(report.largest_nodal_ratio, independent_residual(mesh, load, increment) / scale, 1e-12);
   EXPECT_GT(report.largest_nodal_ratio, 0.01) << "the test shows nothing";
 }

@@ -268,8 +268,8 @@ TEST_F(DeferringPool, ACheckpointKeepsWhatIsDeferred) {
   expect_throws<std::runtime_error>([&] { plain.set_state(straight.state()); }, "of another packing");
 }
 
-/// An RVE that has lost trust is not deferred after a resumption either. With a bound far below the scatter of grains at
-/// rest each check fails.
+/// An RVE that has lost trust is not deferred after a resumption either. With a bound far below the scatter of grains
+/// at rest each check fails.
 TEST_F(DeferringPool, ACheckpointKeepsTheTrust) {
   constexpr double bound = 1e-10;
   const Gradients small(2, gradient(0, 0, 0, -2e-4 * bound));
