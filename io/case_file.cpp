@@ -69,10 +69,17 @@ std::string significant(double in_si) {
   return fmt::format("{:.12g}", in_si == 0 ? 0.0 : in_si);  // so that -0 is written as "0"
 }
 
+/// The fallback of a key that the user did not write; Table::take has refused such a key where there is none.
+template <class T>
+const T& given(const std::optional<T>& fallback) {
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): value() itself checks, and throws.
+  return fallback.value();
+}
+
 /// Reads one quantity and notes it as TOML; `fallback` stands in for a node that the user did not write.
 double read_quantity(CaseNode& node, Dimension dimension, const QuantityRule& rule,
                      const std::optional<std::string>& fallback) {
-  const std::string written = node.written ? written_quantity(node, dimension) : fallback.value();
+  const std::string written = node.written ? written_quantity(node, dimension) : given(fallback);
   const double value = checked_quantity(node, written, dimension, rule);
   const bool is_number = written.find_first_not_of("0123456789+-.eE") == std::string::npos;
   node.resolved = is_number ? written : toml_text(written);
@@ -84,7 +91,7 @@ std::int64_t read_integer(CaseNode& node, const IntegerRule& rule, const std::op
   if (node.written) {
     expect(node, Kind::integer);
   }
-  const std::int64_t value = node.written ? std::get<std::int64_t>(node.value) : fallback.value();
+  const std::int64_t value = node.written ? std::get<std::int64_t>(node.value) : given(fallback);
   if (rule.at_least && value < *rule.at_least) {
     fail(node, fmt::format("must be at least {}, is {}", *rule.at_least, value));
   }
@@ -100,7 +107,7 @@ std::string read_text(CaseNode& node, const std::optional<std::string>& fallback
   if (node.written) {
     expect(node, Kind::text);
   }
-  const std::string value = node.written ? std::get<std::string>(node.value) : fallback.value();
+  const std::string value = node.written ? std::get<std::string>(node.value) : given(fallback);
   node.resolved = toml_text(value);
   node.meaning = node.resolved;
   return value;
@@ -112,7 +119,7 @@ std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Defaul
   if (node.written) {
     expect(node, Kind::array);
   } else if (node.children.empty()) {
-    for (std::size_t i = 0; i < fallback->size(); ++i) {
+    for (std::size_t i = 0; i < given(fallback).size(); ++i) {
       node.add(fmt::format("[{}]", i), node.place);
     }
   }
@@ -121,7 +128,7 @@ std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Defaul
   std::vector<std::string> meanings;
   for (const auto& entry : node.children) {
     entry->read = true;
-    values.push_back(read_one(*entry, node.written ? std::optional<Default>{} : fallback->at(values.size())));
+    values.push_back(read_one(*entry, node.written ? std::optional<Default>{} : given(fallback).at(values.size())));
     texts.push_back(entry->resolved);
     meanings.push_back(entry->meaning);
   }
@@ -168,18 +175,18 @@ bool Table::boolean(std::string_view key, std::optional<bool> fallback) const {
   if (node.written) {
     expect(node, Kind::boolean);
   }
-  const bool value = node.written ? std::get<bool>(node.value) : fallback.value();
+  const bool value = node.written ? std::get<bool>(node.value) : given(fallback);
   node.resolved = value ? "true" : "false";
   node.meaning = node.resolved;
   return value;
 }
 
-std::string Table::text(std::string_view key, std::optional<std::string> fallback) const {
+std::string Table::text(std::string_view key, const std::optional<std::string>& fallback) const {
   return read_text(take(key, fallback.has_value()), fallback);
 }
 
 std::string Table::choice(std::string_view key, const std::vector<std::string>& choices,
-                          std::optional<std::string> fallback) const {
+                          const std::optional<std::string>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
   std::string value = read_text(node, fallback);
   if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
@@ -200,7 +207,7 @@ std::filesystem::path Table::path(std::string_view key) const {
 }
 
 std::vector<double> Table::quantities(std::string_view key, Dimension dimension, const QuantityRule& rule,
-                                      std::optional<std::vector<std::string>> fallback) const {
+                                      const std::optional<std::vector<std::string>>& fallback) const {
   return read_array<double>(take(key, fallback.has_value()), fallback,
                             [&](CaseNode& entry, const auto& entry_fallback) {
                               return read_quantity(entry, dimension, rule, entry_fallback);
@@ -208,13 +215,14 @@ std::vector<double> Table::quantities(std::string_view key, Dimension dimension,
 }
 
 std::vector<std::int64_t> Table::integers(std::string_view key, const IntegerRule& rule,
-                                          std::optional<std::vector<std::int64_t>> fallback) const {
+                                          const std::optional<std::vector<std::int64_t>>& fallback) const {
   return read_array<std::int64_t>(
       take(key, fallback.has_value()), fallback,
       [&](CaseNode& entry, const auto& entry_fallback) { return read_integer(entry, rule, entry_fallback); });
 }
 
-std::vector<std::string> Table::texts(std::string_view key, std::optional<std::vector<std::string>> fallback) const {
+std::vector<std::string> Table::texts(std::string_view key,
+                                      const std::optional<std::vector<std::string>>& fallback) const {
   return read_array<std::string>(take(key, fallback.has_value()), fallback, read_text);
 }
 

@@ -300,7 +300,7 @@ std::string Hdf5File::text_attribute(const std::string& object, const std::strin
   }
   std::string text(H5Tget_size(stored), '\0');
   checked(H5Aread(attribute, stored, text.data()), what);
-  return text.c_str();
+  return text.c_str();  // NOLINT(readability-redundant-string-cstr): the text ends at its first NUL
 }
 
 void Hdf5File::get_scalar(const std::string& object, const std::string& name, Id type, void* value) const {

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   const Kokkos::ScopeGuard kokkos(argc, argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  using namespace voussoir::kernels;
+  using voussoir::kernels::lane_count, voussoir::kernels::WideLane;
   benchmark::AddCustomContext("device", processor());
   benchmark::AddCustomContext("lanes", std::to_string(lane_count<WideLane<float>>) + " floats, " +
                                            std::to_string(lane_count<WideLane<double>>) + " doubles");

@@ -30,7 +30,7 @@ def coarse_path(loss: np.ndarray) -> str | None:
 
 
 def no_states_near(loss: np.ndarray, where: float) -> str | None:
-    """None where a value at V_l = where can be interpolated: the states beside it are not farther apart than half of this
+    """None where a value at this V_l can be interpolated: the states beside it are not farther apart than half of the
     V_l, or than 1 % where that is more."""
     after = int(np.searchsorted(loss, where - 1e-9))
     reached = after < len(loss) and (after > 0 or loss[0] <= where + 1e-9)
