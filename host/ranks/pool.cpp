@@ -89,8 +89,7 @@ RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std
 RankPool::~RankPool() {
   try {
     describe_costs();
-    // NOLINTNEXTLINE(bugprone-empty-catch): the log or a rank is gone; another exception, which is on its way, says
-    // why.
+    // NOLINTNEXTLINE(bugprone-empty-catch): a rank or the log is gone, of which another exception tells.
   } catch (const std::exception&) {
   }
 }
