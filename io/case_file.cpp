@@ -105,10 +105,17 @@ std::string quantity_as_toml(const std::string& written) {
   return is_number ? written : toml_text(written);
 }
 
+/// The fallback of a key that the user did not write; Table::take has refused such a key where there is none.
+template <class T>
+const T& given(const std::optional<T>& fallback) {
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): value() itself checks, and throws.
+  return fallback.value();
+}
+
 /// Reads one quantity and notes it as TOML; `fallback` stands in for a node that the user did not write.
 double read_quantity(CaseNode& node, Dimension dimension, const QuantityRule& rule,
                      const std::optional<std::string>& fallback) {
-  const std::string written = node.written ? written_quantity(node, dimension) : fallback.value();
+  const std::string written = node.written ? written_quantity(node, dimension) : given(fallback);
   const double value = checked_quantity(node, written, dimension, rule);
   node.resolved = quantity_as_toml(written);
   node.meaning = significant(value);
@@ -119,7 +126,7 @@ std::int64_t read_integer(CaseNode& node, const IntegerRule& rule, const std::op
   if (node.written) {
     expect(node, Kind::integer);
   }
-  const std::int64_t value = node.written ? std::get<std::int64_t>(node.value) : fallback.value();
+  const std::int64_t value = node.written ? std::get<std::int64_t>(node.value) : given(fallback);
   if (rule.at_least && value < *rule.at_least) {
     fail(node, fmt::format("must be at least {}, is {}", *rule.at_least, value));
   }
@@ -136,7 +143,7 @@ std::string read_text(CaseNode& node, const std::optional<std::string>& fallback
   if (node.written) {
     expect(node, Kind::text);
   }
-  const std::string value = node.written ? std::get<std::string>(node.value) : fallback.value();
+  const std::string value = node.written ? std::get<std::string>(node.value) : given(fallback);
   if (std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; })) {
     fail(node, fmt::format("must not hold control characters such as line breaks, is \"{}\"", in_one_line(value)));
   }
@@ -157,7 +164,7 @@ std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Defaul
       fail(node, fmt::format("must have at most {} entries, has {}", most_entries, node.children.size()));
     }
   } else if (node.children.empty()) {
-    for (std::size_t i = 0; i < fallback->size(); ++i) {
+    for (std::size_t i = 0; i < given(fallback).size(); ++i) {
       node.add(fmt::format("[{}]", i), node.place);
     }
   }
@@ -166,7 +173,7 @@ std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Defaul
   std::vector<std::string> meanings;
   for (const auto& entry : node.children) {
     entry->read = true;
-    values.push_back(read_one(*entry, node.written ? std::optional<Default>{} : fallback->at(values.size())));
+    values.push_back(read_one(*entry, node.written ? std::optional<Default>{} : given(fallback).at(values.size())));
     texts.push_back(entry->resolved);
     meanings.push_back(entry->meaning);
   }
@@ -222,20 +229,20 @@ bool Table::boolean(std::string_view key, std::optional<bool> fallback) const {
   if (node.written) {
     expect(node, Kind::boolean);
   }
-  const bool value = node.written ? std::get<bool>(node.value) : fallback.value();
+  const bool value = node.written ? std::get<bool>(node.value) : given(fallback);
   node.resolved = value ? "true" : "false";
   node.meaning = node.resolved;
   return value;
 }
 
-std::string Table::text(std::string_view key, std::optional<std::string> fallback) const {
+std::string Table::text(std::string_view key, const std::optional<std::string>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
   note(node, KeyType::text, fallback ? toml_text(*fallback) : "", !fallback);
   return read_text(node, fallback);
 }
 
 std::string Table::choice(std::string_view key, const std::vector<std::string>& choices,
-                          std::optional<std::string> fallback) const {
+                          const std::optional<std::string>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
   note(node, KeyType::choice, fallback ? toml_text(*fallback) : "", !fallback).choices = choices;
   std::string value = read_text(node, fallback);
@@ -276,7 +283,7 @@ std::filesystem::path Table::optional_path(std::string_view key) const {
 }
 
 std::vector<double> Table::quantities(std::string_view key, Dimension dimension, const QuantityRule& rule,
-                                      std::optional<std::vector<std::string>> fallback) const {
+                                      const std::optional<std::vector<std::string>>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
   with_limits(note(node, KeyType::quantity, "", !fallback, true), dimension, rule);
   return read_array<double>(node, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
@@ -285,7 +292,7 @@ std::vector<double> Table::quantities(std::string_view key, Dimension dimension,
 }
 
 std::vector<std::int64_t> Table::integers(std::string_view key, const IntegerRule& rule,
-                                          std::optional<std::vector<std::int64_t>> fallback) const {
+                                          const std::optional<std::vector<std::int64_t>>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
   with_limits(note(node, KeyType::integer, "", !fallback, true), rule);
   return read_array<std::int64_t>(node, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
@@ -293,7 +300,8 @@ std::vector<std::int64_t> Table::integers(std::string_view key, const IntegerRul
   });
 }
 
-std::vector<std::string> Table::texts(std::string_view key, std::optional<std::vector<std::string>> fallback) const {
+std::vector<std::string> Table::texts(std::string_view key,
+                                      const std::optional<std::vector<std::string>>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
   note(node, KeyType::text, "", !fallback, true);
   return read_array<std::string>(node, fallback, read_text);

@@ -50,10 +50,10 @@ class Table {
   [[nodiscard]] double quantity(std::string_view key, Dimension dimension, const QuantityRule& rule = {}) const;
   [[nodiscard]] std::int64_t integer(std::string_view key, const IntegerRule& rule = {}) const;
   [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = {}) const;
-  [[nodiscard]] std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
+  [[nodiscard]] std::string text(std::string_view key, const std::optional<std::string>& fallback = {}) const;
   /// A text that is one of `choices`; the message of an error lists them.
   [[nodiscard]] std::string choice(std::string_view key, const std::vector<std::string>& choices,
-                                   std::optional<std::string> fallback = {}) const;
+                                   const std::optional<std::string>& fallback = {}) const;
   /// An existing file that can be read. The name is relative to the folder of the file that says it, with --set to that
   /// of the case file.
   [[nodiscard]] std::filesystem::path path(std::string_view key) const;
@@ -62,11 +62,11 @@ class Table {
 
   /// Reads arrays. The limits of the rule hold for each entry; the rule's fallback is not used.
   [[nodiscard]] std::vector<double> quantities(std::string_view key, Dimension dimension, const QuantityRule& rule = {},
-                                               std::optional<std::vector<std::string>> fallback = {}) const;
+                                               const std::optional<std::vector<std::string>>& fallback = {}) const;
   [[nodiscard]] std::vector<std::int64_t> integers(std::string_view key, const IntegerRule& rule = {},
-                                                   std::optional<std::vector<std::int64_t>> fallback = {}) const;
+                                                   const std::optional<std::vector<std::int64_t>>& fallback = {}) const;
   [[nodiscard]] std::vector<std::string> texts(std::string_view key,
-                                               std::optional<std::vector<std::string>> fallback = {}) const;
+                                               const std::optional<std::vector<std::string>>& fallback = {}) const;
 
   [[nodiscard]] Table table(std::string_view key) const;
   /// The [[key]] tables in the order of the file; empty where there are none.

@@ -112,7 +112,8 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
 
 void Hdf5File::publish() {
   checked(H5Fflush(file_, H5F_SCOPE_GLOBAL), "finish the file");
-  std::vector<std::byte> image(static_cast<std::size_t>(checked(H5Fget_file_image(file_, nullptr, 0), "finish the file")));
+  std::vector<std::byte> image(
+      static_cast<std::size_t>(checked(H5Fget_file_image(file_, nullptr, 0), "finish the file")));
   checked(H5Fget_file_image(file_, image.data(), image.size()), "finish the file");
   checked(H5Fclose(std::exchange(file_, -1)), "finish the file");
   AtomicFile target(path_);
@@ -319,7 +320,7 @@ std::string Hdf5File::text_attribute(const std::string& object, const std::strin
   }
   std::string text(H5Tget_size(stored), '\0');
   checked(H5Aread(attribute, stored, text.data()), what);
-  return text.c_str();
+  return text.c_str();  // NOLINT(readability-redundant-string-cstr): the text ends at its first NUL
 }
 
 void Hdf5File::get_scalar(const std::string& object, const std::string& name, Id type, void* value) const {

@@ -144,6 +144,7 @@ std::optional<Packing> find_packing(const std::filesystem::path& folder, const s
     if (label != packing.labels.end() && label->second == recipe_fingerprint) {
       return packing;
     }
+    // NOLINTNEXTLINE(bugprone-empty-catch): the return below is the answer.
   } catch (const std::exception&) {
     // A cache may be damaged without harm: the packing is made again and replaces it.
   }

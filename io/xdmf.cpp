@@ -23,7 +23,8 @@ std::string attributes(const Hdf5File& file, const std::string& source, const st
     const std::string dimensions = vector ? fmt::format("{} {}", shape[0], shape[1]) : fmt::format("{}", shape[0]);
     out += fmt::format(
         "        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">\n          {}\n        </Attribute>\n",
-        name, vector ? "Vector" : "Scalar", center, data_item(dimensions, "Float", source + ":" + object));
+        name, vector ? "Vector" : "Scalar", center,
+        data_item(dimensions, "Float", fmt::format("{}:{}", source, object)));
   }
   return out;
 }

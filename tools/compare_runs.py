@@ -3,7 +3,7 @@
 
 A report is the file of --benchmark_out=FILE. Prints the median particle-steps/s [million] of each benchmark in both and
 the ratio AFTER / BEFORE; also prints how the machines differ, since a ratio between two machines does not show progress
-of the code.
+of the code. Exit status 2: a file is no such report, or they have no benchmark in common.
 """
 
 import argparse
@@ -12,11 +12,27 @@ import sys
 from pathlib import Path
 
 
+class NoReportError(Exception):
+    """A file cannot be read as a benchmark report; the message names it and the reason."""
+
+
 def load(path):
     """(context, {benchmark: median particle-steps/s}) of a report."""
-    report = json.loads(Path(path).read_text())
-    rates = {b["run_name"]: b["particle_steps/s"] for b in report["benchmarks"] if b.get("aggregate_name") == "median"}
-    return report["context"], rates
+    try:
+        report = json.loads(Path(path).read_text())
+    except OSError as error:
+        raise NoReportError(f"{path} cannot be read: {error.strerror}") from error
+    except ValueError as error:  # no JSON, or no text at all
+        raise NoReportError(f"{path} is no benchmark report: {' '.join(str(error).split())}") from error
+    try:
+        rates = {
+            b["run_name"]: float(b["particle_steps/s"])
+            for b in report["benchmarks"]
+            if b.get("aggregate_name") == "median" and "particle_steps/s" in b
+        }
+        return dict(report["context"]), rates
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        raise NoReportError(f"{path} is no report of our benchmarks ({type(error).__name__}: {error})") from error
 
 
 def main():
@@ -24,7 +40,11 @@ def main():
     parser.add_argument("before", type=Path)
     parser.add_argument("after", type=Path)
     arguments = parser.parse_args()
-    (context, before), (other, after) = load(arguments.before), load(arguments.after)
+    try:
+        (context, before), (other, after) = load(arguments.before), load(arguments.after)
+    except NoReportError as reason:
+        print(reason, file=sys.stderr)
+        return 2
     for key in ("device", "lanes", "backend", "concurrency", "library_build_type"):
         if context.get(key) != other.get(key):
             print(f"{key} differs: {context.get(key)} | {other.get(key)}")
@@ -34,12 +54,15 @@ def main():
                 print(f"only in {path}: {name}")
     common = [name for name in before if name in after]
     if not common:
-        sys.exit("no benchmark in common")
+        print("the reports have no benchmark in common (are there medians? --benchmark_repetitions)", file=sys.stderr)
+        return 2
     width = max(map(len, common))
     print(f"{'':{width}}  {'before':>8}  {'after':>8}  ratio")
     for name in common:
-        print(f"{name:{width}}  {before[name] / 1e6:8.2f}  {after[name] / 1e6:8.2f}  {after[name] / before[name]:5.3f}")
+        ratio = f"{after[name] / before[name]:5.3f}" if before[name] > 0 else "  -"
+        print(f"{name:{width}}  {before[name] / 1e6:8.2f}  {after[name] / 1e6:8.2f}  {ratio}")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -2,17 +2,23 @@
 """Draws the figures of a run: tools/figures.py RESULT_DIR [-o DIR] [--only NAME ...] [further options: --help].
 
 A figure whose data are missing is skipped, and a line says why. io/FORMAT.md describes the data sets,
-voussoir_plots/README.md the figures.
+voussoir_plots/README.md the figures and the exit status.
 """
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
-from voussoir_plots import settings, trend_table
-from voussoir_plots.catalogue import FIGURES
-from voussoir_plots.result import Missing, Result
-from voussoir_plots.style import use_style
+try:
+    from voussoir_plots import guard, settings, trend_table
+    from voussoir_plots.catalogue import FIGURES
+    from voussoir_plots.output import make_folder, say
+    from voussoir_plots.result import Result
+    from voussoir_plots.style import use_style
+except ModuleNotFoundError as missing:
+    print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
+    sys.exit(2)
 
 TRENDS = {"trends.md": trend_table.write}
 
@@ -34,27 +40,23 @@ def main():
         "--trends", action="store_true", help="write only trends.md: the study's trends, each seen or not"
     )
     settings.add_options(parser)
+    guard.add_option(parser)
     arguments = parser.parse_args()
     output = arguments.output or arguments.result
     unknown = set(arguments.only or ()) - {Path(name).stem for name in (*FIGURES, *TRENDS)}
     if unknown:
         parser.error(f"there is no figure {', '.join(sorted(unknown))}")
     use_style()
-    try:
-        result = Result(arguments.result, settings.parse(arguments))
-    except (OSError, Missing) as reason:
-        print(f"{arguments.result}: no readable result: {reason}", file=sys.stderr)
-        return 2
-    output.mkdir(parents=True, exist_ok=True)
+    figures = guard.Guard(arguments.traceback)
+    result = Result(arguments.result, settings.parse(arguments))
+    for reason in result.left_out:
+        say(f"left out: {reason}", error=True)
+        figures.unreadable()
+    make_folder(output)
     for name, draw in chosen(arguments).items():
-        try:
-            draw(result, output / name)
-        except Missing as reason:
-            print(f"skipped {name}: {reason}")
-        else:
-            print(f"wrote {output / name}")
-    return 0
+        figures.make(name, output / name, partial(draw, result))
+    return figures.status
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(guard.run(main))

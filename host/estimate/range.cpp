@@ -85,10 +85,11 @@ Foretold foretell(const Case& input) {
   const double pressed = foretold_overlap(stiffness_number(grains, load.packing));
   const double left = foretold_void_ratio(loose_ratio, pressed), least = least_void_ratio(grains);
   if (left < least) {
-    out.warnings.push_back(fmt::format("the grains will interpenetrate: at a mean stress of {:.5g} kPa a void ratio of {:.2g} "
-                                       "at little pressure becomes about {:.2g}, below {:.3g}, that of the densest packing "
-                                       "of rigid grains",
-                                       load.packing * 1e-3, loose_ratio, left, least));
+    out.warnings.push_back(
+        fmt::format("the grains will interpenetrate: at a mean stress of {:.5g} kPa a void ratio of {:.2g} "
+                    "at little pressure becomes about {:.2g}, below {:.3g}, that of the densest packing "
+                    "of rigid grains",
+                    load.packing * 1e-3, loose_ratio, left, least));
   }
   return out;
 }

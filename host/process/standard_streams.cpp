@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <system_error>
 
-
 namespace voussoir::host {
 
 void prepare_standard_streams() {
@@ -23,7 +22,8 @@ void prepare_standard_streams() {
 
 Outcome print_answer(const std::string& answer) {
   errno = 0;
-  if (std::fwrite(answer.data(), 1, answer.size(), stdout) == answer.size() && std::fflush(stdout) == 0) return Outcome::done;
+  if (std::fwrite(answer.data(), 1, answer.size(), stdout) == answer.size() && std::fflush(stdout) == 0)
+    return Outcome::done;
   const int reason = errno;
   if (reason != EPIPE) {
     std::fprintf(stderr, "voussoir: standard output: cannot be written: %s\n",

@@ -13,8 +13,8 @@ namespace voussoir::host {
 /// file beyond its limit (SIGXFSZ) become failures of the call that writes.
 void prepare_standard_streams();
 
-/// Writes the answer of a command whose product is its output. Returns Outcome::done, or machine_failure after one line on
-/// standard error; no line is written where the reader of a pipe has gone, as `head` does.
+/// Writes the answer of a command whose product is its output. Returns Outcome::done, or machine_failure after one line
+/// on standard error; no line is written where the reader of a pipe has gone, as `head` does.
 [[nodiscard]] Outcome print_answer(const std::string& answer);
 
 /// For a command whose product is its files: the reason for which standard output has failed, if it has. Whatever is

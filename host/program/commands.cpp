@@ -18,8 +18,8 @@
 #include "io/case_file.hpp"
 #include "io/input_error.hpp"
 #include "io/result_file.hpp"
-#include "kernels/isa/choose_lanes.hpp"
 #include "io/text_file.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -34,8 +34,9 @@ std::string status_of(const io::IncrementInfo& info) {
 }
 
 std::string table_of(const std::vector<io::IncrementInfo>& increments) {
-  std::string text = fmt::format("{:>5}  {:<12} {:>5}  {:>12}  {:>6}  {:>5}  {:>9}  {:>10}  {:>8}  {}\n", "file", "stage",
-                                 "index", "load", "iter.", "cuts", "residual", "part.steps", "wall [s]", "status");
+  std::string text = fmt::format("{:>5}  {:<12} {:>5}  {:>12}  {:>6}  {:>5}  {:>9}  {:>10}  {:>8}  {}\n", "file",
+                                 "stage", "index", "load", "iter.", "cuts", "residual", "part.steps", "wall [s]",
+                                 "status");
   for (const io::IncrementInfo& info : increments) {
     text += fmt::format("{:5d}  {:<12} {:5d}  {:12.6g}  {:6d}  {:5d}  {:9.2e}  {:10.3g}  {:8.2f}  {}\n", info.index,
                         info.stage, info.stage_index, info.load_parameter, info.iterations, info.cuts, info.residual,

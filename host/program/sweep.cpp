@@ -81,13 +81,14 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) ::signal(signal, SIG_DFL);
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   ::sigprocmask(SIG_SETMASK, &signals, nullptr);
-  if (::getppid() != sweep) ::_exit(exit_interrupted);  // the sweep died before the child could ask to be told
-  const int nowhere = ::open("/dev/null", O_WRONLY);     // the same lines are in run.log
+  if (::getppid() != sweep)
+    ::_exit(exit_code(Outcome::interrupted));         // the sweep died before the child could ask to be told
+  const int nowhere = ::open("/dev/null", O_WRONLY);  // the same lines are in run.log
   if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
   ::execv(arguments.front(), arguments.data());
   constexpr std::string_view complaint = "voussoir: the program of a run cannot be started\n";
   static_cast<void>(!::write(STDERR_FILENO, complaint.data(), complaint.size()));
-  ::_exit(exit_machine);
+  ::_exit(exit_code(Outcome::machine_failure));
 }
 
 pid_t start(const SweepRun& run, const std::filesystem::path& base, const SweepOptions& options) {

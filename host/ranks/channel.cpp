@@ -44,13 +44,13 @@ void send_bytes(int rank, const void* bytes, std::size_t n) {
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Isend(bytes, static_cast<int>(n), MPI_BYTE, rank, 0, MPI_COMM_WORLD, &request);
   wait_for(request);
-}
+}  // NOLINT(clang-analyzer-optin.mpi.MPI-Checker): wait_for() waits by MPI_Test, which the check does not know.
 
 void receive_bytes(int rank, void* bytes, std::size_t n) {
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Irecv(bytes, static_cast<int>(n), MPI_BYTE, rank, 0, MPI_COMM_WORLD, &request);
   wait_for(request);
-}
+}  // NOLINT(clang-analyzer-optin.mpi.MPI-Checker): as above.
 
 }  // namespace
 

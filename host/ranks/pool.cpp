@@ -75,7 +75,7 @@ RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std
       committed_(n) {
   const auto replies = ask(
       others(), [&](std::size_t r) { return make_message(r); },
-      [&] { own_.emplace(rve_, options_, points_[0].size()); });
+      [&] { own_ = std::make_unique<RvePool>(rve_, options_, points_[0].size()); });
   place(own_->committed_reports(), points_[0], committed_);
   std::string text = fmt::format("{} ranks:", ranks.size());
   for (std::size_t r = 0; r < ranks.size(); ++r) {
@@ -89,7 +89,8 @@ RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std
 RankPool::~RankPool() {
   try {
     describe_costs();
-  } catch (const std::exception&) {  // the log or a rank is gone; another exception, which is on its way, says why
+    // NOLINTNEXTLINE(bugprone-empty-catch): a rank or the log is gone, of which another exception tells.
+  } catch (const std::exception&) {
   }
 }
 

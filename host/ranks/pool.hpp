@@ -2,7 +2,7 @@
 /// One pool of RVEs over all ranks: the first rank's own part, and its conversation with the other ranks. Gauss points
 /// are dealt out one by one and not in blocks, so that the costly points near the opening spread over the ranks.
 
-#include <optional>
+#include <memory>
 
 #include "host/material/rve_pool.hpp"
 #include "host/ranks/channel.hpp"
@@ -58,7 +58,7 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
   PoolOptions options_;
   PackingNote note_;
   std::vector<std::vector<std::size_t>> points_;  ///< by rank
-  std::optional<RvePool> own_;
+  std::unique_ptr<RvePool> own_;
   std::vector<kernels::RveReport> trial_, committed_;  ///< of all points
   Ledger ledger_;
 };

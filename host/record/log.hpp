@@ -2,13 +2,11 @@
 /// The log of a run: lines with their time in DIR/run.log, the same lines without the time on standard output, and one
 /// live line at the foot of a terminal, which shows the progress and is never written to a file.
 
+#include <spdlog/fwd.h>
+
 #include <filesystem>
 #include <memory>
 #include <string>
-
-namespace spdlog {
-class logger;
-}
 
 namespace voussoir::host {
 

@@ -29,12 +29,14 @@ std::string remarks(const EquilibriumReport& found) {
     text += fmt::format(": not converged, because they may put the residual off by {:.2g} of its tolerance",
                         found.unsettled);
   }
-  if (found.out_of_range_points.value_or(0) > 0) {
-    text += fmt::format(", {} RVEs beyond the contact law's range", *found.out_of_range_points);
+  if (const auto beyond = found.out_of_range_points.value_or(0); beyond > 0) {
+    text += fmt::format(", {} RVEs beyond the contact law's range", beyond);
   }
-  if (found.deferred_points.value_or(0) > 0) text += fmt::format(", {} RVEs deferred", *found.deferred_points);
-  if (found.deferral_error.value_or(0) > 0) {
-    text += fmt::format(", deferred answers were off by up to {:.1e} of the pressure", *found.deferral_error);
+  if (const auto deferred = found.deferred_points.value_or(0); deferred > 0) {
+    text += fmt::format(", {} RVEs deferred", deferred);
+  }
+  if (const double error = found.deferral_error.value_or(0); error > 0) {
+    text += fmt::format(", deferred answers were off by up to {:.1e} of the pressure", error);
   }
   if (found.slowest_point && found.slowest_steps) {
     text += fmt::format(", the slowest RVE was {} with {} steps", *found.slowest_point, *found.slowest_steps);
@@ -116,6 +118,7 @@ void RunRecorder::write(const IncrementReport& increment, const std::vector<io::
   confirm();
   io::IncrementInfo row = row_of(increment);
   row.index = ++result_index_;
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): only a finished run has no writer, and it writes no increments.
   writer_->write(row, fields, snapshots, coordinates);
   ++files_;
   file_bytes_ += static_cast<double>(std::filesystem::file_size(io::increment_path(folder_, row.index)));

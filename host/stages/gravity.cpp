@@ -14,6 +14,7 @@ RunStatus settle_under_gravity(GroundRun& run, const GroundCase& soil, const Gra
   stage.path.external_force = [&](double lambda) {
     return Eigen::VectorXd(ground_weight(mesh, soil, lambda) + opening_tractions(mesh, soil, k0, lambda));
   };
+  // NOLINTNEXTLINE(performance-no-automatic-move): each call gives a copy, so that there is nothing to move.
   stage.path.prescribed_increment = [&](double, double) { return supports; };
   stage.path.reference_force = stage.path.external_force(1.0).norm();
   stage.targets = gravity_targets(soil, gravity);

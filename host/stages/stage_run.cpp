@@ -155,6 +155,7 @@ EquilibriumReport StageRun::equilibrium_of(const fem::NewtonReport& report) cons
 
 void StageRun::add_to_totals(const IncrementReport& increment) {
   StageTotals& totals = run_.recorder().stage_totals();
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): value() itself checks, and throws.
   const EquilibriumReport& found = increment.equilibrium.value();
   totals.evaluations.push_back(increment.info.evaluations);
   totals.step_limit_points.push_back(static_cast<double>(found.step_limit_points));

@@ -72,6 +72,7 @@ RunStatus lose_volume(GroundRun& run, const GroundCase& soil, const VolumeLossCa
   stage.name = "volume_loss";
   stage.kinematics = loss.geometry == LossGeometry::fixed_mesh ? fem::Kinematics::fixed_mesh
                                                                : fem::Kinematics::updated_lagrangian;
+  // NOLINTNEXTLINE(performance-no-automatic-move): each call gives a copy, so that there is nothing to move.
   stage.path.external_force = [&](double) { return weight; };
   stage.path.prescribed_increment = [&](double from, double to) { return volume_loss_constraints(mesh, from, to); };
   for (int k = 1; k <= loss.increments; ++k) stage.targets.push_back(loss.total * k / loss.increments);

@@ -40,6 +40,7 @@ struct Level {
   }
 
   [[nodiscard]] std::size_t bin(int column, int row) const {
+    // NOLINTNEXTLINE(bugprone-misplaced-widening-cast): the number of bins is near that of grains.
     return static_cast<std::size_t>((nx + 2) * (row + 1) + column + 1);
   }
 

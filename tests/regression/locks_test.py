@@ -77,7 +77,10 @@ third = start(command(CASE, two, LONG, "--resume", "--take-over"))
 wait_until(lambda: "taken over from" in (two / "run.log").read_text(), third, "a line about the take-over")
 third.send_signal(signal.SIGTERM)
 third.communicate(timeout=60)
-check(third.returncode == 130 and not lock.exists(), f"exit {third.returncode}; a run that was stopped gives its lock back")
+check(
+    third.returncode == 130 and not lock.exists(),
+    f"exit {third.returncode}; a run that was stopped gives its lock back",
+)
 
 # The folder is moved away under the run.
 fourth = start(command(CASE, two, LONG, "--resume"))
@@ -146,7 +149,9 @@ log = Path("waiting/run.log")
 wait_until(lambda: log.exists() and "waits for process" in log.read_text(), first, "a run that waits")
 stopped.send_signal(signal.SIGTERM)
 said = stopped.communicate(timeout=60)[1]
-check(stopped.returncode == 130 and "waited for process" in said, f"stopped while waiting: {stopped.returncode}: {said}")
+check(
+    stopped.returncode == 130 and "waited for process" in said, f"stopped while waiting: {stopped.returncode}: {said}"
+)
 first.kill()
 first.communicate()
 said = other.communicate(timeout=250)[0]

@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 
 from . import points
+from .resolution import percent
 from .result import Increment, Missing, Result, Snapshot
-from .style import percent, save
+from .style import save
 
 STRONG = 1.0  # a contact with at least this multiple of the mean normal force is strong (C1 of the study's pictures)
 STRONGEST = 2.0  # the same for the strongest contacts (C2)
@@ -84,7 +85,7 @@ def _draw_rve(axis: Axes, snapshot: Snapshot) -> None:
     )
     if len(snapshot["contact_i"]):
         force = normal_forces(snapshot)
-        share = force / force.mean()
+        share = force / (force.mean() or 1.0)
         start = inside[snapshot["contact_i"]]
         bars = np.stack([start, start + snapshot["branch"]], axis=1)
         order = np.argsort(share)

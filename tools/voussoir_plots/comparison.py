@@ -1,14 +1,15 @@
 """Compares several tunnels, as the study compares covers and soils."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from . import paths, points, settlements, trends, troughs, widths
+from . import output, paths, points, resolution, settlements, trends, troughs, widths
 from .reaction import curve
+from .resolution import percent
 from .result import Missing, Result
 from .style import save
 
@@ -17,6 +18,13 @@ def name(result: Result) -> str:
     """ "dense sand, C/D = 3", for legends."""
     (diameter,) = result.need("diameter")
     return f"{result.soil}, $C/D$ = {result.cover / diameter:.3g}"
+
+
+def tunnel(result: Result) -> Result:
+    """The run itself; raises Missing where it is not a tunnel, or not at its volume loss yet."""
+    result.need("diameter", "axis_depth", "surface_y")
+    _ = result.loss_increments
+    return result
 
 
 def cover_ratio(result: Result) -> float:
@@ -77,7 +85,7 @@ def widening(results: Sequence[Result]) -> trends.Trend:
     return trends.Trend(
         "Troughs widen with C/D",
         trends.verdict(holds),
-        f"inflection of the surface trough at V_l = {trends.percent(loss)}: "
+        f"inflection of the surface trough at V_l = {percent(loss)}: "
         + ", ".join(f"C/D = {c:.3g}: {i:.2f} m" for c, i in found),
     )
 
@@ -94,18 +102,23 @@ def depth_dependence(results: Sequence[Result]) -> trends.Trend:
         raise Missing("needs two covers of dense sand")
     loss, found = common_loss(chosen), []
     for result in chosen:
-        increment = result.nearest([loss])[-1]
+        near = result.nearest([loss])
+        if not near:
+            raise Missing(f"{result.folder} has no state near V_l = {percent(loss)}")
+        increment = near[-1]
         width = [
             t.width
             for (ratio, v), t in troughs.all_troughs(result).items()
             if v == increment["volume_loss"] and ratio < 1
         ]
+        if not width:
+            raise Missing("no depth above the crown was asked for (--depths)")
         found.append((cover_ratio(result), max(width) - min(width)))
     holds = all(a[1] < b[1] for a, b in itertools.pairwise(found))
     return trends.Trend(
         "K varies less with depth for shallow tunnels",
         trends.verdict(holds),
-        f"largest less least K above the crown at V_l = {trends.percent(loss)}: "
+        f"largest less least K above the crown at V_l = {percent(loss)}: "
         + ", ".join(f"C/D = {c:.3g}: {k:.2f}" for c, k in found),
     )
 
@@ -128,11 +141,13 @@ def looser_settles_more(results: Sequence[Result]) -> trends.Trend:
     }
     text = "; ".join(f"z/C = {z:g}: {1e3 * a:.0f} and {1e3 * b:.0f} mm" for z, (a, b) in both.items())
     late = {z: trends.slope(loose.volume_loss, settlements.on_axis(loose, z), loss / 2, loss) for z in (0.0, 0.5)}
+    if not all(np.isfinite(rate) and rate > 0 for rate in late.values()):
+        raise Missing(f"{loose.folder} has too few states from V_l = {percent(loss / 2)} on, or does not settle")
     similar = 0.8 < late[0.0] / late[0.5] < 1.25
     return trends.Trend(
         "Medium dense sand settles more, surface and subsurface at similar rates",
         trends.verdict(all(b > a for a, b in both.values()) and similar),
-        f"dense and medium dense at V_l = {trends.percent(loss)}: {text}; slopes of surface over subsurface in the "
+        f"dense and medium dense at V_l = {percent(loss)}: {text}; slopes of surface over subsurface in the "
         f"second half {late[0.0] / late[0.5]:.2f}",
     )
 
@@ -143,6 +158,8 @@ def gravel_reacts(results: Sequence[Result]) -> trends.Trend:
     numbers = []
     for result in (dense, gravel):
         loss, ratio, _ = curve(result)
+        if resolution.coarse_path(loss) or resolution.few_states(loss, 0, 0.01, 2):
+            raise Missing(f"the states of {result.folder} lie too far from one another")
         least = int(np.argmin(ratio))
         numbers.append((trends.slope(loss, ratio, 0, 0.01), ratio[least], loss[least]))
     (slope_a, low_a, at_a), (slope_b, low_b, at_b) = numbers
@@ -150,20 +167,24 @@ def gravel_reacts(results: Sequence[Result]) -> trends.Trend:
         "Ground reaction of gravel: steeper, lower, slower to recover than dense sand's",
         trends.verdict(slope_b < slope_a and low_b < low_a and at_b >= at_a),
         f"dense sand and gravel: slope to V_l = 1 % {slope_a:.1f} and {slope_b:.1f}; minimum {low_a:.3f} at "
-        f"{trends.percent(at_a)} and {low_b:.3f} at {trends.percent(at_b)}",
+        f"{percent(at_a)} and {low_b:.3f} at {percent(at_b)}",
     )
 
 
 def gravel_is_stronger(results: Sequence[Result]) -> trends.Trend:
     """RVEs of gravel reach a higher q/p than those of dense sand."""
     dense, gravel = pair(results, "gravel")
-    most = [
-        {p.name: float(np.nanmax(paths.stress_ratio(r, p))) for p in points.above_crown(r)} for r in (dense, gravel)
+    ratios = [
+        trends.compressed({p.name: paths.stress_ratio(r, p) for p in points.above_crown(r)}) for r in (dense, gravel)
     ]
-    text = "; ".join(f"{name}: {most[0][name]:.2f} and {most[1][name]:.2f}" for name in most[0])
+    most = [{name: float(np.nanmax(ratio)) for name, ratio in of_one.items()} for of_one in ratios]
+    common = [name for name in most[0] if name in most[1]]
+    if not common:
+        raise Missing("no point above the crown is compressed in both runs")
+    text = "; ".join(f"{name}: {most[0][name]:.2f} and {most[1][name]:.2f}" for name in common)
     return trends.Trend(
         "RVEs of gravel reach a higher q/p",
-        trends.verdict(all(most[1][n] > most[0][n] for n in most[0])),
+        trends.verdict(all(most[1][n] > most[0][n] for n in common)),
         f"largest q/p, dense sand and gravel: {text}",
     )
 
@@ -182,7 +203,7 @@ def looser_is_less_connected(results: Sequence[Result]) -> trends.Trend:
         "Z_m is lower in medium dense sand early only",
         trends.verdict(holds),
         f"mean of Aa, Ab, Ac, dense and medium dense: {early[0]:.2f} and {early[1]:.2f} at V_l = 0, {late[0]:.2f} and "
-        f"{late[1]:.2f} at {trends.percent(loss)}",
+        f"{late[1]:.2f} at {percent(loss)}",
     )
 
 
@@ -217,11 +238,12 @@ TRENDS = (
 
 
 def write(results: Sequence[Result], path: Path) -> None:
+    faults: list[Exception] = []
     lines = [
         "# Trends between tunnels",
         "",
         "; ".join(
-            f"{r.folder.resolve().name}: {name(r).replace('$', '')}, V_l to {trends.percent(r.volume_loss[-1])}"
+            f"{r.folder.resolve().name}: {name(r).replace('$', '')}, V_l to {percent(r.volume_loss[-1])}"
             for r in results
         )
         + ".",
@@ -233,6 +255,15 @@ def write(results: Sequence[Result], path: Path) -> None:
         try:
             row = judge(results)
         except Missing as reason:
-            row = trends.Trend((judge.__doc__ or "").split(":")[0].rstrip("."), trends.NO_DATA, str(reason))
+            row = trends.Trend(_statement(judge), trends.NO_DATA, str(reason))
+        except Exception as error:
+            row = trends.fault(_statement(judge), error)
+            faults.append(error)
         lines.append(f"| {row.statement} | **{row.verdict}** | {row.numbers} |")
-    path.write_text("\n".join(lines) + "\n")
+    output.write(path, "\n".join(lines) + "\n")
+    if faults:
+        raise faults[0]  # the table is written, and the fault is told
+
+
+def _statement(judge: Callable[[Sequence[Result]], trends.Trend]) -> str:
+    return (judge.__doc__ or "").split(":")[0].rstrip(".")

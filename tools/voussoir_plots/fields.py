@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from . import q8
+from .resolution import percent
 from .result import Increment, Missing, Result
-from .style import percent, save
+from .style import save
 
 
 def last_increment(result: Result) -> Increment:
@@ -30,6 +31,8 @@ def state(increment: Increment) -> str:
 def magnification(result: Result, displacement: np.ndarray) -> float:
     """1 where the deformation is visible, else a round factor that enlarges it to about 2 % of the width."""
     largest, width = np.max(np.linalg.norm(displacement, axis=1)), np.ptp(result.coordinates[:, 0])
+    if not np.isfinite(largest):
+        raise Missing("the displacement is not finite")
     if largest == 0 or largest > 0.005 * width:
         return 1
     factor = 0.02 * width / largest
@@ -68,7 +71,12 @@ def draw_displacement(result: Result, path: Path) -> None:
     displacement = increment.field("node/displacement")
     size = np.linalg.norm(displacement, axis=1)
     triangles = Triangulation(deformed[:, 0], deformed[:, 1], q8.triangles(result.connectivity))
-    filled = axis.tricontourf(triangles, size, levels=21, cmap="viridis", zorder=1)
+    # Where the displacement is the same everywhere (none, at a stage's start), it has no contours.
+    filled = (
+        axis.tricontourf(triangles, size, levels=21, cmap="viridis", zorder=1)
+        if np.ptp(size) > 1e-9 * size.max()
+        else axis.tripcolor(triangles, size, cmap="viridis", zorder=1)
+    )
     figure.colorbar(filled, ax=axis, label="displacement  $|u|$  [m]", shrink=0.85)
     _add_arrows(axis, result, deformed, displacement)
     axis.set_title(f"Displacement, {state(increment)}\n{note}", loc="left")

@@ -7,8 +7,9 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 from . import q8
+from .resolution import percent
 from .result import Increment, Missing, Result
-from .style import percent, save
+from .style import save
 
 # Field, factor, label, colour map, symmetric about the value at V_l = 0.
 FIELDS = [
@@ -21,17 +22,25 @@ FIELDS = [
 def since_start(result: Result, name: str, increment: Increment) -> np.ndarray:
     """A field at an increment; rotations are counted from V_l = 0."""
     values = increment.field(name)
-    return values - result.loss_increments[0].field(name) if name == "gauss/grain_rotation" else values
+    return values - result.start.field(name) if name == "gauss/grain_rotation" else values
 
 
 def limits(values: np.ndarray, symmetric: bool) -> tuple[float, float]:
     """Limits of the colours, without the most extreme 0.01 % of the values: one RVE must not dim the others."""
     finite = values[np.isfinite(values)]
+    if finite.size == 0:
+        raise Missing("a field has no finite value")
     low, high = np.quantile(finite, [0.0, 0.999])
     if symmetric:
         high = np.quantile(np.abs(finite), 0.999) or 1.0
         low = -high
     return (low, high) if high > low else (low, low + 1e-12)
+
+
+def largest(values: np.ndarray) -> float:
+    """The largest size of a field's finite values; NaN where it has none."""
+    finite = values[np.isfinite(values)]
+    return float(np.max(np.abs(finite))) if finite.size else np.nan
 
 
 def draw(result: Result, path: Path) -> None:
@@ -62,9 +71,7 @@ def draw(result: Result, path: Path) -> None:
             axis.add_collection(drawn)
             axis.set_aspect("equal")
             axis.grid(False)
-            axis.set_title(
-                f"$V_l$ = {percent(increment['volume_loss'])},  largest {np.nanmax(np.abs(value)):.3g}", fontsize=10
-            )
+            axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])},  largest {largest(value):.3g}", fontsize=10)
         figure.colorbar(
             drawn, ax=list(row), label=label, shrink=0.85, extend="max" if not symmetric else "both", pad=0.01
         )

@@ -6,13 +6,16 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import points
-from .result import Increment, Result, remembered
-from .style import colours, percent, save
+from .resolution import percent
+from .result import Increment, Missing, Result, remembered
+from .style import colours, save
 
 
 def above(result: Result, increment: Increment) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Height over the crown [m], sigma_xx and sigma_yy [Pa], compression positive, at the points next to the axis."""
     chosen = points.on_axis(result)
+    if len(chosen) == 0:
+        raise Missing("no element lies on the axis above the crown")
     stress = -increment.field("gauss/stress").reshape(-1, 3)[chosen]
     return points.original_points(result)[chosen, 1] - result.crown_height, stress[:, 0], stress[:, 1]
 
@@ -25,6 +28,8 @@ def beside(result: Result, increment: Increment) -> tuple[np.ndarray, np.ndarray
         "line at the height of the axis",
         lambda: points.LevelLine(result, result.crown_height - diameter / 2, 4 * diameter),
     )
+    if len(line.x) == 0:
+        raise Missing("no element lies at the height of the tunnel's axis")
     stress = -line.of(increment.field("gauss/stress"))
     return line.x, stress[:, 0], stress[:, 1]
 

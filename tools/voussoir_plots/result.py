@@ -1,8 +1,10 @@
 """A run's files as arrays. Dataset names and shapes: io/FORMAT.md."""
 
+import os
 import re
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -11,6 +13,9 @@ import h5py
 import numpy as np
 
 from .settings import Settings
+
+FORMAT_VERSION = 1  # of io/FORMAT.md
+KINDS = "figures are drawn of runs of the kinds column, tunnel and biaxial_bvp"
 
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1e3, "km": 1e6}
 
@@ -22,12 +27,40 @@ class Missing(Exception):
     """The result lacks data that a figure needs; the message names these data."""
 
 
+class Unreadable(Missing):
+    """A file of the run cannot be read; the message names it and the reason."""
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[h5py.File]:
+    """An HDF5 file. Whatever h5py, TOML and texts raise where a file is damaged becomes Unreadable."""
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except Missing:
+        raise
+    except (OSError, KeyError, RuntimeError, ValueError, TypeError) as error:
+        number = error.errno if isinstance(error, OSError) else None
+        reason = os.strerror(number) if number else f"it is damaged, or no HDF5 file ({' '.join(str(error).split())})"
+        raise Unreadable(f"{path} cannot be read: {reason}") from error
+
+
+def check_format(file: h5py.File, path: Path, wanted: str) -> None:
+    """Refuses a file that another program has written, or a later version of this one."""
+    found, version = _plain(file.attrs.get("format", "")), file.attrs.get("format_version", 0)
+    if found != wanted:
+        raise Unreadable(f'{path} is no "{wanted}" of this program')
+    if version > FORMAT_VERSION:
+        raise Unreadable(f"{path} has the format version {version}; these tools know {FORMAT_VERSION}")
+
+
 class Increment:
     """One increment's file, whose data are read when they are needed."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        with h5py.File(path, "r") as file:
+        with reading(path) as file:
+            check_format(file, path, "voussoir increment")
             self.attributes = {name: _plain(value) for name, value in file.attrs.items()}
             self.names = {
                 f"{group}/{name}"
@@ -36,22 +69,27 @@ class Increment:
                 for name in file[group]
             }
             self.snapshots = sorted(file["snapshots"]) if "snapshots" in file else []
+        self["stage"], self["volume_loss"]  # every figure needs both
 
     def __getitem__(self, attribute: str) -> Any:
+        if attribute not in self.attributes:
+            raise Missing(f"{self.path} has no attribute {attribute}")
         return self.attributes[attribute]
 
     def field(self, name: str) -> np.ndarray:
         """Values of e.g. "gauss/stress" (element, 4, components), without the last axis where there is one
         component."""
         if name not in self.names:
-            raise Missing(f"{self.path.name} has no {name}")
-        with h5py.File(self.path, "r") as file:
+            raise Missing(f"{self.path} has no {name}")
+        with reading(self.path) as file:
             values = file[name][()]
         return values[..., 0] if values.shape[-1] == 1 else values
 
     def snapshot(self, name: str) -> Snapshot:
         """Arrays of one RVE, by the names of io/FORMAT.md."""
-        with h5py.File(self.path, "r") as file:
+        if name not in self.snapshots:
+            raise Missing(f"{self.path} has no snapshot {name}")
+        with reading(self.path) as file:
             return {key: data[()] for key, data in file[f"snapshots/{name}"].items()}
 
 
@@ -63,8 +101,12 @@ class Result:
         self.settings = settings or Settings()
         # The folder's files are read, not the links of run.h5: a killed run may have one increment more than its index.
         paths = [p for p in (self.folder / "increments").glob("*.h5") if re.fullmatch(r"\d+", p.stem)]
-        self.increments = [Increment(p) for p in sorted(paths, key=lambda p: int(p.stem))]
-        with h5py.File(self.folder / "run.h5", "r") as file:
+        self.increments: list[Increment] = []
+        self.left_out: list[Missing] = []  # why an increment's file is not among them
+        index = self.folder / "run.h5"
+        _check_folder(self.folder, index)
+        with reading(index) as file:
+            check_format(file, index, "voussoir run")
             self.case = tomllib.loads(_plain(file["input"][()])) if "input" in file else {}
             self.has_mesh = "mesh" in file
             if self.has_mesh:
@@ -77,12 +119,18 @@ class Result:
                 name: {column: values[()] for column, values in table.items()}
                 for name, table in file.get("tables", {}).items()
             }
+        for path in sorted(paths, key=lambda p: int(p.stem)):
+            try:
+                self.increments.append(Increment(path))
+            except Missing as reason:
+                self.left_out.append(reason)
+        if not self.has_mesh:
+            raise Missing(f"{self.folder}: the run has no mesh: {KINDS}")
         if not self.increments:
-            raise Missing(
-                "there are no increments yet"
-                if self.has_mesh
-                else "the run has no mesh: figures are of columns, tunnels and biaxial_bvp"
-            )
+            column = self.folder / "column"
+            further = f"; its column is a run of its own, {column}" if (column / "run.h5").exists() else ""
+            first = f" ({self.left_out[0]})" if self.left_out else ""
+            raise Missing(f"{self.folder}: the run has no increments that can be drawn{first}{further}")
         self._histories: dict[str, np.ndarray] = {}
 
     def need(self, *names: str) -> list[float]:
@@ -91,7 +139,7 @@ class Result:
             raise Missing("the run has no mesh")
         for name in names:
             if name not in self.geometry:
-                raise Missing(f"run.h5:/mesh/geometry has no attribute {name}")
+                raise Missing(f"the run's ground has no {name} (run.h5:/mesh/geometry)")
         return [self.geometry[name] for name in names]
 
     def stage(self, *names: str) -> list[Increment]:
@@ -109,6 +157,14 @@ class Result:
         if found[-1]["volume_loss"] <= 0:
             raise Missing("no increment has a volume loss")
         return found
+
+    @property
+    def start(self) -> Increment:
+        """The state at V_l = 0, with which figures compare."""
+        first = self.loss_increments[0]
+        if first["volume_loss"] != 0:
+            raise Missing("the state at V_l = 0 was not written")
+        return first
 
     @cached_property
     def volume_loss(self) -> np.ndarray:
@@ -171,6 +227,20 @@ class Result:
             return "gravel"
         loose = packing.get("void_ratio", 0) > 0.22 or packing.get("consolidation_friction", 0) > 0.1
         return "medium dense sand" if loose else "dense sand"
+
+
+def _check_folder(folder: Path, index: Path) -> None:
+    try:
+        there = index.exists()
+    except OSError as error:
+        raise Unreadable(f"{folder} cannot be read: {error.strerror}") from error
+    if there:
+        return
+    if folder.is_file():
+        raise Unreadable(f"{folder} is a file, not the folder of a run")
+    if not folder.exists():
+        raise Unreadable(f"{folder} does not exist")
+    raise Unreadable(f"{folder} has no run.h5: {KINDS}")
 
 
 def remembered(result: Result, what: str, make: Callable[[], T]) -> T:

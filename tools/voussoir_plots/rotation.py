@@ -7,14 +7,18 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from . import points, tensors
-from .result import Increment, Result
-from .style import colours, percent, save
+from .resolution import percent
+from .result import Increment, Missing, Result
+from .style import colours, save
 
 
 def line(result: Result) -> np.ndarray:
     """Gauss points of the elements that the line crosses, out to 3 D."""
     (diameter,) = result.need("diameter")
-    return points.on_level(result, result.crown_height + result.settings.line * diameter, 3 * diameter)
+    chosen = points.on_level(result, result.crown_height + result.settings.line * diameter, 3 * diameter)
+    if len(chosen) == 0:
+        raise Missing(f"no element lies at {result.settings.line:g} D above the crown")
+    return chosen
 
 
 def stress_angles(result: Result, increment: Increment) -> tuple[np.ndarray, np.ndarray]:

@@ -1,5 +1,6 @@
 """One look for all figures."""
 
+import io
 from pathlib import Path
 
 import matplotlib
@@ -8,6 +9,8 @@ from matplotlib.figure import Figure
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+
+from .output import write
 
 
 def use_style() -> None:
@@ -35,11 +38,8 @@ def colours(name: str, count: int) -> np.ndarray:
     return plt.get_cmap(name)(np.linspace(0.0, 0.87, max(count, 2)))[:count]
 
 
-def percent(fraction: float) -> str:
-    """0.125 -> '12.5 %'"""
-    return f"{100 * fraction:.3g} %"
-
-
 def save(figure: Figure, path: Path) -> None:
-    figure.savefig(path)
+    picture = io.BytesIO()  # so that a full disk is met by `write` alone
+    figure.savefig(picture, format="png")
     plt.close(figure)
+    write(path, picture.getvalue())

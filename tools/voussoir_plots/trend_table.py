@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from . import paths, points, profiles, rotation, settlements, trends, troughs, widths
+from . import output, paths, points, profiles, rotation, settlements, trends, troughs, widths
 from .reaction import curve
+from .resolution import percent
 from .result import Increment, Missing, Result
 
 # Places and two stresses along a line, at an increment.
@@ -16,11 +17,12 @@ BAND = 0.05  # eps_q from which soil counts as sheared
 
 
 def write(result: Result, path: Path) -> None:
-    rows = table(result)
     (diameter,) = result.need("diameter")
+    last = result.volume_loss[-1]
+    rows, faults = table(result)
     about = (
         f"C/D = {result.cover / diameter:.3g}, D = {diameter:g} m, {result.soil}, {len(result.connectivity)} "
-        f"elements; V_l to {trends.percent(result.volume_loss[-1])} in {len(result.loss_increments) - 1} increments. "
+        f"elements; V_l to {percent(last)} in {len(result.loss_increments) - 1} increments. "
         "The trends are those of the study (tools/voussoir_plots/README.md says how each is judged)."
     )
     lines = [
@@ -33,8 +35,17 @@ def write(result: Result, path: Path) -> None:
     ]
     lines += [f"| {row.statement} | **{row.verdict}** | {row.numbers} |" for row in rows]
     lines += ["", _solution(result)]
-    lines += ["", "Points: " + "; ".join(describe(result, p) for p in points.all_points(result)) + "."]
-    path.write_text("\n".join(lines) + "\n")
+    lines += ["", f"Points: {_points(result)}."]
+    output.write(path, "\n".join(lines) + "\n")
+    if faults:
+        raise faults[0]  # the table is written, and the fault is told
+
+
+def _points(result: Result) -> str:
+    try:
+        return "; ".join(describe(result, p) for p in points.all_points(result))
+    except Missing as reason:
+        return str(reason)
 
 
 def _solution(result: Result) -> str:
@@ -59,15 +70,19 @@ def describe(result: Result, point: points.Point) -> str:
     return f"{point.name} = Gauss point {point.index} at x = {point.position[0]:.2f} m, {height:.2f} D above the crown"
 
 
-def table(result: Result) -> list[trends.Trend]:
-    """All trends of a tunnel's run. A trend whose data are missing says so."""
-    rows = []
+def table(result: Result) -> tuple[list[trends.Trend], list[Exception]]:
+    """All trends of a tunnel's run, and the faults of this tool. A trend whose data are missing says so."""
+    rows: list[trends.Trend] = []
+    faults: list[Exception] = []
     for make in (_settlements, _bands, _troughs, _stresses, _reaction, _paths, _rotation, _localisation):
         try:
             rows += make(result)
         except Missing as reason:
             rows.append(trends.Trend(make.__doc__ or "", trends.NO_DATA, str(reason)))
-    return rows
+        except Exception as error:
+            rows.append(trends.fault(make.__doc__ or "", error))
+            faults.append(error)
+    return rows, faults
 
 
 def _cover_ratio(result: Result) -> float:
@@ -128,18 +143,23 @@ def _stresses(result: Result) -> list[trends.Trend]:
     (diameter,) = result.need("diameter")
 
     def means(profile: Profile, near: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """Both stresses over the volume loss, over their values at V_l = 0."""
         rows = []
-        for increment in result.loss_increments:
+        for increment in (result.start, *result.loss_increments[1:]):
             place, xx, yy = profile(result, increment)
             inside = near(place)
+            if not inside.any():
+                raise Missing("no point lies within D of the opening")
             rows.append((xx[inside].mean(), yy[inside].mean()))
-        return np.array(rows).T
+        if not np.all(np.array(rows[0]) > 0):
+            raise Missing("the ground at the opening is not compressed before the volume loss")
+        return np.array(rows).T / np.array(rows[0])[:, None]
 
     above = means(profiles.above, lambda height: height <= diameter)
     beside = means(profiles.beside, lambda x: x <= 1.5 * diameter)
     return [
-        trends.stresses_above(result.volume_loss, *(s / s[0] for s in above)),
-        trends.stresses_beside(result.volume_loss, *(s / s[0] for s in beside)),
+        trends.stresses_above(result.volume_loss, *above),
+        trends.stresses_beside(result.volume_loss, *beside),
     ]
 
 
@@ -177,7 +197,7 @@ def _rotation(result: Result) -> list[trends.Trend]:
 
 def _localisation(result: Result) -> list[trends.Trend]:
     """Localisation of strain, rotation and void ratio"""
-    first, last = result.loss_increments[0], result.loss_increments[-1]
+    first, last = result.start, result.loss_increments[-1]
     rotation_ = (last.field("gauss/grain_rotation") - first.field("gauss/grain_rotation")).ravel()
     dilation = (last.field("gauss/void_ratio") - first.field("gauss/void_ratio")).ravel()
     return [trends.localise_together(last.field("gauss/deviatoric_strain").ravel(), rotation_, dilation)]

@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import resolution
+from .resolution import percent
+
 SEEN, NOT_SEEN, NOT_APPLICABLE = "seen", "not seen", "not applicable"
 NOT_REACHED, NO_DATA = "not reached", "no data"  # the run ends before, or lacks a field
 
@@ -26,6 +29,10 @@ class Trend:
         return self if applies else Trend(self.statement, NOT_APPLICABLE, f"{reason}; here: {self.numbers}")
 
 
+def fault(statement: str, error: Exception) -> Trend:
+    return Trend(statement, "fault of the tool", f"{type(error).__name__}: {' '.join(str(error).split())}")
+
+
 def verdict(holds: bool | np.bool) -> str:
     return SEEN if holds else NOT_SEEN
 
@@ -39,10 +46,6 @@ def at_the_end(statement: str, holds: bool | np.bool, text: str, loss: np.ndarra
     if holds and loss[-1] < 0.199:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
     return Trend(statement, verdict(holds), text)
-
-
-def percent(fraction: float) -> str:
-    return f"{100 * fraction:.3g} %"
 
 
 def numbers(values: Iterable[float], form: str = "{:.3g}") -> str:
@@ -64,6 +67,9 @@ def settlement_slows(loss: np.ndarray, settlements: Mapping[float, np.ndarray], 
     statement = "Settlement above the crown grows more slowly with V_l below 10 %"
     if loss[-1] < 0.0999:
         return not_reached(statement, 0.10, loss[-1])
+    for low, high in ((0.0, 0.02), (0.08, 0.10)):
+        if why := resolution.few_states(loss, low, high, 2):
+            return Trend(statement, NOT_REACHED, why)
     pairs = {
         z: (slope(loss, s, 0, 0.02) / diameter, slope(loss, s, 0.08, 0.10) / diameter) for z, s in settlements.items()
     }
@@ -76,6 +82,9 @@ def surface_accelerates(loss: np.ndarray, settlement: np.ndarray, diameter: floa
     statement = "Surface settlement accelerates again near V_l = 15 %"
     if loss[-1] < 0.1749:
         return not_reached(statement, 0.175, loss[-1])
+    for v in (0.10, 0.125, 0.15, 0.175):
+        if why := resolution.few_states(loss, v - 0.0125, v + 0.0125, 2):
+            return Trend(statement, NOT_REACHED, why)
     rates = {v: slope(loss, settlement, v - 0.0125, v + 0.0125) / diameter for v in (0.10, 0.125, 0.15, 0.175)}
     before, after = rates[0.10], max(rates[0.15], rates[0.175])
     text = ", ".join(f"{rate:.3f} at {percent(v)}" for v, rate in rates.items())
@@ -126,12 +135,15 @@ def gauss_fits(misfits: Mapping[float, np.ndarray], at_bounds: Mapping[float, np
 
 def troughs_narrow(loss: np.ndarray, inflection: Mapping[float, np.ndarray]) -> Trend:
     """inflection: {z/C: i [m] over the losses}."""
+    statement = "Troughs narrow with V_l"
     if loss[-1] < 0.0299:
-        return not_reached("Troughs narrow with V_l", 0.03, loss[-1])
+        return not_reached(statement, 0.03, loss[-1])
+    if why := resolution.few_states(loss, 0.0, 0.02, 1):
+        return Trend(statement, NOT_REACHED, why)
     first = int(np.argmin(np.abs(loss - 0.01)))
     text = "; ".join(f"z/C = {z:g}: {i[first]:.2f} to {i[-1]:.2f} m" for z, i in inflection.items())
     return Trend(
-        "Troughs narrow with V_l",
+        statement,
         verdict(all(i[-1] < 0.95 * i[first] for i in inflection.values())),
         f"inflection from V_l = {percent(loss[first])} to {percent(loss[-1])}: {text}",
     )
@@ -141,6 +153,8 @@ def surface_width_in_range(loss: np.ndarray, width: np.ndarray, low: float, high
     statement = f"K_s lies mostly in Mair and Taylor's range ({low:g} to {high:g})"
     if loss[-1] < 0.0499:
         return not_reached(statement, 0.05, loss[-1])
+    if why := resolution.coarse_path(np.insert(loss, 0, 0.0)):
+        return Trend(statement, NOT_REACHED, why)
     inside = (width >= low) & (width <= high)
     return Trend(
         statement,
@@ -150,26 +164,36 @@ def surface_width_in_range(loss: np.ndarray, width: np.ndarray, low: float, high
     )
 
 
+def stresses_text(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarray) -> str:
+    """Both stresses at the volume losses that the run resolves."""
+    wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if not resolution.no_states_near(loss, v)] or [loss[-1]]
+    return "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
+
+
 def stresses_above(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarray, until: float = 0.05) -> Trend:
     """Mean stresses above the crown over their values at V_l = 0."""
-    wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if v <= loss[-1] + 1e-9]
     last = min(until, loss[-1])
+    statement = f"Above the crown sigma_xx rises and sigma_yy falls (at V_l = {percent(last)})"
+    if why := resolution.no_states_near(loss, last):
+        return Trend(statement, NOT_REACHED, why)
     holds = at(loss, horizontal, last) > 1.05 and at(loss, vertical, last) < 0.95
-    text = "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
+    text = stresses_text(loss, horizontal, vertical)
     return Trend(
-        f"Above the crown sigma_xx rises and sigma_yy falls (at V_l = {percent(last)})",
+        statement,
         verdict(holds),
         f"mean over the first D above the crown, over its value at V_l = 0, xx and yy at {text}",
     )
 
 
 def stresses_beside(loss: np.ndarray, horizontal: np.ndarray, vertical: np.ndarray, until: float = 0.02) -> Trend:
-    wanted = [v for v in (0.01, 0.02, 0.05, 0.10, 0.20) if v <= loss[-1] + 1e-9]
     last = min(until, loss[-1])
+    statement = f"At the sides the opposite: sigma_xx falls and sigma_yy rises (at V_l = {percent(last)})"
+    if why := resolution.no_states_near(loss, last):
+        return Trend(statement, NOT_REACHED, why)
     holds = at(loss, horizontal, last) < 0.98 and at(loss, vertical, last) > 1.02
-    text = "; ".join(f"{percent(v)}: {at(loss, horizontal, v):.2f} and {at(loss, vertical, v):.2f}" for v in wanted)
+    text = stresses_text(loss, horizontal, vertical)
     return Trend(
-        f"At the sides the opposite: sigma_xx falls and sigma_yy rises (at V_l = {percent(last)})",
+        statement,
         verdict(holds),
         f"mean from the opening to D beside it, over its value at V_l = 0, xx and yy at {text}",
     )
@@ -183,14 +207,16 @@ def reaction(loss: np.ndarray, ratio: np.ndarray, soil: str) -> Trend:
         f"minimum {ratio[least]:.3f} at V_l = {percent(loss[least])}, {ratio[-1]:.3f} at the end "
         f"({percent(loss[-1])}): recovery {recovery:.3f} of the stress before the loss"
     )
-    if soil == "medium dense sand":
-        return at_the_end(
-            "The ground reaction curve falls monotonically to its end value (medium dense sand)",
-            recovery < 0.02,
-            text,
-            loss,
-        )
-    statement = "The ground reaction curve drops to a minimum, then recovers (dense soils)"
+    loose = soil == "medium dense sand"
+    statement = (
+        "The ground reaction curve falls monotonically to its end value (medium dense sand)"
+        if loose
+        else "The ground reaction curve drops to a minimum, then recovers (dense soils)"
+    )
+    if why := resolution.coarse_path(loss):
+        return Trend(statement, NOT_REACHED, why)
+    if loose:
+        return at_the_end(statement, recovery < 0.02, text, loss)
     if recovery < 0.02 and loss[-1] < 0.199:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; {text}")
     return Trend(statement, verdict(recovery >= 0.02), text)
@@ -201,11 +227,17 @@ def falls_linearly(loss: np.ndarray, ratios: Mapping[str, np.ndarray], until: fl
     statement = "q/p falls linearly for V_l < 2 % (unloading)"
     if loss[-1] < until - 1e-9:
         return not_reached(statement, until, loss[-1])
+    # Two states lie on a straight line whatever the ground does.
+    if why := resolution.few_states(loss, 0.0, until, 3):
+        return Trend(statement, NOT_REACHED, why)
     inside = loss <= until + 1e-9
-    found = {}
+    found, unknown = {}, []
     for name, ratio in ratios.items():
         known = inside & np.isfinite(ratio)
         x, y = loss[known], ratio[known]
+        if len(x) < 3:
+            unknown.append(name)
+            continue
         fit = np.polyval(np.polyfit(x, y, 1), x)
         spread = np.sum((y - y.mean()) ** 2)
         found[name] = (
@@ -214,9 +246,12 @@ def falls_linearly(loss: np.ndarray, ratios: Mapping[str, np.ndarray], until: fl
             loss[np.nanargmin(ratio)],
             np.nanmin(ratio),
         )
+    if not found:
+        return Trend(statement, NO_DATA, f"hardly compressed: {', '.join(unknown) or 'no point'}")
     text = "; ".join(
         f"{name}: slope {b:.1f}, R2 {r:.3f}, least {low:.2f} at {percent(v)}" for name, (r, b, v, low) in found.items()
     )
+    text += "".join(f"; {name}: hardly compressed" for name in unknown)
     holds = all(b < 0 and r > 0.95 for r, b, _, _ in found.values())
     return Trend(statement, verdict(holds), text)
 
@@ -236,7 +271,18 @@ def peak_after_unloading(loss: np.ndarray, ratio: np.ndarray) -> tuple[float, fl
     return loss[best], ratio[best], False
 
 
+def compressed(ratios: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The points whose q/p is known at any time."""
+    return {name: ratio for name, ratio in ratios.items() if np.isfinite(ratio).any()}
+
+
 def softening_order(loss: np.ndarray, ratios: Mapping[str, np.ndarray]) -> Trend:
+    statement = "Aa softens first, then Ab peaks, Ac last"
+    ratios = compressed(ratios)
+    if "Aa" not in ratios:
+        return Trend(statement, NO_DATA, "the point Aa does not exist, or it is hardly compressed")
+    if why := resolution.coarse_path(loss):
+        return Trend(statement, NOT_REACHED, why)
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
     text = "; ".join(
         f"{name}: {value:.2f} at V_l = {percent(v)}, {'falls after it' if fell else 'no softening until the end'}"
@@ -244,24 +290,30 @@ def softening_order(loss: np.ndarray, ratios: Mapping[str, np.ndarray]) -> Trend
     )
     order = [peaks[name][0] for name in ("Aa", "Ab", "Ac") if name in peaks]
     holds = all(a <= b for a, b in itertools.pairwise(order)) and peaks["Aa"][2]
-    statement, text = "Aa softens first, then Ab peaks, Ac last", f"peak of q/p after unloading: {text}"
+    text = f"peak of q/p after unloading: {text}"
     if loss[-1] < 0.199 and not all(fell for _, _, fell in peaks.values()) and (holds or not peaks["Aa"][2]):
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")
     return Trend(statement, verdict(holds), text)
 
 
 def no_softening(loss: np.ndarray, ratios: Mapping[str, np.ndarray], soil: str) -> Trend:
+    statement = f"No softening at Aa, Ab, Ac ({soil})"
+    ratios = compressed(ratios)
+    if not ratios:
+        return Trend(statement, NO_DATA, "no point is compressed")
+    if why := resolution.coarse_path(loss):
+        return Trend(statement, NOT_REACHED, why)
     peaks = {name: peak_after_unloading(loss, ratio) for name, ratio in ratios.items()}
     text = "; ".join(
         f"{name}: end over peak {ratio[np.isfinite(ratio)][-1] / peaks[name][1]:.2f}" for name, ratio in ratios.items()
     )
-    return at_the_end(
-        f"No softening at Aa, Ab, Ac ({soil})", not any(fell for _, _, fell in peaks.values()), text, loss
-    )
+    return at_the_end(statement, not any(fell for _, _, fell in peaks.values()), text, loss)
 
 
 def contracts_until(loss: np.ndarray, volumetric: np.ndarray, wanted: float = 0.15) -> Trend:
     statement = f"Ac contracts until V_l = {percent(wanted)}"
+    if why := resolution.coarse_path(loss):
+        return Trend(statement, NOT_REACHED, why)
     most = int(np.argmax(volumetric))
     text = (
         f"largest contraction {percent(volumetric[most])} at V_l = {percent(loss[most])}, {percent(volumetric[-1])} at "
@@ -273,9 +325,12 @@ def contracts_until(loss: np.ndarray, volumetric: np.ndarray, wanted: float = 0.
 
 
 def ends_contracted(loss: np.ndarray, volumetrics: Mapping[str, np.ndarray]) -> Trend:
+    statement = "Ab and Ac contract (medium dense sand)"
+    if not volumetrics:
+        return Trend(statement, NO_DATA, "neither point exists")
     text = "; ".join(f"{name}: {percent(v[-1])}" for name, v in volumetrics.items())
     return at_the_end(
-        "Ab and Ac contract (medium dense sand)",
+        statement,
         all(v[-1] > 0 for v in volumetrics.values()),
         f"volumetric strain at the end, contraction positive: {text}",
         loss,

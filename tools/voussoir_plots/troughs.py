@@ -1,6 +1,7 @@
 """Settlement troughs at the surface and below it, with their modified Gauss curves."""
 
 import csv
+import io
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -9,8 +10,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from . import q8, trough_fit
+from .output import write
+from .resolution import percent
 from .result import Increment, Missing, Result, remembered
-from .style import colours, percent, save
+from .style import colours, save
 
 COLUMNS = (
     "z_over_C",
@@ -148,8 +151,9 @@ def _add(axis: Axes, trough: Trough, colour: np.ndarray) -> None:
 
 
 def _write_table(path: Path, troughs: Iterable[Trough]) -> None:
-    with path.open("w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS)
-        for trough in troughs:
-            writer.writerow([f"{value:.6g}" for value in trough.row()])
+    table = io.StringIO()
+    writer = csv.writer(table)
+    writer.writerow(COLUMNS)
+    for trough in troughs:
+        writer.writerow([f"{value:.6g}" for value in trough.row()])
+    write(path, table.getvalue())

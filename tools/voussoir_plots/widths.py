@@ -6,8 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from . import troughs
+from .resolution import percent
 from .result import Result
-from .style import colours, percent, save
+from .style import colours, save
 
 
 def surface_width(result: Result) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -22,16 +22,16 @@ enum class Look {
 };
 
 /// One choice of all that is known when compiling.
-/// @tparam threads_ of a team: a multiple of 32; @tparam pair_slots_, grain_slots_ of a thread; @tparam blocks_ that a
+/// @tparam Threads of a team: a multiple of 32; @tparam PairSlots, GrainSlots of a thread; @tparam Blocks that a
 /// multiprocessor shall hold, which bounds the registers
-template <class Real_, int threads_, int pair_slots_, int grain_slots_, int blocks_, Gather gather_,
-          bool branch_ = false, bool rolling_ = true, Look look_ = Look::none>
+template <class Value, int Threads, int PairSlots, int GrainSlots, int Blocks, Gather GatherBy, bool Branch = false,
+          bool Rolling = true, Look LookBy = Look::none>
 struct Instance {
-  using Real = Real_;
-  static constexpr int threads = threads_, pair_slots = pair_slots_, grain_slots = grain_slots_, blocks = blocks_;
-  static constexpr Gather gather = gather_;
-  static constexpr bool branch = branch_, rolling = rolling_;
-  static constexpr Look look = look_;
+  using Real = Value;
+  static constexpr int threads = Threads, pair_slots = PairSlots, grain_slots = GrainSlots, blocks = Blocks;
+  static constexpr Gather gather = GatherBy;
+  static constexpr bool branch = Branch, rolling = Rolling;
+  static constexpr Look look = LookBy;
 };
 
 /// What a look finds.

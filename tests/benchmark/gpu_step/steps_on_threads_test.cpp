@@ -30,7 +30,7 @@ Rve scattered_grains(int side) {
           .history = {}};
   for (int k = 0; k < side * side; ++k) {
     const auto n = static_cast<unsigned>(k);
-    const double column = k % side, line = (k - k % side) / side;
+    const int column = k % side, line = k / side;
     const double u = (column + 0.1 * scattered(3 * n)) / side, v = (line + 0.1 * scattered(3 * n + 1)) / side + 1.0;
     rve.position.push_back(rve.cell.xx * u + rve.cell.xy * v);
     rve.position.push_back(rve.cell.yx * u + rve.cell.yy * v);
@@ -170,6 +170,7 @@ void expect_bits_of_one_thread(int rves, int steps, int look_every, double rest,
     EXPECT_TRUE(same_list(store, v, list, grains)) << "histories";
     if (Choice::look == Look::none) continue;
     EXPECT_GT(want.report.force_squared, 0.0);
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): the bits shall be equal, not only the values.
     EXPECT_EQ(std::memcmp(&report[static_cast<std::size_t>(v)], &want.report, sizeof(LookReport)), 0);
   }
 }

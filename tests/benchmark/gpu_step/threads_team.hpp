@@ -77,7 +77,7 @@ class ThreadsTeam {
     block_.slot[static_cast<std::size_t>(rank_)] = static_cast<double>(own);
     barrier.arrive_and_wait();
     std::array<T, 32> all;
-    const auto first = static_cast<std::size_t>(rank_ / 32 * 32);
+    const auto first = static_cast<std::size_t>(rank_) / 32 * 32;
     for (std::size_t k = 0; k < 32; ++k) all[k] = static_cast<T>(block_.slot[first + k]);
     barrier.arrive_and_wait();
     return all;

@@ -33,8 +33,8 @@ struct Block {
 };
 
 /// The residual of an increment, formed apart from the solver.
-double independent_residual(const Block& block, const IncrementLoad& load, const Increment& increment) {
-  Eigen::VectorXd r = load.external_force - internal_force(block.mesh, increment.points, increment.stress).force;
+double independent_residual(const Mesh& mesh, const IncrementLoad& load, const Increment& increment) {
+  Eigen::VectorXd r = load.external_force - internal_force(mesh, increment.points, increment.stress).force;
   for (const auto& [dof, value] : load.prescribed) r[dof] = 0;
   return r.norm();
 }
@@ -51,7 +51,7 @@ TEST(Newton, AndersonConvergesOnATangentThatIsTooStiff) {
     NewtonReport& report = reports[depth > 0];
     report = solver.solve_increment(block.state, load, increment);
     ASSERT_EQ(report.status, NewtonStatus::converged) << "depth " << depth;
-    EXPECT_NEAR(independent_residual(block, load, increment), report.residual, 1e-9 * report.reaction_norm);
+    EXPECT_NEAR(independent_residual(block.mesh, load, increment), report.residual, 1e-9 * report.reaction_norm);
     EXPECT_LE(report.residual, 1e-6 * report.reaction_norm);
     EXPECT_EQ(report.evaluations, block.material.evaluations);
     EXPECT_EQ(report.work, block.material.size() * static_cast<std::size_t>(report.evaluations));
@@ -63,6 +63,29 @@ TEST(Newton, AndersonConvergesOnATangentThatIsTooStiff) {
   EXPECT_GT(reports[0].iterations, 2 * reports[1].iterations);
   RecordProperty("plain", reports[0].iterations);
   RecordProperty("anderson", reports[1].iterations);
+}
+
+/// The ratio of a node counts the load at this node and no other one: one node of an element is free and loaded.
+TEST(Newton, TheNodalRatioCountsTheNodesOwnLoad) {
+  const Mesh mesh = make_rectangle(1, 1, 1, 1);
+  SofteningMaterial material(static_cast<std::size_t>(mesh.n_points()), {.strain_scale = 1e-3});
+  const MeshState state = begin_stage(mesh, mesh.coordinates, material);
+  NewtonSolver solver(mesh, material, Kinematics::fixed_mesh, {.max_iterations = 1});
+  constexpr int loaded = 2;
+  IncrementLoad load{Eigen::VectorXd::Zero(mesh.n_dofs()), {}, 0, 0};
+  for (int node = 0; node < mesh.n_nodes(); ++node) {
+    for (int axis = 0; axis < 2; ++axis) {
+      if (node != loaded) constrain(load.prescribed, {node}, axis, 0);
+    }
+  }
+  load.external_force.segment<2>(2 * loaded) = Eigen::Vector2d(1e4, 2e4);
+  Increment increment;
+  const NewtonReport report = solver.solve_increment(state, load, increment);
+  ASSERT_EQ(report.status, NewtonStatus::max_iterations) << "a residual is left";
+  const double scale = internal_force(mesh, increment.points, increment.stress).magnitude[loaded] +
+                       std::hypot(1e4, 2e4);
+  EXPECT_NEAR(report.largest_nodal_ratio, independent_residual(mesh, load, increment) / scale, 1e-12);
+  EXPECT_GT(report.largest_nodal_ratio, 0.01) << "the test shows nothing";
 }
 
 TEST(Newton, SofteningConvergesWithAnderson) {
@@ -86,7 +109,7 @@ TEST(Newton, NeverSaysConvergedWhereItIsNot) {
     Increment increment;
     const IncrementLoad load = block.load(0.02, 0.03);
     const NewtonReport report = solver.solve_increment(block.state, load, increment);
-    const double residual = independent_residual(block, load, increment);
+    const double residual = independent_residual(block.mesh, load, increment);
     const bool small = residual <= 1e-3 * increment.reactions.norm();
     const bool still = report.correction_history.back() <= 1e-2 * increment.displacement.norm();
     EXPECT_EQ(report.status, small && still ? NewtonStatus::converged : NewtonStatus::max_iterations);
@@ -302,6 +325,8 @@ TEST(Newton, ImpossibleOptionsAreRefused) {
   expect_throws<std::invalid_argument>([&] { make({.tolerance = 0}); }, "tolerances must be positive");
   expect_throws<std::invalid_argument>([&] { make({.max_iterations = 0}); }, "max_iterations and refactor_every");
   expect_throws<std::invalid_argument>([&] { make({.anderson_depth = -1}); }, "Anderson's depth");
+  expect_throws<std::invalid_argument>([&] { make({.length_tolerance = -1e-12}); }, "length tolerance must not");
+  EXPECT_NO_THROW(make({.length_tolerance = 0})) << "0 leaves the displacement tolerance alone in force";
   SofteningMaterial other(7, {});
   expect_throws<std::invalid_argument>([&] { NewtonSolver(block.mesh, other, Kinematics::fixed_mesh, {}); },
                                        "the material has 7 points");

@@ -268,6 +268,22 @@ TEST_F(DeferringPool, ACheckpointKeepsWhatIsDeferred) {
   expect_throws<std::runtime_error>([&] { plain.set_state(straight.state()); }, "of another packing");
 }
 
+/// An RVE that has lost trust is not deferred after a resumption either. With a bound far below the scatter of grains
+/// at rest each check fails.
+TEST_F(DeferringPool, ACheckpointKeepsTheTrust) {
+  constexpr double bound = 1e-10;
+  const Gradients small(2, gradient(0, 0, 0, -2e-4 * bound));
+  RvePool straight(rve_, {engine(bound)}, 2), resumed(rve_, {engine(bound)}, 2);
+  int deferred = 0;
+  fem::BatchReport last = step(straight, small);
+  for (; last.deferred == 2 && deferred < 100; ++deferred) last = step(straight, small);
+  ASSERT_GT(deferred, 0) << "nothing was deferred: the test shows nothing";
+  ASSERT_GT(last.deferral_error, 4 * bound) << "no trust was lost: the test shows nothing";
+  resumed.set_state(straight.state());
+  EXPECT_EQ(step(straight, small).deferred, step(resumed, small).deferred);
+  EXPECT_EQ(resumed.state(), straight.state());
+}
+
 /// An RVE that runs at one iterate and is deferred at none after; a failed increment leaves no trace.
 TEST_F(DeferringPool, StartsAnewFromTheCommittedState) {
   RvePool pool(rve_, {engine(1e-2)}, 2), other(rve_, {engine(1e-2)}, 2);
