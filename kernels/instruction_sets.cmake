@@ -122,7 +122,9 @@ endif()
 # `--force-group-allocation` makes ordinary functions of inline ones, which could not become local otherwise. The code gets
 # a section of its own, by which tests/regression/instruction_sets_test.py tells it from all other code. The constructors of
 # static objects (Kokkos' headers have some) must not run before main on a processor without the instructions; they are
-# gathered between two symbols, and the set runs them when it is chosen (advance_lanes.cpp).
+# gathered between two symbols, and the set runs them when it is chosen (advance_lanes.cpp). Functions that the set would
+# run at the program's end (only sanitizers have some) are not run. The addresses 0 make the
+# symbols' values those within their section.
 function(voussoir_add_wide_set set)
   add_library(voussoir_lanes_${set} OBJECT ${ARGN})
   set_target_properties(voussoir_lanes_${set} PROPERTIES INTERPROCEDURAL_OPTIMIZATION OFF)
@@ -136,8 +138,9 @@ function(voussoir_add_wide_set set)
   set(script "${CMAKE_CURRENT_BINARY_DIR}/lanes_${set}.ld")
   file(CONFIGURE OUTPUT "${script}" CONTENT
 "SECTIONS {
-  lanes_@set@ : { *(.text .text.*) }
-  lanes_@set@_starts : { voussoir_starts = .; *(.init_array .init_array.*); voussoir_starts_end = .; }
+  lanes_@set@ 0 : { *(.text .text.*) }
+  lanes_@set@_starts 0 : { voussoir_starts = .; *(.init_array .init_array.*); voussoir_starts_end = .; }
+  lanes_@set@_ends 0 : { *(.fini_array .fini_array.*) }
 }
 " @ONLY)
   add_custom_command(OUTPUT "${object}"
