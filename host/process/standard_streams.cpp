@@ -8,8 +8,6 @@
 #include <cstdio>
 #include <system_error>
 
-#include "host/process/exit_code.hpp"
-
 namespace voussoir::host {
 
 void prepare_standard_streams() {
@@ -22,15 +20,15 @@ void prepare_standard_streams() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-int print_answer(const std::string& answer) {
+bool print_answer(const std::string& answer) {
   errno = 0;
-  if (std::fwrite(answer.data(), 1, answer.size(), stdout) == answer.size() && std::fflush(stdout) == 0) return exit_ok;
+  if (std::fwrite(answer.data(), 1, answer.size(), stdout) == answer.size() && std::fflush(stdout) == 0) return true;
   const int reason = errno;
   if (reason != EPIPE) {
     std::fprintf(stderr, "voussoir: standard output: cannot be written: %s\n",
                  std::generic_category().message(reason).c_str());
   }
-  return exit_machine;
+  return false;
 }
 
 std::optional<std::string> lost_output() {

@@ -11,9 +11,9 @@ namespace voussoir::host {
 /// file beyond its limit (SIGXFSZ) become failures of the call that writes.
 void prepare_standard_streams();
 
-/// Writes the answer of a command whose product is its output. Returns exit_ok, or exit_machine after one line on
+/// Writes the answer of a command whose product is its output. Returns false where that fails, after one line on
 /// standard error; no line is written where the reader of a pipe has gone, as `head` does.
-[[nodiscard]] int print_answer(const std::string& answer);
+[[nodiscard]] bool print_answer(const std::string& answer);
 
 /// For a command whose product is its files: the reason for which standard output has failed, if it has. Whatever is
 /// written to it from then on is dropped in silence.

@@ -95,7 +95,7 @@ int run_command_line(int argc, char** argv) {
     } catch (const CLI::Success& help) {
       std::ostringstream text;
       app.exit(help, text, text);
-      return print_answer(text.str());
+      return print_answer(text.str()) ? exit_ok : exit_machine;
     } catch (const CLI::ParseError& error) {
       if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
         return complain(exit_input, "unknown command " + std::string(argv[1]) + " (see --help)");

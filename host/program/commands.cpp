@@ -63,7 +63,7 @@ int command_check(const std::filesystem::path& case_file, const std::vector<std:
   check_snapshot_points(input.output, size, input.name);
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";
-  return print_answer(answer);
+  return print_answer(answer) ? exit_ok : exit_machine;
 }
 
 int command_info(const std::filesystem::path& result_file) {
@@ -80,7 +80,7 @@ int command_info(const std::filesystem::path& result_file) {
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(error.what());
   }
-  return print_answer(answer);
+  return print_answer(answer) ? exit_ok : exit_machine;
 }
 
 }  // namespace voussoir::host
