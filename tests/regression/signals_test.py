@@ -1,4 +1,4 @@
-"""Pipes, closed descriptors, full devices and signals: nothing kills a run by accident, and nothing is lost in silence."""
+"""Pipes, closed descriptors, full devices and signals: nothing kills a run by accident, or is lost in silence."""
 
 import os
 import resource
