@@ -45,7 +45,7 @@ int sync_folder(const std::filesystem::path& folder) {
 /// Tries to lock a whole file without waiting; returns 0 or the reason of the failure. The lock belongs to the open
 /// file and not to the process, so that two writers of one process differ too, and it goes with its owner.
 int lock(int file) {
-  struct flock whole {};
+  struct flock whole{};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;
   return ::fcntl(file, F_OFD_SETLK, &whole) == 0 ? 0 : errno;
@@ -83,7 +83,7 @@ bool AtomicFile::open_as(const std::filesystem::path& name) {
     fail(reason);
   }
   const int locked = lock(file);
-  struct stat status {};
+  struct stat status{};
   // Between the two calls a cleaner may have taken the file for a leftover.
   const bool lost = (locked != 0 && !is_missing_feature(locked)) || ::fstat(file, &status) != 0 || status.st_nlink == 0;
   if (lost) {

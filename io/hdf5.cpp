@@ -107,7 +107,8 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
 
 void Hdf5File::publish() {
   checked(H5Fflush(file_, H5F_SCOPE_GLOBAL), "finish the file");
-  std::vector<std::byte> image(static_cast<std::size_t>(checked(H5Fget_file_image(file_, nullptr, 0), "finish the file")));
+  std::vector<std::byte> image(
+      static_cast<std::size_t>(checked(H5Fget_file_image(file_, nullptr, 0), "finish the file")));
   checked(H5Fget_file_image(file_, image.data(), image.size()), "finish the file");
   checked(H5Fclose(std::exchange(file_, -1)), "finish the file");
   AtomicFile target(path_);

@@ -18,13 +18,13 @@ extern "C" void voussoir_on_signal(int signal) {
 }  // namespace
 
 void catch_interrupts() {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = voussoir_on_signal;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   // mpirun passes SIGUSR1 on and does not end the ranks itself.
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaction(signal, &action, nullptr);
-  struct sigaction hangup {};
+  struct sigaction hangup{};
   const bool under_nohup = sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler == SIG_IGN;
   if (!under_nohup) sigaction(SIGHUP, &action, nullptr);
 }

@@ -79,7 +79,7 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   ::sigprocmask(SIG_SETMASK, &signals, nullptr);
   if (::getppid() != sweep) ::_exit(exit_interrupted);  // the sweep died before the child could ask to be told
-  const int nowhere = ::open("/dev/null", O_WRONLY);     // the same lines are in run.log
+  const int nowhere = ::open("/dev/null", O_WRONLY);    // the same lines are in run.log
   if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
   ::execv(arguments.front(), arguments.data());
   constexpr std::string_view complaint = "voussoir: the program of a run cannot be started\n";

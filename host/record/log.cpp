@@ -16,8 +16,8 @@ namespace {
 /// One line about a failure of spdlog, whose own sentence ends in the file's name, a colon and the reason.
 std::runtime_error failure_of(const std::string& file, const std::string& said) {
   const std::size_t colon = said.rfind(": ");
-  return std::runtime_error(file + ": cannot be written: " +
-                            (colon == std::string::npos ? said : said.substr(colon + 2)));
+  return std::runtime_error(file +
+                            ": cannot be written: " + (colon == std::string::npos ? said : said.substr(colon + 2)));
 }
 
 }  // namespace

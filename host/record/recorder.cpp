@@ -61,9 +61,10 @@ RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& proven
   writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
   const auto present = static_cast<int>(writer_->increments().size());
   if (present < result_index_) {
-    log_.warning(fmt::format("{} of the {} result files that the run had written have vanished from {}; it goes on "
-                             "without them",
-                             result_index_ - present, result_index_, (folder_ / "increments").string()));
+    log_.warning(
+        fmt::format("{} of the {} result files that the run had written have vanished from {}; it goes on "
+                    "without them",
+                    result_index_ - present, result_index_, (folder_ / "increments").string()));
   }
 }
 

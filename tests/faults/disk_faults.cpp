@@ -4,7 +4,8 @@
 //   DISK_FAULTS_PATTERN  a pattern of fnmatch for absolute paths; "*" stands for slashes too, "@(A|B)" for either
 //   DISK_FAULTS_AT       number of the call that fails, from 1; 0 or nothing: no call fails
 //   DISK_FAULTS_ERRNO    the reason, as a number
-//   DISK_FAULTS_MODE     "once", or "on": every later call fails too, except those that remove files, as on a full disk;
+//   DISK_FAULTS_MODE     "once", or "on": every later call fails too, except those that remove files, as on a full
+//   disk;
 //                        a write of several bytes first writes a half of them
 //   DISK_FAULTS_COUNT    a file that gets the number of calls and a list of them when the program ends
 #include <dlfcn.h>
@@ -43,10 +44,9 @@ const char* variable(const char* name) {
 
 /// Never destroyed, because the program writes until its very end.
 const Settings& settings() {
-  static const Settings* const all = new Settings{variable("DISK_FAULTS_PATTERN"), variable("DISK_FAULTS_COUNT"),
-                                                  std::atol(variable("DISK_FAULTS_AT")),
-                                                  std::atoi(variable("DISK_FAULTS_ERRNO")),
-                                                  std::string(variable("DISK_FAULTS_MODE")) == "on"};
+  static const Settings* const all = new Settings{
+      variable("DISK_FAULTS_PATTERN"), variable("DISK_FAULTS_COUNT"), std::atol(variable("DISK_FAULTS_AT")),
+      std::atoi(variable("DISK_FAULTS_ERRNO")), std::string(variable("DISK_FAULTS_MODE")) == "on"};
   return *all;
 }
 

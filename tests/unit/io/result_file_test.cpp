@@ -211,7 +211,8 @@ TEST_F(ResultFileTest, AFileThatIsNotPublishedLeavesTheFormerOneAndNothingElse) 
   EXPECT_EQ(fs::file_size(folder_ / "k0.csv"), 6U);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
   fs::create_directories(folder_ / "taken");
-  expect_throws<std::runtime_error>([&] { write_text(folder_ / "taken", "text"); }, "cannot be written: Is a directory");
+  expect_throws<std::runtime_error>([&] { write_text(folder_ / "taken", "text"); },
+                                    "cannot be written: Is a directory");
   expect_throws<std::runtime_error>([&] { write_text(folder_ / "missing/k0.csv", "text"); },
                                     "k0.csv: cannot be written: No such file or directory");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
