@@ -114,7 +114,7 @@ Outcome command_info(const std::filesystem::path& result_file) {
   } catch (const std::runtime_error& error) {
     throw io::InputError("info", "", error.what());
   }
-  return print_answer(answer);
+  return print_answer(answer) ? exit_ok : exit_machine;
 }
 
 Outcome command_info_cpu() {

@@ -11,6 +11,16 @@
 #include "host/ranks/session.hpp"
 
 namespace voussoir::host {
+namespace {
+
+/// One line about a failure of spdlog, whose own sentence ends in the file's name, a colon and the reason.
+std::runtime_error failure_of(const std::string& file, const std::string& said) {
+  const std::size_t colon = said.rfind(": ");
+  return std::runtime_error(file +
+                            ": cannot be written: " + (colon == std::string::npos ? said : said.substr(colon + 2)));
+}
+
+}  // namespace
 
 RunLog::RunLog(const std::filesystem::path& file, bool append)
     : terminal_(isatty(STDOUT_FILENO) != 0 && rank_count() == 1) {
@@ -22,12 +32,10 @@ RunLog::RunLog(const std::filesystem::path& file, bool append)
     auto sink = std::make_shared<spdlog::sinks::basic_file_sink_st>(file.string(), !append);
     file_ = std::make_shared<spdlog::logger>("run", std::move(sink));
   } catch (const spdlog::spdlog_ex& error) {
-    throw std::runtime_error(file.string() + ": cannot be opened: " + error.what());
+    throw failure_of(file.string(), error.what());
   }
   // spdlog would print its own lines on stderr, once a second, and go on without a log.
-  file_->set_error_handler([name = file.string()](const std::string& reason) {
-    throw std::runtime_error(name + ": cannot be written: " + reason);
-  });
+  file_->set_error_handler([name = file.string()](const std::string& said) { throw failure_of(name, said); });
   file_->set_pattern("%Y-%m-%dT%H:%M:%SZ %L %v", spdlog::pattern_time_type::utc);
   file_->flush_on(spdlog::level::info);
 }

@@ -70,7 +70,15 @@ RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& proven
   totals_ = totals_from(checkpoint);
   if (std::filesystem::exists(folder_ / "run.h5")) provenance_ = io::read_provenance(folder_ / "run.h5");
   for (const std::string& line : resume_differences(provenance_, provenance)) log_.line(line);
-  if (!finished_) writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
+  if (finished_) return;
+  writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
+  const auto present = static_cast<int>(writer_->increments().size());
+  if (present < result_index_) {
+    log_.warning(
+        fmt::format("{} of the {} result files that the run had written have vanished from {}; it goes on "
+                    "without them",
+                    result_index_ - present, result_index_, (folder_ / "increments").string()));
+  }
 }
 
 void RunRecorder::confirm() {

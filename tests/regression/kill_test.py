@@ -3,10 +3,9 @@ resumed, it gives the bits of one that was left alone. Elastic increments take m
 file being written."""
 
 import random
-import subprocess
 import time
 
-from program import check, check_same, command, fresh, run
+from program import SMALL_TUNNEL, check, check_same, command, ended_or_killed, fresh, run
 
 ELASTIC = [
     "volume_loss.increments=15",
@@ -15,20 +14,7 @@ ELASTIC = [
     "ground.mesh_size_far=8 m",
     "output.checkpoint_every=4",
 ]
-GRAINS = [
-    "packing.grains=100",
-    "packing.candidates=1",
-    "ground.mesh_size_opening=2.5 m",
-    "ground.mesh_size_far=8 m",
-    "column.elements=4",
-    "gravity.ratio=2",
-    "gravity.uniform_step=0.3",
-    "volume_loss.total=0.5 %",
-    "volume_loss.increments=2",
-    "newton.tolerance=0.01",
-    "output.rves=[3, 4]",
-    "packing.folder=packings",
-]
+GRAINS = [*SMALL_TUNNEL, "volume_loss.increments=2"]
 
 seed = random.randrange(10**6)
 chance = random.Random(seed)
@@ -45,19 +31,8 @@ def kill_at_random(case, settings, kills):
     killed = fresh(f"killed_{case}")
     hits = 0
     for _ in range(kills):
-        process = subprocess.Popen(
-            command(case, killed, settings, "--threads", "2", "--resume"),
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        try:
-            said = process.communicate(timeout=chance.uniform(0.05, 0.4) * whole)[1]
-            check(process.returncode == 0, f"seed {seed}: a resumed run ended with {process.returncode}: {said}")
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
-            hits += 1
+        words = command(case, killed, settings, "--threads", "2", "--resume")
+        hits += ended_or_killed(words, chance.uniform(0.05, 0.4) * whole)
     run(command(case, killed, settings, "--threads", "1", "--resume"))
     check_same(straight, killed)
     check(hits > 0, f"seed {seed}: {case} was never killed")

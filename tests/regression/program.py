@@ -17,6 +17,20 @@ ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 PROGRAM = os.environ["VOUSSOIR"]
 # All that two equal runs may differ in.
 NOT_COMPARED = {"wall_s", "peak_memory", "time_grains", "time_assembly", "time_solve", "time_output"}
+# A tunnel of grains that takes seconds, in cases/tunnel_quick; the number of its loss increments is left to the test.
+SMALL_TUNNEL = [
+    "packing.grains=100",
+    "packing.candidates=1",
+    "packing.folder=packings",
+    "ground.mesh_size_opening=2.5 m",
+    "ground.mesh_size_far=8 m",
+    "column.elements=4",
+    "gravity.ratio=2",
+    "gravity.uniform_step=0.3",
+    "volume_loss.total=0.5 %",
+    "newton.tolerance=0.01",
+    "output.rves=[3, 4]",
+]
 
 
 def command(case, folder, settings=(), *further):
@@ -46,6 +60,20 @@ def start_and_signal(words, wait_for, signal):
         time.sleep(0.002)
     process.send_signal(signal)
     return process.wait(timeout=120)
+
+
+def ended_or_killed(words, seconds):
+    """Starts a run and kills it after so many seconds with -9; True where it was killed. A run that comes to its end
+    before must end well."""
+    process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    try:
+        said = process.communicate(timeout=seconds)[1]
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        return True
+    check(process.returncode == 0, f"{' '.join(words)}: ended with {process.returncode}: {said}")
+    return False
 
 
 def draw_and_read_back(folder, figures):

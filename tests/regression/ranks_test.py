@@ -9,7 +9,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from program import PROGRAM, check, check_same, command, fresh, run
+from program import PROGRAM, SMALL_TUNNEL, check, check_same, command, fresh, run
 
 version = subprocess.run([PROGRAM, "--version"], check=False, capture_output=True, text=True).stdout
 if "no MPI" in version or shutil.which("mpirun") is None:
@@ -18,20 +18,7 @@ if "no MPI" in version or shutil.which("mpirun") is None:
 
 # The container of a test has few cores and knows no user but root.
 os.environ |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-SETTINGS = [
-    "packing.grains=100",
-    "packing.candidates=1",
-    "packing.folder=packings",
-    "ground.mesh_size_opening=2.5 m",
-    "ground.mesh_size_far=8 m",
-    "column.elements=4",
-    "gravity.ratio=2",
-    "gravity.uniform_step=0.3",
-    "volume_loss.total=0.5 %",
-    "volume_loss.increments=1",
-    "newton.tolerance=0.01",
-    "output.rves=[3, 4]",
-]
+SETTINGS = [*SMALL_TUNNEL, "volume_loss.increments=1"]
 
 
 def ranks(n, folder, *further, settings=SETTINGS):

@@ -1,9 +1,12 @@
 /// Results: round trip, kills at any moment, resume, and fields that do not fit.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
+#include <iterator>
+#include <span>
 #include <sstream>
 
 #include "io/atomic_file.hpp"
@@ -181,17 +184,38 @@ TEST_F(ResultFileTest, KilledWriterLeavesTheLastIncrementReadable) {
 
 TEST_F(ResultFileTest, TemporaryFilesOfOtherLivingProcessesStay) {
   fs::create_directories(folder_);
-  const fs::path dead = folder_ / "packing.h5.2147483646.tmp";  // beyond the largest process number of Linux
-  const fs::path living = folder_ / "packing.h5.1.tmp";         // process 1 always lives
-  const fs::path own = temporary_name(folder_ / "packing.h5");  // nothing of this process is half written now
-  for (const fs::path& file : {dead, living, own}) {
-    std::ofstream(file) << "half a file";
-  }
-  EXPECT_NE(own, living);
+  // A dead writer may have had the number of this process, in another container for example.
+  const std::string own = fmt::format("packing.h5.{}", getpid());
+  std::ofstream(folder_ / (own + ".tmp")) << "half a file of a dead writer";
+  AtomicFile first(folder_ / "packing.h5");
+  AtomicFile second(folder_ / "packing.h5");
   remove_leftovers(folder_);
-  EXPECT_FALSE(fs::exists(dead));
-  EXPECT_TRUE(fs::exists(living) || getpid() == 1);
-  EXPECT_FALSE(fs::exists(own));
+  EXPECT_FALSE(fs::exists(folder_ / (own + ".tmp")));
+  EXPECT_TRUE(fs::exists(folder_ / (own + "-1.tmp")));
+  EXPECT_TRUE(fs::exists(folder_ / (own + "-2.tmp")));
+  for (AtomicFile* file : {&first, &second}) {
+    file->write(std::as_bytes(std::span("whole", 5)));
+    file->publish();
+  }
+  EXPECT_EQ(fs::file_size(folder_ / "packing.h5"), 5U);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(ResultFileTest, AFileThatIsNotPublishedLeavesTheFormerOneAndNothingElse) {
+  fs::create_directories(folder_);
+  write_text(folder_ / "k0.csv", "former");
+  {
+    AtomicFile file(folder_ / "k0.csv");
+    file.write(std::vector<std::byte>(1'000'000));  // more than the buffer
+  }
+  EXPECT_EQ(fs::file_size(folder_ / "k0.csv"), 6U);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+  fs::create_directories(folder_ / "taken");
+  expect_throws<std::runtime_error>([&] { write_text(folder_ / "taken", "text"); },
+                                    "cannot be written: Is a directory");
+  expect_throws<std::runtime_error>([&] { write_text(folder_ / "missing/k0.csv", "text"); },
+                                    "k0.csv: cannot be written: No such file or directory");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
 }
 
 TEST_F(ResultFileTest, ResumeDropsWhatCameAfterTheCheckpoint) {
