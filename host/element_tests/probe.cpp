@@ -167,7 +167,8 @@ std::vector<PackedRve> packings_to_probe(const SoilCase& soil, PackingCase recip
 Outcome run_probe(const Case& input, const RunOptions& options) {
   std::printf("%s\n", engine_note(input.engine).c_str());
   std::vector<PackedRve> rves = packings_to_probe(input.soil, input.packing, input.probe.pressure);
-  std::filesystem::create_directories(options.folder);
+  if (!options.lock) std::filesystem::create_directories(options.folder);
+  confirm_lock(options, print);
   Tables tables;
   Outcome outcome = Outcome::done;
   const auto note_failure = [&outcome](const std::string& failure) {

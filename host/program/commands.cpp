@@ -35,6 +35,7 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
                     RunOptions options) {
   const Case input = load_case(case_file, overrides);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
+  expect_unlocked(options.folder);  // more to the point than what check_folder would say of a run that has just begun
   check_folder(options, input.fingerprint);
   if (!input.output.rves.empty()) check_snapshot_points(input.output, case_size(input), input.name);
   const KokkosSession kokkos(options.threads);

@@ -61,9 +61,9 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
       throw table.error("name", "must consist of letters, digits and _ . - and must not begin with a dot");
     if (!names.insert(run.name).second) throw table.error("name", "is the name of two runs");
     run.folder = options.folder / run.name;
+    expect_unlocked(run.folder);
     check_folder({.folder = run.folder, .resume = options.resume, .command = {}},
                  load_case(sweep.base, run.overrides).fingerprint);
-    expect_unlocked(run.folder);
     sweep.runs.push_back(std::move(run));
   }
   if (sweep.runs.empty()) throw text.root().error("run", "there is no [[run]] in this sweep");

@@ -25,6 +25,9 @@ struct StageSettings {
 /// Makes the folder of a run and opens its log there.
 [[nodiscard]] RunLog open_log(const RunOptions& options);
 
+/// Tells the log how many threads there are and what is to be said about the lock of the folder.
+void tell_circumstances(const RunOptions& options, RunLog& log);
+
 class GroundRun {
  public:
   /// Starts the record in options.folder, or goes on with the record there. `mesh` and `log` must outlive the run.

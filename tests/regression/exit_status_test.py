@@ -13,8 +13,12 @@ from program import PROGRAM, ROOT, check, command, fresh, run
 
 # One table in the program, the same in README.md.
 README = (ROOT / "README.md").read_text()
-documented = {int(code): text.replace("`", "") for code, text in re.findall(r"^\| (\d+) \| (.*) \|$", README, re.M)}
-shown = {int(code): text for code, text in re.findall(r"^  (\d+) +(\S.*)$", run([PROGRAM, "--help"]).stdout, re.M)}
+documented = {
+    int(code): text.replace("`", "") for code, text in re.findall(r"^\| (\d+) \| (.*) \|$", README, re.MULTILINE)
+}
+shown = {
+    int(code): text for code, text in re.findall(r"^  (\d+) +(\S.*)$", run([PROGRAM, "--help"]).stdout, re.MULTILINE)
+}
 check(documented == shown, f"README.md says {documented}, --help says {shown}")
 check(sorted(shown) == [0, 2, 3, 4, 130], f"the codes are {sorted(shown)}")
 check("first of these that holds" in run([PROGRAM, "--help"]).stdout, "--help has no rule for sweeps")
@@ -77,9 +81,9 @@ deadline = time.monotonic() + 200
 while not (out / "killed/increments/0001.h5").exists():
     check(sweep.poll() is None and time.monotonic() < deadline, "the last run of the sweep did not begin")
     time.sleep(0.005)
-holder = re.search(r"^process (\d+)$", (out / "killed/run.lock").read_text(), re.M)
-os.kill(int(holder.group(1)), signal.SIGKILL)
-check(sweep.wait(timeout=60) == 4, f"the sweep ended with {sweep.returncode}")
+(holder,) = re.findall(r"^process (\d+)$", (out / "killed/run.lock").read_text(), re.MULTILINE)
+os.kill(int(holder), signal.SIGKILL)
+check(sweep.wait(timeout=120) == 4, f"the sweep ended with {sweep.returncode}")
 with (out / "summary.csv").open(newline="") as opened:
     ends = {row["name"]: (row["status"], row["exit_code"]) for row in csv.DictReader(opened)}
 expected = {

@@ -28,7 +28,8 @@ class CpuQuotaTest : public testing::Test {
   fs::path root_ = fs::current_path() / "fake_root";
 };
 
-constexpr const char* unified_mount = "30 23 0:26 / /sys/fs/cgroup rw,nosuid shared:4 - cgroup2 cgroup2 rw,nsdelegate\n";
+constexpr const char*
+    unified_mount = "30 23 0:26 / /sys/fs/cgroup rw,nosuid shared:4 - cgroup2 cgroup2 rw,nsdelegate\n";
 constexpr const char* cpu_mount = "33 32 0:30 / /sys/fs/cgroup/cpu,cpuacct rw - cgroup cgroup rw,cpu,cpuacct\n";
 
 TEST_F(CpuQuotaTest, NoFilesSetNoLimit) { EXPECT_FALSE(cpu_quota(root_)); }

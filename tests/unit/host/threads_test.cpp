@@ -42,9 +42,7 @@ TEST(ThreadsTest, TheOptionComesBeforeTheVariables) {
   EXPECT_TRUE(says(choose(0, {8, 8, {}}, {{"OMP_NUM_THREADS", "3"}}), "OMP_NUM_THREADS=3"));
 }
 
-TEST(ThreadsTest, TheFirstOfAListCounts) {
-  EXPECT_EQ(choose(0, {8, 8, {}}, {{"OMP_NUM_THREADS", " 4 , 2"}}).count, 4);
-}
+TEST(ThreadsTest, TheFirstOfAListCounts) { EXPECT_EQ(choose(0, {8, 8, {}}, {{"OMP_NUM_THREADS", " 4 , 2"}}).count, 4); }
 
 TEST(ThreadsTest, VariablesThatAreNoNumberAreNotUsedAndNamed) {
   for (const char* text : {"", "abc", "0", "-3", "4x", "4,", "4,abc", ",4", "1e3", "0x10"}) {
@@ -78,8 +76,8 @@ TEST(ThreadsTest, OversubscriptionIsObeyedAndSaid) {
 }
 
 TEST(ThreadsTest, OtherVariablesAreNamedInPrintableForm) {
-  const ThreadChoice choice =
-      choose(0, {2, 2, {}}, {{"OMP_PROC_BIND", "true\n"}, {"OMP_DYNAMIC", "true"}, {"OMP_PLACES", std::string(99, 'p')}});
+  const ThreadChoice choice = choose(
+      0, {2, 2, {}}, {{"OMP_PROC_BIND", "true\n"}, {"OMP_DYNAMIC", "true"}, {"OMP_PLACES", std::string(99, 'p')}});
   EXPECT_TRUE(says(choice, "OMP_PROC_BIND=true?")) << choice.note;
   EXPECT_TRUE(says(choice, "OMP_DYNAMIC=true is not obeyed")) << choice.note;
   EXPECT_TRUE(says(choice, std::string(40, 'p') + "...")) << choice.note;
