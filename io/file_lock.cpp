@@ -104,6 +104,15 @@ std::optional<std::string> text_at(const fs::path& path) {
   return text;
 }
 
+fs::path folder_of(const fs::path& path) { return path.parent_path().empty() ? fs::path(".") : path.parent_path(); }
+
+/// What identifies a folder whatever its name; zeros where there is none.
+std::pair<std::uint64_t, std::uint64_t> identity_of(const fs::path& folder) {
+  struct stat there{};
+  if (::stat(folder.c_str(), &there) != 0) return {};
+  return {there.st_dev, there.st_ino};
+}
+
 /// True where the open file is the one that has the name `path` now.
 bool is_at(int file, const fs::path& path) {
   struct stat ours{};
@@ -197,10 +206,10 @@ bool FileLock::make_anew() {
 }
 
 FileLock::Standing FileLock::confirm() {
+  if (identity_of(folder_of(path_)) != folder_) return Standing::gone;
   const std::optional<std::string> now = text_at(path_);
   if (now == text_) return Standing::ours;
   if (now) return Standing::taken_over;
-  if (!fs::is_directory(path_.parent_path().empty() ? fs::path(".") : path_.parent_path())) return Standing::gone;
   return make_anew() ? Standing::made_anew : Standing::taken_over;
 }
 
@@ -226,6 +235,7 @@ LockAttempt LockAttempt::make(const fs::path& path, bool take_over, FileLock::As
     if (holder && !lock->by_kernel_ && runs_here(*holder)) return {nullptr, Refusal::running, holder};
     if (holder && !holder->on_this_host() && !take_over) return {nullptr, Refusal::other_host, holder};
     lock->text_ = file_text(this_process());
+    lock->folder_ = identity_of(folder_of(path));
     write_text(lock->file_, path, lock->text_);
     if (!lock->by_kernel_ && !stays(path, lock->text_))
       return {nullptr, Refusal::running, holder_in(text_at(path).value_or(""))};

@@ -3,10 +3,12 @@
 /// says which process on which host holds it. The kernel gives the lock back when the process ends, however it ends, so
 /// that a file which a killed process left blocks nobody on this host.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace voussoir::io {
 
@@ -45,7 +47,7 @@ class FileLock {
     ours,        ///< it is as it was
     made_anew,   ///< it was gone and has been made anew
     taken_over,  ///< it names another process now
-    gone         ///< its folder is gone too
+    gone         ///< its folder is gone, or another one has its name
   };
   [[nodiscard]] Standing confirm();
 
@@ -59,6 +61,7 @@ class FileLock {
   std::filesystem::path path_;
   Ask ask_;
   int file_ = -1;
+  std::pair<std::uint64_t, std::uint64_t> folder_ = {};  ///< device and number of the folder in which it was made
   bool by_kernel_ = true;
   std::string text_;  ///< what this process wrote into the file
 };

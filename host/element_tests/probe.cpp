@@ -219,8 +219,9 @@ Outcome run_probe(const Case& input, const RunOptions& options) {
   std::printf("%s\n", engine_note(input.engine).c_str());
   say_remarks(input);
   std::vector<PackedRve> rves = packings_to_probe(input.soil, input.packing, input.probe.pressure);
-  std::filesystem::create_directories(options.folder);
+  if (!options.lock) std::filesystem::create_directories(options.folder);
   io::remove_leftovers(options.folder);
+  confirm_lock(options, print);
   Tables tables;
   Outcome outcome = Outcome::done;
   const auto note_failure = [&outcome](const std::string& failure) {

@@ -53,6 +53,7 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
   const Case& input = accepted.input;
   const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
+  expect_unlocked(options.folder);  // more to the point than what check_folder would say of a run that has just begun
   check_folder(options, input.fingerprint, input.resolved);
   const KokkosSession kokkos(options.threads);
   start_ranks(options.threads, input.engine.isa);

@@ -65,8 +65,8 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
     if (!names.insert(run.name).second) throw table.error("name", "is the name of two runs");
     run.folder = options.folder / run.name;
     const Case input = accept_case(sweep.base, run.overrides).input;
-    check_folder({.folder = run.folder, .resume = options.resume, .command = {}}, input.fingerprint, input.resolved);
     expect_unlocked(run.folder);
+    check_folder({.folder = run.folder, .resume = options.resume, .command = {}}, input.fingerprint, input.resolved);
     sweep.runs.push_back(std::move(run));
   }
   if (sweep.runs.empty()) throw text.root().error("run", "there is no [[run]] in this sweep");

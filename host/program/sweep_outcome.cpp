@@ -1,10 +1,10 @@
 #include "host/program/sweep_outcome.hpp"
 
 #include <signal.h>
-#include <string.h>
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace voussoir::host {
 

@@ -151,6 +151,7 @@ RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
   const BiaxialBvpCase& test = input.biaxial_bvp;
   const fem::Mesh mesh = fem::make_rectangle(test.width, test.height, test.columns, test.rows);
   RunLog log = open_log(options);
+  tell_circumstances(options, log);
   GroundRun run(options, provenance_of(options, input, "biaxial_bvp"), mesh, specimen_data(mesh, test),
                 stage_settings(input), log);
   if (run.finished()) {

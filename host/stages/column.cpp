@@ -119,6 +119,7 @@ ColumnResult measure_k0(const ColumnSetup& setup, const RunOptions& options, con
 
 RunStatus run_column(const Case& input, const RunOptions& options) {
   RunLog log = open_log(options);
+  tell_circumstances(options, log);
   log_engine(input, log);
   say_remarks(input, log);
   const ColumnResult column = measure_k0(column_setup(input), options, provenance_of(options, input, "column"), log);

@@ -17,11 +17,15 @@ StageSettings stage_settings(const Case& input) {
 }
 
 RunLog open_log(const RunOptions& options) {
-  std::filesystem::create_directories(options.folder);
-  RunLog log(options.folder / "run.log", options.resume);
+  // A folder that was moved since it was locked must not be made once more.
+  if (!options.lock) std::filesystem::create_directories(options.folder);
+  confirm_lock(options, [](const std::string&) {});  // the log does not exist yet
+  return {options.folder / "run.log", options.resume};
+}
+
+void tell_circumstances(const RunOptions& options, RunLog& log) {
   if (options.lock && !options.lock->note().empty()) log.warning(options.lock->note());
   if (!options.threads_note.empty()) log.line(options.threads_note);
-  return log;
 }
 
 void log_engine(const Case& input, RunLog& log) {

@@ -27,6 +27,8 @@ struct StageSettings {
 
 /// Writes the preset of the engine and the set of its lanes to the log, where the case has grains.
 void log_engine(const Case& input, RunLog& log);
+/// Tells the log how many threads there are and what is to be said about the lock of the folder.
+void tell_circumstances(const RunOptions& options, RunLog& log);
 
 class GroundRun {
  public:

@@ -62,6 +62,7 @@ fem::Mesh tunnel_mesh(const GroundCase& soil) {
 RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   const fem::Mesh mesh = tunnel_mesh(input.ground);
   RunLog log = open_log(options);
+  tell_circumstances(options, log);
   GroundRun run(options, provenance_of(options, input, "tunnel"), mesh, mesh_data(mesh, input.ground),
                 stage_settings(input), log);
   if (run.finished()) {

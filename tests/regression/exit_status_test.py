@@ -81,9 +81,9 @@ deadline = time.monotonic() + 200
 while not (out / "killed/increments/0001.h5").exists():
     check(sweep.poll() is None and time.monotonic() < deadline, "the last run of the sweep did not begin")
     time.sleep(0.005)
-holder = re.search(r"^process (\d+)$", (out / "killed/run.lock").read_text(), re.MULTILINE)
-os.kill(int(holder.group(1)), signal.SIGKILL)
-check(sweep.wait(timeout=60) == 4, f"the sweep ended with {sweep.returncode}")
+(holder,) = re.findall(r"^process (\d+)$", (out / "killed/run.lock").read_text(), re.MULTILINE)
+os.kill(int(holder), signal.SIGKILL)
+check(sweep.wait(timeout=120) == 4, f"the sweep ended with {sweep.returncode}")
 with (out / "summary.csv").open(newline="") as opened:
     ends = {row["name"]: (row["status"], row["exit_code"]) for row in csv.DictReader(opened)}
 expected = {

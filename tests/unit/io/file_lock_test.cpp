@@ -143,6 +143,9 @@ TEST_F(FileLockTest, AFolderThatIsGoneIsSaid) {
   const LockAttempt attempt = LockAttempt::make(file_, false);
   fs::rename(folder_, folder_.string() + "_moved");
   EXPECT_EQ(attempt.lock->confirm(), Standing::gone);
+  fs::create_directories(folder_);  // another folder of the same name is not the one that is held
+  EXPECT_EQ(attempt.lock->confirm(), Standing::gone);
+  EXPECT_FALSE(fs::exists(file_));
   EXPECT_EQ(LockAttempt::make(fs::path(folder_.string() + "_moved") / "a.lock", false).refusal, Refusal::running);
   fs::remove_all(folder_.string() + "_moved");
 }
