@@ -126,7 +126,7 @@ said = run(words("check", "second.toml", settings)).stdout
 check("soil.modulus: this case has 3 GPa, the packing in" in said and "was made with 1 GPa" in said, said)
 one_line(
     run(words("check", "second.toml", [*settings, "soil.thickness=20 cm"]), code=2),
-    "soil.thickness: this case has 20 cm",
+    "soil.thickness: this case has 0.2 m",
     "was made with 0.1 m",
 )
 
