@@ -16,12 +16,15 @@ namespace {
 
 using io::Dimension;
 
+/// An angle in degrees to 12 digits: most angles have no exact value in radians.
+std::string degrees(double angle) { return fmt::format("{:.12g} deg", angle * 180.0 / std::numbers::pi); }
+
 /// Adds the numbers that [soil] and its classes both have.
 template <class Material>
 void add_material(const Material& m, const std::string& table, KeyTexts& to) {
   to.emplace_back(table + ".modulus", io::format_quantity(m.modulus, Dimension::pressure));
   to.emplace_back(table + ".stiffness_ratio", io::format_quantity(m.stiffness_ratio, Dimension::none));
-  to.emplace_back(table + ".friction", io::format_quantity(m.friction_angle, Dimension::angle));
+  to.emplace_back(table + ".friction", degrees(m.friction_angle));
   to.emplace_back(table + ".rolling_stiffness", io::format_quantity(m.rolling_stiffness, Dimension::none));
   to.emplace_back(table + ".rolling_limit", io::format_quantity(m.rolling_limit, Dimension::none));
 }
@@ -108,7 +111,9 @@ KeyTexts soil_of_numbers(const std::map<std::string, double>& numbers) {
   for (const Name& name : names) {
     const auto found = numbers.find(name.theirs);
     if (found != numbers.end())
-      keys.emplace_back(name.key, io::format_quantity(found->second * name.factor, name.dimension));
+      keys.emplace_back(name.key, name.dimension == Dimension::angle
+                                      ? degrees(found->second * name.factor)
+                                      : io::format_quantity(found->second * name.factor, name.dimension));
   }
   return keys;
 }

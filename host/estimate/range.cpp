@@ -74,16 +74,15 @@ Foretold foretell(const Case& input) {
       "mean stress {:.5g} kPa {}: kappa = {:.3g}, mean overlap about {:.2g} % of r_i + r_j (the contact "
       "law is good for {:.0f} %, docs/range.md)",
       load.pressure * 1e-3, load.where, kappa, 100 * overlap, 100 * most_mean_overlap);
-  if (overlap > most_mean_overlap) {
-    out.warnings.push_back(
-        fmt::format("the mean stress of {:.5g} kPa {} is beyond what the contact law is good for: kappa "
-                    "= {:.3g}, mean overlap about {:.2g} % of r_i + r_j, where {:.0f} % are allowed; "
-                    "strengths from there are invalid",
-                    load.pressure * 1e-3, load.where, kappa, 100 * overlap, 100 * most_mean_overlap));
-  }
   constexpr double loose_ratio = 0.19;  // void ratio of a dense packing of coarse sand at little pressure
   const double pressed = foretold_overlap(stiffness_number(grains, load.packing));
   const double left = foretold_void_ratio(loose_ratio, pressed), least = least_void_ratio(grains);
+  if (overlap > most_mean_overlap || left < least) {
+    out.warnings.push_back(fmt::format("the mean stress of {:.5g} kPa {} is beyond what the contact law is good for: kappa "
+                                       "= {:.3g}, mean overlap about {:.2g} % of r_i + r_j; strengths from there are "
+                                       "invalid (docs/range.md)",
+                                       load.pressure * 1e-3, load.where, kappa, 100 * overlap));
+  }
   if (left < least) {
     out.warnings.push_back(
         fmt::format("the grains will interpenetrate: at a mean stress of {:.5g} kPa a void ratio of {:.2g} "

@@ -51,7 +51,7 @@ check(len(list(Path("packings").glob("*.h5"))) == kept, "an interpenetrating pac
 # Tests of strength: valid at 800 kPa, invalid at 2 MPa, where the packing itself is still within the range.
 done = run(words("run", "test.toml", folder="test"))
 check(done.stdout.count("  valid\n") == 1 and "converged" not in done.stdout, f"800 kPa: {done.stdout}")
-done = run(words("run", "test.toml", 'biaxial.pressures=["2 MPa"]', folder="beyond"), code=3)
+done = run(words("run", "test.toml", 'biaxial.pressures=["2 MPa"]', "biaxial.strain=14 %", folder="beyond"), code=3)
 check(
     "beyond the contact law's range" in done.stdout and "are invalid because" in done.stderr, done.stdout + done.stderr
 )

@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 import h5py
+import numpy as np
 from program import PROGRAM, check, fresh, run
 
 FIRST = """kind = "probe"
@@ -68,7 +69,7 @@ for name in ("stress_xx_Pa", "stress_yy_Pa"):
 check(all(row["status"] == "converged" for row in rows), f"a path that rests is called {rows}")
 OTHER_SOILS = {
     "soil.modulus=300 MPa": ("soil.modulus: this case has 300 MPa", "was made with 3 GPa"),
-    "soil.thickness=50 mm": ("soil.thickness: this case has 5 cm", "was made with 10 cm"),
+    "soil.thickness=50 mm": ("soil.thickness: this case has 5 cm", "was made with 0.1 m"),
     "soil.friction=30 deg": ("soil.friction: this case has 30 deg", "was made with 25 deg"),
     "soil.rolling_limit=0": ("soil.rolling_limit: this case has 0", "was made with 0.6"),
     "soil.damping=0.2": ("soil.damping: this case has 0.2", "was made with 0.3"),
@@ -107,7 +108,7 @@ with h5py.File(old, "r+") as opened:
 one_line(run(words("check", "second.toml"), code=2), "packing.file", "does not say which soil")
 shutil.copy("kept.h5", old)
 with h5py.File(old, "r+") as opened:
-    opened["history"].attrs["names"] = "tangential_force,twist"
+    opened["history"].attrs["names"] = np.bytes_("tangential_force,twist")
 one_line(run(words("check", "second.toml"), code=2), "law: this program's contact law keeps", "twist")
 shutil.copy("kept.h5", old)
 
@@ -125,8 +126,8 @@ said = run(words("check", "second.toml", settings)).stdout
 check("soil.modulus: this case has 3 GPa, the packing in" in said and "was made with 1 GPa" in said, said)
 one_line(
     run(words("check", "second.toml", [*settings, "soil.thickness=20 cm"]), code=2),
-    "soil.thickness: this case has 20 cm",
-    "was made with 10 cm",
+    "soil.thickness: this case has 0.2 m",
+    "was made with 0.1 m",
 )
 
 # Resume names the key and both values, and says what may differ.
