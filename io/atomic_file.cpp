@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "io/file_lock.hpp"
+
 namespace voussoir::io {
 
 namespace {
@@ -40,15 +42,6 @@ int sync_folder(const std::filesystem::path& folder) {
   const int reason = sync(file);
   ::close(file);
   return reason;
-}
-
-/// Tries to lock a whole file without waiting; returns 0 or the reason of the failure. The lock belongs to the open
-/// file and not to the process, so that two writers of one process differ too, and it goes with its owner.
-int lock(int file) {
-  struct flock whole{};
-  whole.l_type = F_WRLCK;
-  whole.l_whence = SEEK_SET;
-  return ::fcntl(file, F_OFD_SETLK, &whole) == 0 ? 0 : errno;
 }
 
 }  // namespace
@@ -82,7 +75,7 @@ bool AtomicFile::open_as(const std::filesystem::path& name) {
     }
     fail(reason);
   }
-  const int locked = lock(file);
+  const int locked = FileLock::ask_kernel(file) == 0 ? 0 : errno;
   struct stat status{};
   // Between the two calls a cleaner may have taken the file for a leftover.
   const bool lost = (locked != 0 && !is_missing_feature(locked)) || ::fstat(file, &status) != 0 || status.st_nlink == 0;
@@ -162,7 +155,7 @@ void remove_leftovers(const std::filesystem::path& folder) {
     if (file < 0) {
       continue;  // its writer has renamed it by now, or it belongs to another user
     }
-    if (lock(file) == 0) {
+    if (FileLock::ask_kernel(file) == 0) {
       ::unlink(path.c_str());
     }
     ::close(file);

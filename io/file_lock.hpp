@@ -30,7 +30,8 @@ struct LockHolder {
 
 class FileLock {
  public:
-  /// Asks the kernel for the lock of an open file. It returns 0, or -1 with the reason in errno.
+  /// Asks the kernel for the lock of an open file and does not wait. It returns 0, or -1 with the reason in errno. The
+  /// lock belongs to the open file and not to the process, so that two writers of one process differ, too.
   using Ask = int (*)(int file);
   static int ask_kernel(int file);
 

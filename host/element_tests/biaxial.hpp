@@ -51,7 +51,7 @@ struct BiaxialCurve {
 };
 
 /// Tests all packings in one batch. Each is compressed along y from its own state while its own pressure is held on x;
-/// it must already be at rest under this pressure. Throws std::invalid_argument where the rate asks for more than 1e9
+/// it must already be at rest under this pressure. Throws io::InputError where the rate asks for more than 1e9
 /// steps.
 /// @param strain axial, logarithmic [-]; @param inertial_number sets the rate; @param samples points of a curve
 /// @param microstructure the quantities of the contact network that each point gets; they do not change the curve

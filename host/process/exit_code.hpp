@@ -20,16 +20,15 @@ inline constexpr std::array<ExitStatus, 5> exit_table{{
     {Outcome::done, 0, "finished", "the run is done, or there was nothing left to do"},
     {Outcome::wrong_input, 2, "wrong input",
      "the input has a fault, or another process holds the folder; one line names file, line and key, and no results "
-     "are "
-     "written"},
+     "are written"},
     {Outcome::no_equilibrium, 3, "no equilibrium",
      "the computation found no equilibrium: of an increment, of a packing, or a test that is not valid; the log says "
      "what, where and when, and the last good checkpoint is kept"},
     {Outcome::machine_failure, 4, "machine failure",
-     "the machine failed (disk, memory, a file that vanished), or the program has an error within; the last good "
-     "checkpoint is kept"},
+     "the machine failed (disk, memory, a file that vanished), or the program has an error within; one line names file "
+     "and reason, and --resume goes on when it is mended"},
     {Outcome::interrupted, 130, "interrupted",
-     "Ctrl-C, SIGTERM or SIGUSR1 stopped the run after an increment; --resume goes on"},
+     "Ctrl-C, SIGTERM, SIGHUP or SIGUSR1 stopped the run after an increment; --resume goes on"},
 }};
 
 [[nodiscard]] constexpr const ExitStatus& status_of(Outcome outcome) {

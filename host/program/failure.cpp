@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "io/input_error.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -35,6 +36,8 @@ Failure failure_of(const std::exception_ptr& exception) {
   try {
     std::rethrow_exception(exception);
   } catch (const io::InputError& error) {
+    return {Outcome::wrong_input, error.what()};
+  } catch (const kernels::UnusableLanes& error) {
     return {Outcome::wrong_input, error.what()};
   } catch (const NoEquilibrium& error) {
     return {Outcome::no_equilibrium, error.what()};

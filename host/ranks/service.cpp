@@ -66,7 +66,7 @@ class Service {
     std::string lanes, fault;
     try {
       lanes = kernels::name_of(kernels::choose_lanes(kernels::find_instruction_set(read.text())).lanes->isa);
-    } catch (const std::invalid_argument& error) {  // wrong input here is wrong input of the run
+    } catch (const kernels::UnusableLanes& error) {  // wrong input here is wrong input of the run
       fault = error.what();
     }
     reply.list(host_name());

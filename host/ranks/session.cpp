@@ -55,7 +55,7 @@ void start_ranks(int threads, InstructionSetChoice isa) {
     found.push_back(std::move(info));
   }
   if (!refusal.empty()) throw std::runtime_error(refusal);
-  if (!fault.empty()) throw std::invalid_argument(fault);
+  if (!fault.empty()) throw kernels::UnusableLanes(fault);
   ranks() = std::move(found);
 }
 

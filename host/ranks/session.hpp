@@ -42,7 +42,7 @@ class RankSession {
 /// instruction sets, because all sets give the same bits.
 /// @param threads number of threads of each rank; with 0 each rank chooses its own
 /// @param isa set of the lanes of each rank; without a value each rank chooses its own
-/// @throws std::invalid_argument where a rank cannot take the set
+/// @throws kernels::UnusableLanes where a rank cannot take the set
 void start_ranks(int threads, InstructionSetChoice isa);
 
 /// `n` clones of `rve`, spread over the ranks in proportion to their threads. They answer bit for bit as one pool on

@@ -44,16 +44,16 @@ LaneChoice best() {
 LaneChoice choose(std::optional<InstructionSet> wish) {
   if (wish) {
     const std::string fault = why_not(*wish);
-    if (!fault.empty()) throw std::invalid_argument(std::string("engine.isa: ") + name_of(*wish) + " " + fault);
+    if (!fault.empty()) throw UnusableLanes(std::string("engine.isa: ") + name_of(*wish) + " " + fault);
     return {find_lanes(*wish), "engine.isa asks for it"};
   }
   const char* const value = std::getenv(variable);
   if (value == nullptr || *value == '\0' || std::string(value) == "auto") return best();
   const std::string where = std::string("the environment variable ") + variable;
   const auto asked = find_instruction_set(value);
-  if (!asked) throw std::invalid_argument(where + " is \"" + value + "\"; it can be auto, scalar, v3 or v4");
+  if (!asked) throw UnusableLanes(where + " is \"" + value + "\"; it can be auto, scalar, v3 or v4");
   const std::string fault = why_not(*asked);
-  if (!fault.empty()) throw std::invalid_argument(where + ": " + value + " " + fault);
+  if (!fault.empty()) throw UnusableLanes(where + ": " + value + " " + fault);
   return {find_lanes(*asked), where + " asks for it"};
 }
 

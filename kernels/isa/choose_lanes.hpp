@@ -5,11 +5,18 @@
 
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 
 #include "kernels/isa/lane_set.hpp"
 
 namespace voussoir::kernels {
+
+/// The user asks for lanes that the program or the processor lacks.
+class UnusableLanes : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Sets in the program, in ascending order.
 [[nodiscard]] std::span<const LaneSet* const> compiled_lanes();
@@ -27,7 +34,7 @@ struct LaneChoice {
 
 /// Chooses for the whole process; without a wish as if the process had just started. Not to be called while RVEs
 /// advance.
-/// @throws std::invalid_argument where the wish, or VOUSSOIR_ISA, names a set that cannot be taken
+/// @throws UnusableLanes where the wish, or VOUSSOIR_ISA, names a set that cannot be taken
 const LaneChoice& choose_lanes(std::optional<InstructionSet> wish);
 
 /// The choice that was made, or the one without a wish, which the first call makes.
