@@ -1,5 +1,6 @@
 """RVEs spread over processes: the bits of one process, and one end for all of them, whatever happens to one."""
 
+import errno
 import os
 import re
 import resource
@@ -99,6 +100,23 @@ pages = int(Path(f"/proc/{pid}/statm").read_text().split()[0])
 resource.prlimit(pid, resource.RLIMIT_AS, (pages * resource.getpagesize(),) * 2)
 said = end(process, 4)
 check(len(said) == 1 and "rank 1 on " in said[0] and "memory" in said[0], f"no memory on a rank: {said}")
+
+# A disk that fails on the first rank ends all of them.
+full = fresh("full")
+faults = {"PATTERN": f"{full.resolve()}*", "AT": 120, "ERRNO": errno.ENOSPC, "MODE": "on"}
+environment = os.environ | {f"DISK_FAULTS_{name}": str(value) for name, value in faults.items()}
+process = subprocess.Popen(
+    ["mpirun", "-x", f"LD_PRELOAD={os.environ['VOUSSOIR_DISK_FAULTS']}", *ranks(2, full)[1:]],
+    stdout=subprocess.DEVNULL,
+    stderr=subprocess.PIPE,
+    text=True,
+    env=environment,
+)
+said = end(process, 4)
+check(len(said) == 1 and "No space left" in said[0], f"a full disk on the first rank: {said}")
+run(ranks(2, full, "--resume"))
+check_same(straight, full)
+
 killed = fresh("killed")
 process = start(ranks(2, killed), killed / "increments/0003.h5")
 os.kill(worker(process), signal.SIGKILL)
