@@ -99,3 +99,18 @@ check(ends == expected, f"the summary says {ends}")
 text = Path("sweep.toml").read_text()
 Path("numbers.toml").write_text(text[: text.index('[[run]]\nname = "disk"')])
 run([PROGRAM, "sweep", "numbers.toml", "-o", str(fresh("swept_numbers")), "-j", "2"], code=3)
+
+
+# No memory, at whatever place: 4 and one line, or the run has enough. Below that the program cannot even be loaded.
+codes = []
+few = ["volume_loss.increments=1", "ground.mesh_size_opening=1.5 m", "gravity.ratio=9"]
+for megabytes in range(100, 300, 16):
+    words = command("tunnel_elastic", fresh("out_memory"), few, "--threads", "2")
+    limited = ["sh", "-c", f'ulimit -v {megabytes * 1024}; exec "$@"', "sh", *words]
+    done = subprocess.run(limited, check=False, capture_output=True, text=True, timeout=120)
+    codes.append(done.returncode)
+    check(done.returncode in (0, 4, 127), f"{megabytes} MB: exit {done.returncode}: {done.stderr}")
+    check(done.returncode != 4 or done.stderr.count("\n") <= 2, f"{megabytes} MB: {done.stderr}")
+    if done.returncode == 0:
+        break
+check(4 in codes and codes[-1] == 0, f"runs with little memory ended with {codes}")

@@ -157,6 +157,19 @@ said = other.communicate(timeout=250)[0]
 check("packing made" in said, f"the second process did not take over: {said}")
 check(run(pack(many)).stdout.count("packing found") == 1, "the packing is not there")
 
+# The runs of a sweep that need the same packing make it once.
+shutil.rmtree("packings")
+GRAINS = [*SMALL, "material=grains", "packing.grains=100", "packing.candidates=1", "packing.folder=packings",
+          "column.elements=2", "gravity.ratio=10", "gravity.uniform_step=1", "newton.tolerance=0.05"]  # fmt: skip
+Path("sweep.toml").write_text(
+    f"base = '{ROOT / 'cases/column/case.toml'}'\n"
+    + "".join(f'[[run]]\nname = "{name}"\nset = {GRAINS[3:]}\n' for name in "abc")
+)
+run([PROGRAM, "sweep", "sweep.toml", "-o", str(fresh("swept")), "-j", "3"])
+logs = [(Path("swept") / name / "run.log").read_text() for name in "abc"]
+check(sum("packing made" in text for text in logs) == 1, "a packing of three runs was not made once")
+check(all(" (--threads)" in text for text in logs), "the runs of a sweep do not share the cores")
+
 # pack that is stopped while it computes.
 shutil.rmtree("packings")
 first = start(pack(4000))
