@@ -142,6 +142,7 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   const io::CaseFile text = io::CaseFile::load(file, overrides);
   Case input = read_case(text, file);
   input.resolved = text.resolved();
+  input.places = text.places();
   // None of these keys changes a number: a preset acts only through the values that it gives to other keys.
   const std::array<std::string, 4> without{"title", "output", "packing.folder", "engine.preset"};
   input.fingerprint = text.fingerprint(without);

@@ -15,6 +15,7 @@
 #include "host/program/run_case.hpp"
 #include "host/ranks/session.hpp"
 #include "io/case_file.hpp"
+#include "io/input_error.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
 
@@ -68,7 +69,7 @@ int command_keys(const std::string& kind) {
   }
   std::string names;
   for (const auto& [candidate, name] : case_kind_names) names += (names.empty() ? "" : ", ") + std::string(name);
-  throw std::invalid_argument("keys: the kind must be one of " + names + ", is " + io::in_one_line(kind));
+  throw io::InputError("keys", "", "the kind must be one of " + names + ", is " + io::in_one_line(kind));
 }
 
 int command_info(const std::filesystem::path& result_file) {
