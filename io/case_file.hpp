@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -106,6 +107,9 @@ class CaseFile {
 
   /// Throws InputError for the first key that the program has not read, with the nearest known name as a hint.
   void finish() const;
+
+  /// The place of each key of a written or read table ("case.toml:12", "--set"), for checks that know only the values.
+  [[nodiscard]] std::map<std::string, std::string> places() const;
 
   /// All keys read so far, with type, default and limits, in the order in which they were read first, table by table.
   [[nodiscard]] std::vector<KeyInfo> keys() const;

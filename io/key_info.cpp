@@ -35,6 +35,13 @@ void collect(const CaseNode& node, std::vector<KeyInfo>& keys) {
   }
 }
 
+void collect_places(const CaseNode& node, std::map<std::string, std::string>& places) {
+  for (const auto& child : node.children) {
+    places[child->key] = child->place;
+    collect_places(*child, places);
+  }
+}
+
 /// A default without the quotes of TOML, which the quotes of a table would double.
 std::string unquoted(const std::string& text) {
   return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
@@ -76,6 +83,12 @@ std::vector<KeyInfo> CaseFile::keys() const {
   std::vector<KeyInfo> keys;
   collect(state_->root, keys);
   return keys;
+}
+
+std::map<std::string, std::string> CaseFile::places() const {
+  std::map<std::string, std::string> places;
+  collect_places(state_->root, places);
+  return places;
 }
 
 std::string key_table(const std::vector<KeyInfo>& keys) {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -245,7 +246,8 @@ struct Case {
 
   std::vector<std::string> remarks;  ///< sentences for `check` and the log: keys that are given and not used, ...
   std::string name;                  ///< title of the run: the key `title`, else the case file's folder or stem
-  std::string resolved;              ///< TOML of every value after defaults and overrides
+  std::map<std::string, std::string> places;  ///< of all keys, "case.toml:12" or "--set": for later complaints
+  std::string resolved;                       ///< TOML of every value after defaults and overrides
   std::string fingerprint;  ///< made of all values that decide the results, in SI to 12 digits: the same values in
                             ///< other units have the same fingerprint
 };

@@ -148,6 +148,7 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   Case input = read_case(text, file);
   for (std::string& line : text.idle_keys()) input.remarks.push_back(std::move(line));
   input.resolved = text.resolved();
+  input.places = text.places();
   input.fingerprint = text.fingerprint(keys_without_results);
   if (!input.packing.file.empty())
     input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));

@@ -11,10 +11,10 @@ std::string bytes_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.3g} MB", bytes * 1e-6) : fmt::format("{:.3g} GB", bytes * 1e-9);
 }
 
-void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& case_name) {
+void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& place) {
   for (const std::int64_t point : output.rves) {
     if (static_cast<std::size_t>(point) < size.points) continue;
-    throw io::InputError(case_name, "output.rves",
+    throw io::InputError(place, "output.rves",
                          fmt::format("names the point {}, but the mesh has only {} points", point, size.points));
   }
 }

@@ -12,8 +12,9 @@ namespace voussoir::host {
 /// A number of bytes for the user: "12 MB".
 [[nodiscard]] std::string bytes_text(double bytes);
 
-/// Throws io::InputError where output.rves names a point that the mesh does not have.
-void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& case_name);
+/// @param place of the key output.rves. Throws io::InputError where output.rves names a point that the mesh does not
+/// have.
+void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& place);
 
 /// Lines for `check`: points, increments, work, memory and disk.
 [[nodiscard]] std::vector<std::string> describe(const CaseSize& size, MaterialKind material, const PackingCase& packing,

@@ -24,11 +24,17 @@ bool has_grains(const Case& input) { return !runs_on_a_mesh(input.kind) || input
 /// The skin of the neighbour lists with which this case runs; 0 where [engine] decides nothing.
 double skin_of(const Case& input) { return uses_engine(input.kind, input.material) ? input.engine.skin : 0.0; }
 
-void check_packings(const Case& input, const std::string& place) {
+/// The place of a key. A key that the user did not write stands where its table does, or is said with the title.
+std::string place_of(const Case& input, const std::string& key) {
+  const auto found = input.places.find(key);
+  return found != input.places.end() && !found->second.empty() ? found->second : input.name;
+}
+
+void check_packings(const Case& input) {
   try {
     check_packing_file(input.soil, input.packing, skin_of(input));
   } catch (const std::runtime_error& fault) {
-    throw io::InputError(place, "packing.file", fault.what());
+    throw io::InputError(place_of(input, "packing.file"), "packing.file", fault.what());
   }
   if (!has_grains(input)) return;
   const char* key = "packing.grains";
@@ -37,18 +43,18 @@ void check_packings(const Case& input, const std::string& place) {
     key = "calibrate.confirm_grains";
     if (input.kind == CaseKind::calibrate) check_recipe(input.soil, input.calibrate.confirm_grains, 0.0);
   } catch (const std::runtime_error& fault) {
-    throw io::InputError(place, key, fault.what());
+    throw io::InputError(place_of(input, key), key, fault.what());
   }
 }
 
 /// The size of the case. What the mesh generator refuses is a fault of the ground's lengths.
-CaseSize checked_size(const Case& input, const std::string& place) {
+CaseSize checked_size(const Case& input) {
   try {
     return case_size(input);
   } catch (const std::invalid_argument& fault) {
-    throw io::InputError(place, "ground", fault.what());
+    throw io::InputError(place_of(input, "ground"), "ground", fault.what());
   } catch (const std::runtime_error& fault) {
-    throw io::InputError(place, "ground", fault.what());
+    throw io::InputError(place_of(input, "ground"), "ground", fault.what());
   }
 }
 
@@ -56,10 +62,9 @@ CaseSize checked_size(const Case& input, const std::string& place) {
 
 AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   AcceptedCase accepted{load_case(file, overrides), {}};
-  const std::string place = file.string();
-  check_packings(accepted.input, place);
-  accepted.size = checked_size(accepted.input, place);
-  check_snapshot_points(accepted.input.output, accepted.size, place);
+  check_packings(accepted.input);
+  accepted.size = checked_size(accepted.input);
+  check_snapshot_points(accepted.input.output, accepted.size, place_of(accepted.input, "output.rves"));
   static_cast<void>(kernels::choose_lanes(accepted.input.engine.isa));
   for (std::string& warning : foretell(accepted.input).warnings) accepted.input.remarks.push_back(std::move(warning));
   return accepted;

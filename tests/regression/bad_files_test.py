@@ -122,7 +122,7 @@ PARTICLES: list[tuple[str | bytes | None, ...]] = [
     (rows(*[line.replace(",", ";") for line in ALL]), "line 2", "five numbers", "commas"),
     (rows(*[line.replace(".", ",") for line in ALL]), "line 2", "five numbers", "has"),
     (GRAINS.replace("\n", "\r"), "CR"),
-    (scaled(1000), "1000 times those of [soil]", "millimetres"),
+    (scaled(1000), "pack.toml:3: packing.file", "1000 times those of [soil]", "millimetres"),
     (scaled(100), "100 times those of [soil]", "centimetres"),
     (scaled(0.001), "1/1000 times those of [soil]"),
     (b"", "is empty"),
@@ -322,6 +322,9 @@ for setting, fragment in (
 ):
     complain(["check", "good.toml", "--set", setting], fragment)
 complain(["check", "good.toml", "--set", b"packing.folder=\xff".decode(errors="surrogateescape")], "UTF-8")
+
+# A kind of which there are no keys.
+complain(["keys", "tunel"], "must be one of pack")
 
 # Sweeps.
 for content, *fragments in (

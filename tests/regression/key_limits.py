@@ -299,7 +299,7 @@ class Trial:
         packings = [int(a) * int(b) for a, b in re.findall(r"(\d+) packings of (\d+) grains", said)]
         points = [int(found) for found in re.findall(r"(\d+) Gauss points", said)]
         return (
-            max(steps, default=0) > 3e9
+            max(steps, default=0) > 5e8
             or max(increments, default=0) > 500
             or max(packings, default=0) > 1000
             or max(points, default=0) > 2000
