@@ -33,9 +33,11 @@ double stiffness_number(const kernels::Packing& packing, double pressure) {
 // phi; both grow with the square root of the compression beyond first contact, hence the second term.
 double foretold_overlap(double kappa) { return 0.92 / (kappa + 1.6 * std::sqrt(kappa)); }
 
-// Measured from 0.8 to 5 MPa: ln (1 + e) falls by 2.75 to 3.05 times the mean overlap. 2 would be overlap alone; the rest
-// are contacts that overlap brings about.
-double foretold_void_ratio(double loose, double mean_overlap) { return (1 + loose) * std::exp(-2.8 * mean_overlap) - 1; }
+// Measured from 0.8 to 5 MPa: ln (1 + e) falls by 2.75 to 3.05 times the mean overlap. 2 would be overlap alone; the
+// rest are contacts that overlap brings about.
+double foretold_void_ratio(double loose, double mean_overlap) {
+  return (1 + loose) * std::exp(-2.8 * mean_overlap) - 1;
+}
 
 std::string interpenetration(const PackedRve& rve) {
   const double least = least_void_ratio(rve.packing);
