@@ -78,10 +78,11 @@ Foretold foretell(const Case& input) {
   const double pressed = foretold_overlap(stiffness_number(grains, load.packing));
   const double left = foretold_void_ratio(loose_ratio, pressed), least = least_void_ratio(grains);
   if (overlap > most_mean_overlap || left < least) {
-    out.warnings.push_back(fmt::format("the mean stress of {:.5g} kPa {} is beyond what the contact law is good for: kappa "
-                                       "= {:.3g}, mean overlap about {:.2g} % of r_i + r_j; strengths from there are "
-                                       "invalid (docs/range.md)",
-                                       load.pressure * 1e-3, load.where, kappa, 100 * overlap));
+    out.warnings.push_back(
+        fmt::format("the mean stress of {:.5g} kPa {} is beyond what the contact law is good for: kappa "
+                    "= {:.3g}, mean overlap about {:.2g} % of r_i + r_j; strengths from there are "
+                    "invalid (docs/range.md)",
+                    load.pressure * 1e-3, load.where, kappa, 100 * overlap));
   }
   if (left < least) {
     out.warnings.push_back(

@@ -15,7 +15,10 @@ namespace {
 
 PackedRve packing_at(double pressure) {
   const std::int64_t seed[] = {1};
-  return make_packings({}, {.grains = 60, .pressure = pressure}, seed).front();
+  PackingCase recipe;
+  recipe.grains = 60;
+  recipe.pressure = pressure;
+  return make_packings({}, recipe, seed).front();
 }
 
 TEST(LawRange, EqualDiscsAreDensestOnTheHexagonalLattice) {
@@ -51,7 +54,8 @@ TEST(LawRange, IsForetoldAsMeasured) {
 
 // With k_n = E r of equal grains and t = 0.1 m, kappa is E r / (p t).
 TEST(LawRange, TheStiffnessNumberIsThatOfEqualGrains) {
-  const kernels::Packing packing{.radii = std::vector<double>(10, 1e-3)};
+  kernels::Packing packing;
+  packing.radii.assign(10, 1e-3);
   EXPECT_NEAR(stiffness_number(packing, 1e5), 3e9 * 1e-3 / (1e5 * 0.1), 1e-9);
 }
 
