@@ -169,6 +169,38 @@ class Paths(unittest.TestCase):
         self.assertEqual(trends.contracts_until(LOSS, until(0.05)).verdict, trends.NOT_SEEN)
         self.assertEqual(trends.contracts_until(LOSS[:40], until(0.15)[:40]).verdict, trends.NOT_REACHED)
 
+    def test_coarse_runs_reach_no_verdict(self):
+        coarse = np.array([0, 0.025, 0.05, 0.075, 0.1])
+        falls = {"Aa": 1 - coarse}
+        for trend in (
+            trends.falls_linearly(coarse, falls),
+            trends.falls_linearly(np.array([0, 0.02, 0.1]), {"Aa": np.array([1, 0.9, 0.8])}),
+            trends.settlement_slows(coarse, {0.0: coarse}, 5.0),
+            trends.surface_accelerates(np.array([0, 0.1, 0.2]), np.array([0, 0.1, 0.3]), 5.0),
+            trends.troughs_narrow(coarse[1:], {0.0: 6 - coarse[1:]}),
+            trends.surface_width_in_range(np.array([0.2]), np.array([0.3]), 0.25, 0.45),
+            trends.stresses_above(np.array([0, 0.2]), np.array([1.0, 2]), np.array([1.0, 0.5])),
+            trends.stresses_beside(coarse, 1 - coarse, 1 + coarse),
+            trends.reaction(np.array([0, 0.1, 0.2]), np.array([1, 0.1, 0.5]), "dense sand"),
+            trends.softening_order(np.array([0, 0.1, 0.2]), {"Aa": np.array([0.5, 0.1, 0.7])}),
+            trends.contracts_until(np.array([0, 0.2]), np.array([0, 0.1])),
+        ):
+            self.assertEqual(trend.verdict, trends.NOT_REACHED, trend)
+        finer = trends.stresses_beside(np.array([0, 0.01, 0.02, 0.1]), np.array([1, 0.95, 0.9, 0.8]), np.full(4, 1.1))
+        self.assertEqual(finer.verdict, trends.SEEN)
+        self.assertNotIn("5 %", finer.numbers)  # 8 % lie between the states there
+
+    def test_points_that_are_not_compressed(self):
+        open_ = np.full_like(LOSS, np.nan)
+        for ratios in ({}, {"Aa": open_}):
+            self.assertEqual(trends.falls_linearly(LOSS, ratios).verdict, trends.NO_DATA)
+            self.assertEqual(trends.softening_order(LOSS, ratios).verdict, trends.NO_DATA)
+            self.assertEqual(trends.no_softening(LOSS, ratios, "gravel").verdict, trends.NO_DATA)
+        self.assertEqual(trends.ends_contracted(LOSS, {}).verdict, trends.NO_DATA)
+        both = trends.falls_linearly(LOSS, {"Aa": open_, "Ab": self.path(0.06, True)})
+        self.assertEqual(both.verdict, trends.SEEN)
+        self.assertIn("Aa: hardly compressed", both.numbers)
+
     def test_localisation(self):
         random = np.random.default_rng(1)
         strain = random.random(1000)

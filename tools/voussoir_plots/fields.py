@@ -28,6 +28,13 @@ def state(increment: Increment) -> str:
     return f"stage {increment['stage']}, load parameter {increment['load_parameter']:.3g}"
 
 
+def since_start(result: Result, name: str, increment: Increment) -> np.ndarray:
+    """A field at an increment; within the volume loss grain rotations are counted from V_l = 0."""
+    values = increment.field(name)
+    turns = name == "gauss/grain_rotation" and increment["volume_loss"] > 0
+    return values - result.start.field(name) if turns else values
+
+
 def magnification(result: Result, displacement: np.ndarray) -> float:
     """1 where the deformation is visible, else a round factor that enlarges it to about 2 % of the width."""
     largest, width = np.max(np.linalg.norm(displacement, axis=1)), np.ptp(result.coordinates[:, 0])
@@ -119,7 +126,7 @@ def _draw_points(
 ) -> None:
     """Draws a Gauss-point field with one patch per point."""
     increment = last_increment(result)
-    values = factor * increment.field(name)
+    values = factor * since_start(result, name, increment)
     figure, axis, deformed, note = canvas(result, increment)
     patches = q8.gauss_patches(deformed, result.connectivity)
     finite = values[np.isfinite(values)]

@@ -7,8 +7,9 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 from . import q8
+from .fields import since_start
 from .resolution import percent
-from .result import Increment, Missing, Result
+from .result import Missing, Result
 from .style import save
 
 # Field, factor, label, colour map, symmetric about the value at V_l = 0.
@@ -17,12 +18,6 @@ FIELDS = [
     ("gauss/grain_rotation", 180 / np.pi, "mean grain rotation, counter-\nclockwise positive  [deg]", "coolwarm", True),
     ("gauss/void_ratio", 1, "void ratio  $e$  [-]", "viridis", False),
 ]
-
-
-def since_start(result: Result, name: str, increment: Increment) -> np.ndarray:
-    """A field at an increment; rotations are counted from V_l = 0."""
-    values = increment.field(name)
-    return values - result.start.field(name) if name == "gauss/grain_rotation" else values
 
 
 def limits(values: np.ndarray, symmetric: bool) -> tuple[float, float]:

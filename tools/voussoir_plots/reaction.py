@@ -38,13 +38,15 @@ def draw(result: Result, path: Path) -> None:
         markersize=8,
         label=f"minimum {ratio[least]:.3f} at $V_l$ = {percent(loss[least])}",
     )
+    shown = [ratio]
     for point in points.above_crown(result):
         vertical = -points.history(result, "gauss/stress", point)[:, 1]
         if not vertical[0] > 0:
             continue
+        shown.append(vertical / vertical[0])
         axis.plot(
             100 * loss,
-            vertical / vertical[0],
+            shown[-1],
             "--",
             linewidth=0.9,
             color=COLOURS[point.name],
@@ -55,6 +57,6 @@ def draw(result: Result, path: Path) -> None:
     axis.set_xlabel("volume loss  $V_l$  [%]")
     axis.set_ylabel(r"vertical stress above the crown  $\sigma_v / \sigma_{v,0}$  [-]")
     axis.set_xlim(left=0)
-    axis.set_ylim(min(0, 1.05 * ratio.min()), 1.05 * max(1, ratio.max()))
+    axis.set_ylim(min(0, 1.05 * np.min(shown)), 1.05 * max(1, np.max(shown)))
     axis.set_title(rf"Ground reaction curve,  $\sigma_{{v,0}}$ = {start / 1e3:.4g} kPa")
     save(figure, path)

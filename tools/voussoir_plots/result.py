@@ -99,8 +99,6 @@ class Result:
     def __init__(self, folder: Path | str, settings: Settings | None = None) -> None:
         self.folder = Path(folder)
         self.settings = settings or Settings()
-        # The folder's files are read, not the links of run.h5: a killed run may have one increment more than its index.
-        paths = [p for p in (self.folder / "increments").glob("*.h5") if re.fullmatch(r"\d+", p.stem)]
         self.increments: list[Increment] = []
         self.left_out: list[Missing] = []  # why an increment's file is not among them
         index = self.folder / "run.h5"
@@ -119,7 +117,7 @@ class Result:
                 name: {column: values[()] for column, values in table.items()}
                 for name, table in file.get("tables", {}).items()
             }
-        for path in sorted(paths, key=lambda p: int(p.stem)):
+        for path in _increment_files(self.folder / "increments"):
             try:
                 self.increments.append(Increment(path))
             except Missing as reason:
@@ -241,6 +239,17 @@ def _check_folder(folder: Path, index: Path) -> None:
     if not folder.exists():
         raise Unreadable(f"{folder} does not exist")
     raise Unreadable(f"{folder} has no run.h5: {KINDS}")
+
+
+def _increment_files(folder: Path) -> list[Path]:
+    """The folder's files are read, not the links of run.h5: a killed run may have one increment more than its index."""
+    try:
+        found = [p for p in folder.iterdir() if re.fullmatch(r"\d+\.h5", p.name)]
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise Unreadable(f"{folder} cannot be read: {error.strerror}") from error
+    return sorted(found, key=lambda p: int(p.stem))
 
 
 def remembered(result: Result, what: str, make: Callable[[], T]) -> T:
