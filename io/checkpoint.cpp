@@ -202,7 +202,11 @@ void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
   // Checkpoints with a higher number were written before the run was resumed from an earlier state, and are not part of
   // its history any more.
   const auto present = list(folder_);
-  const auto here = present.lower_bound(increment);
+  const auto here = present.find(increment);
+  if (here == present.end()) {
+    throw std::runtime_error(fmt::format("{}: vanished right after it was written; does something else change {}?",
+                                         checkpoint_path(folder_, increment).string(), folder_.string()));
+  }
   const int previous = here == present.begin() ? increment : std::prev(here)->first;
   for (const auto& [number, path] : present) {
     if (number != increment && number != previous) {

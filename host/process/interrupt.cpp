@@ -20,23 +20,26 @@ extern "C" void voussoir_on_signal(int signal) {
 
 extern "C" void voussoir_end_on_signal(int /*signal*/) { _exit(code_at_once); }
 
-}  // namespace
-
-void catch_interrupts() {
+/// Gives all requests to stop to a handler. mpirun passes SIGUSR1 on and does not end the ranks itself. Under nohup
+/// SIGHUP is ignored and stays so.
+void handle_requests(void (*handler)(int)) {
   struct sigaction action{};
-  action.sa_handler = voussoir_on_signal;
+  action.sa_handler = handler;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  // mpirun passes SIGUSR1 on and does not end the ranks itself.
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaction(signal, &action, nullptr);
   struct sigaction hangup{};
   const bool under_nohup = sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler == SIG_IGN;
   if (!under_nohup) sigaction(SIGHUP, &action, nullptr);
 }
 
+}  // namespace
+
+void catch_interrupts() { handle_requests(voussoir_on_signal); }
+
 void end_on_interrupts(int code) {
   code_at_once = code;
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, voussoir_end_on_signal);
+  handle_requests(voussoir_end_on_signal);
 }
 
 bool interrupted() { return stop_requested != 0; }
