@@ -34,7 +34,8 @@ std::vector<BiaxialCurve> biaxial_tests(std::span<const PackedRve> rves, double 
     const double pressure = rves[k].pressure;
     const double limit = kernels::largest_rate(rves[k].packing, settings);
     const double rate = std::min(inertial_number / rves[k].packing.inertial_time(pressure), limit);
-    if (!(strain / rate < 1e9)) throw io::InputError("biaxial", "inertial_number", "asks for a rate at which a test takes more than 1e9 steps");
+    if (!(strain / rate < 1e9))
+      throw io::InputError("biaxial", "inertial_number", "asks for a rate at which a test takes more than 1e9 steps");
     const int steps = static_cast<int>(std::ceil(strain / rate));
     requests.push_back({.x = {.stress_controlled = true, .target = -pressure},
                         .y = {.stress_controlled = false, .target = -rate},

@@ -7,6 +7,7 @@
 
 #include "host/case/engine.hpp"
 #include "host/packing/law_range.hpp"
+#include "host/process/exit_code.hpp"
 
 namespace voussoir::host {
 
