@@ -11,8 +11,8 @@ from program import check, check_same, command, fresh, run
 
 # The specimen's call 102 lies between its last checkpoint and its last table.
 for name, every, first in (
-    ("tunnel", 53, 2),
-    ("grains", 157, 100),
+    ("tunnel", 69, 2),
+    ("grains", 200, 150),
     ("specimen", 41, 20),
     ("pack", 9, 2),
     ("probe", 9, 2),
@@ -23,7 +23,7 @@ try_faults("tunnel", 1, pattern="{root}/result/column/k0.csv*")
 try_faults("tunnel", 9, first=3, pattern="{root}/result/run.log")
 try_faults("sweep", 4, first=3, pattern="{root}/result@(|/summary*)")
 
-SLOW = [*SCENARIOS["tunnel"].settings, "volume_loss.increments=60", "output.every=2", "output.checkpoint_every=1"]
+SLOW = [*SCENARIOS["tunnel"].settings, "volume_loss.increments=30", "output.every=2", "output.checkpoint_every=1"]
 straight = fresh("straight_slow")
 run(command("tunnel_elastic", straight, SLOW, "--threads", "1"))
 
