@@ -47,8 +47,11 @@ std::string hint(const CaseNode& root, const CaseNode& parent, const CaseNode& u
   std::size_t best = unknown.name.size() / 3 + 1;
   std::string name;
   for (const auto& sibling : parent.children) {
+    if (!sibling->read || sibling->name.front() == '[') {
+      continue;  // before any distance is computed: that of a very long name from itself takes seconds
+    }
     const std::size_t distance = edit_distance(sibling->name, unknown.name);
-    if (sibling->read && distance <= best && sibling->name.front() != '[') {
+    if (distance <= best) {
       best = distance;
       name = sibling->name;
     }
