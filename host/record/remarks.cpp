@@ -34,6 +34,7 @@ std::vector<std::string> resume_differences(const io::Provenance& begun, const i
   }
   compare("threads", begun.threads, now.threads, no_number);
   compare("ranks", begun.ranks, now.ranks, no_number);
+  compare("the lanes", begun.lanes, now.lanes, no_number);
   compare("the program", begun.version + " (" + begun.git_hash + ")", now.version + " (" + now.git_hash + ")",
           last_bits);
   compare("the compiler", begun.build_compiler, now.build_compiler, last_bits);
