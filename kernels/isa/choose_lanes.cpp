@@ -37,7 +37,7 @@ LaneChoice best() {
   choice.reason = choice.lanes->isa == processor_set()
                       ? "the processor offers no larger set"
                       : std::string("the largest set in this program that the processor takes, which offers ") +
-                            name_of(processor_set());
+                            name_of(processor_set()) + " (a build with -DVOUSSOIR_ISA=all holds all sets)";
   return choice;
 }
 
