@@ -1,5 +1,7 @@
 #include "host/program/commands.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -115,7 +117,7 @@ Outcome command_info(const std::filesystem::path& result_file) {
   } catch (const std::runtime_error& error) {
     throw io::InputError("info", "", error.what());
   }
-  return print_answer(answer) ? exit_ok : exit_machine;
+  return print_answer(answer);
 }
 
 Outcome command_info_cpu() {
