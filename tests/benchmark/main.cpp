@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   const Kokkos::ScopeGuard kokkos(argc, argv);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  using voussoir::kernels::lane_count, voussoir::kernels::WideLane;
+  using voussoir::kernels::chosen_lanes, voussoir::kernels::lanes_sentence;
   benchmark::AddCustomContext("device", processor());
   benchmark::AddCustomContext("lanes", lanes_sentence(chosen_lanes()));
   benchmark::AddCustomContext("backend", Kokkos::DefaultExecutionSpace::name());

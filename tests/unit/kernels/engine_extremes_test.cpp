@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/contact/cell.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {
