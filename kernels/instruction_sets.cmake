@@ -62,8 +62,10 @@ function(voussoir_find_sets)
     list(APPEND takes v4)
   endif()
   if(VOUSSOIR_ISA STREQUAL native)
-    set(sets ${takes})
-    list(POP_BACK sets sets)  # the largest
+    set(sets "")
+    if(takes)
+      list(GET takes -1 sets)  # the largest
+    endif()
   elseif(VOUSSOIR_ISA STREQUAL all)
     set(sets v3 v4)
   elseif(VOUSSOIR_ISA STREQUAL scalar)
