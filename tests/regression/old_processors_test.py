@@ -47,8 +47,10 @@ for processor, lanes in PROCESSORS.items():
     said = emulated(processor, "info", "--cpu").stdout
     check(f"lanes: {lanes} (" in said, f"{processor}: {lanes} lanes are not taken: {said}")
     print(f"{processor}: {said.splitlines()[-1]}")
-    refusal = emulated(processor, "check", case("pack"), "--set", "engine.isa=v4", code=2).stderr
-    check(len(refusal.splitlines()) == 1 and "engine.isa" in refusal and "scalar" in refusal, refusal)
+    errors = emulated(processor, "check", case("pack"), "--set", "engine.isa=v4", code=2).stderr.splitlines()
+    refusal = [line for line in errors if not line.startswith("qemu-x86_64: ")]  # the emulator has warnings of its own
+    check(len(refusal) == 1 and "engine.isa" in refusal[0] and "scalar" in refusal[0], str(refusal))
+    print(refusal[0])
 
     folder = fresh(f"elastic_{processor}")
     emulated(processor, "run", case("tunnel_elastic"), "-o", str(folder), "--threads", "1", *settings(COARSE))
