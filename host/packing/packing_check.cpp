@@ -184,9 +184,8 @@ void check_packing_file(const SoilCase& soil, const PackingCase& recipe, double 
   }
 }
 
-int least_grains(const SoilCase& soil) {
+int least_grains(const SoilCase& soil, double coarsest) {
   constexpr int many = 20000;
-  constexpr double coarsest = 0.1;  ///< share of the area
   const std::vector<double> radii = sample_radii(soil, many, 0);
   const double whole = solid_area(radii);
   double area = 0;
@@ -201,10 +200,9 @@ int least_grains(const SoilCase& soil) {
 }
 
 void check_recipe(const SoilCase& soil, int grains, double skin) {
-  const int least = least_grains(soil);
-  if (grains < least) {
+  if (const int least = least_grains(soil, 0.2); grains < least) {
     throw std::runtime_error(fmt::format(
-        "is {}, but this grading needs at least {} grains, so that the coarsest tenth of the soil has one grain",
+        "is {}, but this grading needs at least {} grains, so that the coarsest fifth of the soil has one grain",
         grains, least));
   }
   const std::vector<double> radii = sample_radii(soil, grains, 0);
@@ -214,6 +212,13 @@ void check_recipe(const SoilCase& soil, int grains, double skin) {
       "is {}: their cell of about {:.3g} mm is too narrow for the largest of them, which needs {:.3g} mm (two "
       "diameters, and the skin of the neighbour lists)",
       grains, width / mm, needed / mm));
+}
+
+std::string missing_coarse_grains(const SoilCase& soil, int grains) {
+  const int enough = least_grains(soil, 0.1);
+  if (grains >= enough) return {};
+  return fmt::format("packing.grains is {}: packings of fewer than {} grains lack the coarsest tenth of this grading",
+                     grains, enough);
 }
 
 }  // namespace voussoir::host

@@ -17,10 +17,15 @@ void check_grains(const io::Packing& file, const SoilCase& soil, double skin);
 void check_packing_file(const SoilCase& soil, const PackingCase& recipe, double skin);
 
 /// Throws std::runtime_error where packings of so many grains of this soil are no use: their cell is narrower than two
-/// contact distances of the largest grains, or the coarsest tenth of the soil has less than one grain.
+/// contact distances of the largest grains, or the coarsest fifth of the soil has less than one grain.
 void check_recipe(const SoilCase& soil, int grains, double skin);
 
-/// The number of grains that a packing needs, so that the coarsest tenth of the soil's area has one grain on average.
-[[nodiscard]] int least_grains(const SoilCase& soil);
+/// The number of grains that a packing needs, so that the coarsest part of the soil, a share of its area [-], has one
+/// grain on average.
+[[nodiscard]] int least_grains(const SoilCase& soil, double coarsest);
+
+/// A sentence that says that packings of so many grains lack the coarsest tenth of the grading; empty where they do
+/// not.
+[[nodiscard]] std::string missing_coarse_grains(const SoilCase& soil, int grains);
 
 }  // namespace voussoir::host

@@ -66,6 +66,10 @@ AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<st
   accepted.size = checked_size(accepted.input);
   check_snapshot_points(accepted.input.output, accepted.size, place_of(accepted.input, "output.rves"));
   static_cast<void>(kernels::choose_lanes(accepted.input.engine.isa));
+  if (has_grains(accepted.input) && accepted.input.packing.file.empty()) {
+    const std::string missing = missing_coarse_grains(accepted.input.soil, accepted.input.packing.grains);
+    if (!missing.empty()) accepted.input.remarks.push_back(missing);
+  }
   for (std::string& warning : foretell(accepted.input).warnings) accepted.input.remarks.push_back(std::move(warning));
   return accepted;
 }

@@ -56,7 +56,7 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
   const kernels::LaneChoice& lanes = kernels::choose_lanes(input.engine.isa);
   if (options.folder.empty()) options.folder = std::filesystem::path("out") / input.name;
   expect_unlocked(options.folder);  // more to the point than what check_folder would say of a run that has just begun
-  check_folder(options, input.fingerprint, input.resolved);
+  check_folder(options, identity_of(input));
   const KokkosSession kokkos(options.threads);
   start_ranks(options.threads, input.engine.isa);
   refuse_too_large(input, accepted.size, rank_count());
@@ -68,7 +68,7 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
   if (input.kind != CaseKind::pack || std::filesystem::exists(options.folder)) {
     options.lock = std::make_shared<RunLock>(options.folder, options.take_over);
     // Once more, since another run may have ended between the check and the lock.
-    check_folder(options, input.fingerprint, input.resolved);
+    check_folder(options, identity_of(input));
   }
   if (!runs_on_a_mesh(input.kind)) std::printf("%s\n", kernels::lanes_sentence(lanes).c_str());  // others have a log
   const Outcome outcome = run_case(input, options);

@@ -66,7 +66,7 @@ Sweep load_sweep(const std::filesystem::path& file, const SweepOptions& options)
     run.folder = options.folder / run.name;
     const Case input = accept_case(sweep.base, run.overrides).input;
     expect_unlocked(run.folder);
-    check_folder({.folder = run.folder, .resume = options.resume, .command = {}}, input.fingerprint, input.resolved);
+    check_folder({.folder = run.folder, .resume = options.resume, .command = {}}, identity_of(input));
     sweep.runs.push_back(std::move(run));
   }
   if (sweep.runs.empty()) throw text.root().error("run", "there is no [[run]] in this sweep");

@@ -45,11 +45,11 @@ io::Provenance origin_of_results(const RunOptions& options) {
 }
 
 /// A sentence that names the keys in which a run's case and this case differ.
-std::string difference(const io::Provenance& theirs, const std::string& fingerprint, const std::string& resolved) {
+std::string difference(const io::Provenance& theirs, const CaseIdentity& wanted) {
   const std::string otherwise = "all keys agree, but the fingerprint is " + theirs.fingerprint + " and not " +
-                                fingerprint + ": the files of packing.file, or the program, have changed";
+                                wanted.fingerprint + ": the files of packing.file, or the program, have changed";
   try {
-    const std::vector<io::KeyDifference> keys = io::differences(resolved, theirs.input, keys_without_results);
+    const std::vector<io::KeyDifference> keys = io::differences(wanted.resolved, theirs.input, keys_without_results);
     return keys.empty() ? otherwise : io::describe(keys, "the run");
   } catch (const std::runtime_error&) {  // the file is from elsewhere
     return otherwise;
@@ -63,7 +63,9 @@ void confirm_lock(const RunOptions& options, const std::function<void(const std:
   if (!changed.empty()) note(changed);
 }
 
-void check_folder(const RunOptions& options, const std::string& fingerprint, const std::string& resolved) {
+CaseIdentity identity_of(const Case& input) { return {to_string(input.kind), input.fingerprint, input.resolved}; }
+
+void check_folder(const RunOptions& options, const CaseIdentity& wanted) {
   namespace fs = std::filesystem;
   const std::string folder = options.folder.string();
   if (!fs::exists(options.folder)) return;
@@ -81,9 +83,13 @@ void check_folder(const RunOptions& options, const std::string& fingerprint, con
   }
   const io::Provenance theirs = origin_of_results(options);
   if (options.resume) {
-    if (theirs.fingerprint == fingerprint) return;
+    if (theirs.case_kind != wanted.kind) {
+      throw io::InputError("--resume", folder,
+                           "holds results of the kind " + theirs.case_kind + ", but this case is a " + wanted.kind);
+    }
+    if (theirs.fingerprint == wanted.fingerprint) return;
     throw io::InputError("--resume", folder,
-                         "was made by another case: " + difference(theirs, fingerprint, resolved) +
+                         "was made by another case: " + difference(theirs, wanted) +
                              "; resume needs the same case file and --set values");
   }
   if (!options.replace) {

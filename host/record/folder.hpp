@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "host/case/case.hpp"
 #include "host/record/run_lock.hpp"
 
 namespace voussoir::host {
@@ -25,11 +26,19 @@ struct RunOptions {
 /// nothing where there is no lock.
 void confirm_lock(const RunOptions& options, const std::function<void(const std::string&)>& note);
 
-/// Throws io::InputError where the run of the case with this fingerprint must not start: the folder holds results and
-/// neither resume nor replace is asked for; it holds other files and no results; or resume is asked for and the results
-/// belong to another case. A run that was killed before it had a run.h5 leaves files that are no obstacle.
-/// @param resolved the case as TOML (Case::resolved), with which an error names the keys that differ
-void check_folder(const RunOptions& options, const std::string& fingerprint, const std::string& resolved = {});
+/// The case for which a folder is to be used, as its results repeat it.
+struct CaseIdentity {
+  std::string kind;         ///< a tunnel and its column share all but this
+  std::string fingerprint;  ///< Case::fingerprint
+  std::string resolved;     ///< Case::resolved, with which an error names the keys that differ
+};
+
+[[nodiscard]] CaseIdentity identity_of(const Case& input);
+
+/// Throws io::InputError where the run of this case must not start: the folder holds results and neither resume nor
+/// replace is asked for; it holds other files and no results; or resume is asked for and the results belong to another
+/// case. A run that was killed before it had a run.h5 leaves files that are no obstacle.
+void check_folder(const RunOptions& options, const CaseIdentity& wanted);
 
 /// Removes everything that a run of any kind leaves in options.folder, which check_folder has accepted before. Called
 /// where options.replace is set.

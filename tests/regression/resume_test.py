@@ -47,6 +47,8 @@ check(
 check_same(straight, killed)
 run(command(CASE, straight, SETTINGS), code=2)
 run(command(CASE, straight, [*SETTINGS, "elastic.poisson=0.2"], "--resume"), code=2)
+column = run(command(CASE, straight / "column", SETTINGS, "--resume"), code=2)
+check("kind column" in column.stderr, f"the column of a tunnel passes for the tunnel: {column.stderr}")
 check_same(straight, killed)
 run(command(CASE, straight, SETTINGS, "--replace"))
 check_same(straight, killed)

@@ -168,7 +168,7 @@ TEST(LaneChoice, TheVariableComesBeforeTheProcessorAndAWishBeforeTheVariable) {
 
 TEST(LaneChoice, RefusesAVariableThatNamesNoSet) {
   const Variable wrong("avx9");
-  expect_throws<std::invalid_argument>(
+  expect_throws<UnusableLanes>(
       [] { choose_lanes({}); }, "the environment variable VOUSSOIR_ISA is \"avx9\"; it can be auto, scalar, v3 or v4");
 }
 
@@ -179,7 +179,7 @@ TEST(LaneChoice, EverySetIsTakeableOrSaysWhyNot) {
       EXPECT_EQ(choose_lanes(isa).lanes->isa, isa);
       EXPECT_GE(choose_lanes(isa).lanes->floats, choose_lanes(isa).lanes->doubles);
     } else {
-      EXPECT_THROW(choose_lanes(isa), std::invalid_argument);
+      EXPECT_THROW(choose_lanes(isa), UnusableLanes);
     }
   }
   choose_lanes({});
