@@ -51,7 +51,7 @@ for kind in ("biaxial_bvp", "column", "tunnel"):
 # A store that cannot be written to is a failure of the machine, in a calibration too, where a packing without rest is
 # only a set that cannot be used.
 Path("no_folder").write_text("")
-run([*commands["calibrate"], "--replace", "--set", "packing.folder=no_folder"], code=4)
+run([*commands["calibrate"], "--replace", "--set", "packing.folder=/proc/packings"], code=4)
 
 # Runs of a sweep that end in different ways.
 Path("sweep.toml").write_text(f"""base = '{ROOT / "cases/tunnel_elastic/case.toml"}'
