@@ -216,6 +216,9 @@ void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
 }
 
 std::optional<CheckpointStore::Loaded> CheckpointStore::load_latest() const {
+  if (fs::is_directory(folder_)) {
+    remove_leftovers(folder_);
+  }
   const auto present = list(folder_);
   Loaded loaded;
   for (auto it = present.rbegin(); it != present.rend(); ++it) {

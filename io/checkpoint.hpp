@@ -49,7 +49,8 @@ class CheckpointStore {
     std::vector<std::string> skipped = {};  ///< one sentence for each damaged file that was passed over
   };
 
-  /// The newest checkpoint that is not damaged; no value where there are no files. Throws InputError where that
+  /// The newest checkpoint that is not damaged; no value where there are no files. Removes what killed writers left.
+  /// Throws InputError where that
   /// checkpoint belongs to another case, std::runtime_error where files exist and all are damaged.
   [[nodiscard]] std::optional<Loaded> load_latest() const;
 

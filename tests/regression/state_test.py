@@ -120,7 +120,7 @@ one_line(run(words("check", "second.toml", [*settings, "soil.damping=0.1"]), cod
 
 # A packing of another code comes to rest anew: its soil may differ and is said, its thickness must not.
 Path("disc_particles.csv").write_text("id,x_m,y_m,r_m,theta_z_rad\n0,0,0,1e-3,0\n1,2e-3,0,1e-3,0\n")
-Path("disc_meta.json").write_text('{"hSize": [[0.02, 0], [0, 0.02]], "Lz": 0.1, "E": 1e9}')
+Path("disc_meta.json").write_text('{"hSize": [[0.0045, 0], [0, 0.0045]], "Lz": 0.1, "E": 1e9}')
 settings = ["packing.file=disc_particles.csv"]
 said = run(words("check", "second.toml", settings)).stdout
 check("soil.modulus: this case has 3 GPa, the packing in" in said and "was made with 1 GPa" in said, said)
