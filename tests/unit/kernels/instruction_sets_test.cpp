@@ -58,7 +58,7 @@ class InstructionSets : public testing::TestWithParam<Precision> {
   /// Runs the same with each set and compares what it answers with the first set's answer.
   static void expect_same_bits(const std::function<Answers()>& answer) {
     const auto sets = takeable_sets();
-    ASSERT_GT(sets.size(), 1U);
+    if (sets.size() < 2) GTEST_SKIP() << "the program holds one set, or the processor takes no other";
     choose_lanes(sets.front()->isa);
     const Answers expected = answer();
     for (const LaneSet* set : sets) {
