@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/case/engine.hpp"
+#include "host/process/interrupt.hpp"
 #include "host/stages/ground_checkpoint.hpp"
 #include "host/stages/profiling.hpp"
 #include "kernels/isa/choose_lanes.hpp"
@@ -42,6 +43,7 @@ GroundRun::GroundRun(const RunOptions& options, const io::Provenance& provenance
 
 void GroundRun::open_ground(const MaterialCase& material, const PackingNote& note) {
   material_ = make_material(material, static_cast<std::size_t>(mesh_.n_points()), note);
+  catch_interrupts();  // packings may take long and are kept one by one; from here on there are increments to end first
   ground_.emplace(Ground{mesh_, *material_, {}, {}});
   if (const io::Checkpoint* checkpoint = recorder_.resumed()) {
     restore(*ground_, *checkpoint);

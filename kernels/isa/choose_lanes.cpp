@@ -107,8 +107,11 @@ const LaneChoice& choose_lanes(std::optional<InstructionSet> wish) {
 const LaneChoice& chosen_lanes() { return current() ? *current() : choose_lanes({}); }
 
 std::string lanes_sentence(const LaneChoice& choice) {
-  return std::string("lanes: ") + description_of(choice.lanes->isa) + ", " + std::to_string(choice.lanes->floats) +
-         " RVEs side by side in float and " + std::to_string(choice.lanes->doubles) + " in double; " + choice.reason;
+  const bool slow = choice.lanes->isa == InstructionSet::scalar;
+  return std::string("lanes: ") + description_of(choice.lanes->isa) +
+         (slow ? ", 150 to 300 times slower than v3 and v4 (docs/measurements/isa.md)" : "") + ", " +
+         std::to_string(choice.lanes->floats) + " RVEs side by side in float and " +
+         std::to_string(choice.lanes->doubles) + " in double; " + choice.reason;
 }
 
 }  // namespace voussoir::kernels
