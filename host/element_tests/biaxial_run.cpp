@@ -76,7 +76,10 @@ std::vector<PackedRve> packings_of(const SoilCase& soil, PackingCase recipe, std
 const char* outcome(const BiaxialCurve& curve, const Strength& s) {
   if (curve.status != kernels::RveStatus::converged) return kernels::name_of(curve.status);
   if (held(curve, s)) return "valid";  // not "converged": a test moves at its rate and never rests
-  return curve.mean_overlap > most_mean_overlap ? "invalid: beyond the contact law's range" : "sigma_xx not held";
+  if (curve.mean_overlap > most_mean_overlap) return "invalid: beyond the contact law's range";
+  if (s.lateral_scatter <= most_lateral_scatter && s.late_rise > most_late_rise)
+    return "invalid: the strength still rises, biaxial.strain is too small";
+  return "sigma_xx not held";
 }
 
 void print(const BiaxialCurve& curve, const Strength& s) {

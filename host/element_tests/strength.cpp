@@ -62,6 +62,9 @@ Strength strength_of(const BiaxialCurve& curve, double window) {
   out.dilatancy = std::asin(std::min(dilation, 1.0));
   const auto last_quarter = around(curve, 0.875 * end, 0.25 * end);
   if (!last_quarter.empty()) out.critical_angle = std::asin(std::min(mean_ratio(last_quarter), 1.0));
+  const auto third_quarter = around(curve, 0.625 * end, 0.25 * end);
+  if (!last_quarter.empty() && !third_quarter.empty())
+    out.late_rise = mean_ratio(last_quarter) / mean_ratio(third_quarter) - 1.0;
   out.lateral_error = std::abs(lateral / static_cast<double>(curve.points.size()));
   out.lateral_scatter = std::sqrt(squared / static_cast<double>(curve.points.size()));
   return out;
@@ -70,9 +73,8 @@ Strength strength_of(const BiaxialCurve& curve, double window) {
 double mean_stress_at(double pressure, double angle) { return pressure / (1.0 - std::sin(angle)); }
 
 bool held(const BiaxialCurve& curve, const Strength& strength) {
-  constexpr double most_scatter = 0.1;  // with more scatter the test is not one at a constant lateral stress
-  return curve.status == kernels::RveStatus::converged && strength.lateral_scatter <= most_scatter &&
-         curve.mean_overlap <= most_mean_overlap;
+  return curve.status == kernels::RveStatus::converged && strength.lateral_scatter <= most_lateral_scatter &&
+         strength.late_rise <= most_late_rise && curve.mean_overlap <= most_mean_overlap;
 }
 
 double common_angle(std::span<const double> angles, std::span<const double> p) {

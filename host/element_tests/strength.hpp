@@ -16,6 +16,7 @@ struct Strength {
   double contraction = 0;      ///< largest eps_v [-]
   double lateral_error = 0;    ///< |mean of sigma_xx / pressure - 1| [-]
   double lateral_scatter = 0;  ///< root mean square of sigma_xx / pressure - 1 [-]
+  double late_rise = 0;        ///< mean q/p of the last quarter of the axial strain over that of the third, less 1 [-]
 };
 
 /// Reads strength and dilatancy from a curve. Within a moving window of axial strain q/p is averaged, and the slope of
@@ -25,8 +26,15 @@ struct Strength {
 /// The mean stress p [Pa] at which a test under `pressure` [Pa] on x mobilises the friction angle `angle` [rad].
 [[nodiscard]] double mean_stress_at(double pressure, double angle);
 
-/// True if the test reached its end, sigma_xx was held with a scatter below a tenth, and the overlaps stayed within
-/// what the contact law is good for (packing/law_range.hpp).
+/// The scatter of sigma_xx [-] above which a test is not one at a constant lateral stress.
+inline constexpr double most_lateral_scatter = 0.1;
+
+/// The rise of q/p from the third to the last quarter of a test [-] above which the test ended before its peak. Tests
+/// to 20 % end on their critical state or, of loose packings, on a plateau.
+inline constexpr double most_late_rise = 0.05;
+
+/// True if the test reached its end, sigma_xx was held (most_lateral_scatter), the strength did not rise any more
+/// (most_late_rise), and the overlaps stayed within what the contact law is good for (packing/law_range.hpp).
 [[nodiscard]] bool held(const BiaxialCurve& curve, const Strength& strength);
 
 /// Friction angle of several tests: sin phi is the slope of a line q against p through the origin, fitted to each

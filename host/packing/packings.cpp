@@ -179,7 +179,10 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
     auto rve = find(soil, recipe, seed);
     if (rve && !is_refused(*rve, note)) out.push_back(std::move(*rve));
   }
-  if (out.empty()) throw NoEquilibrium("no packing of this recipe comes to rest");
+  if (out.empty())
+    throw NoEquilibrium(
+        fmt::format("none of the {} packings of this recipe (first seed {}) comes to rest at {:.4g} kPa", seeds.size(),
+                    seeds.empty() ? 0 : seeds.front(), recipe.pressure * 1e-3));
   if (bias == Bias::measured && out.size() > 1) measure_bias(soil, recipe, out, note);
   for (const PackedRve& rve : out) {
     const bool made = std::find(made_here.begin(), made_here.end(), rve.seed) != made_here.end();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 
@@ -49,6 +50,8 @@ Failure failure_of(const std::exception_ptr& exception) {
     return {Outcome::machine_failure, "out of memory"};
   } catch (const std::logic_error& error) {
     return {Outcome::machine_failure, std::string("an error within the program: ") + error.what()};
+  } catch (const std::filesystem::filesystem_error& error) {  // its own sentence is one for programmers
+    return {Outcome::machine_failure, error.path1().string() + ": " + error.code().message()};
   } catch (const std::exception& error) {
     return {Outcome::machine_failure, error.what()};
   } catch (...) {

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -16,15 +17,27 @@
 #include "host/stages/biaxial_bvp.hpp"
 #include "host/stages/column.hpp"
 #include "host/stages/tunnel.hpp"
+#include "io/result_file.hpp"
 
 namespace voussoir::host {
 namespace {
+
+/// A run goes on beyond an increment whose RVEs are not at rest at their step limit, but it does not end as a run in
+/// equilibrium.
+Outcome answer_of_finished(const RunOptions& options) {
+  const std::vector<io::IncrementInfo> all = io::read_increments(options.folder / "run.h5");
+  const auto restless = std::count_if(all.begin(), all.end(), [](const io::IncrementInfo& i) { return !i.converged; });
+  if (restless == 0) return Outcome::done;
+  std::fprintf(stderr, "%td of %zu increments did not converge (`converged` is 0 in the table of %s/run.h5)\n",
+               restless, all.size(), options.folder.c_str());
+  return Outcome::no_equilibrium;
+}
 
 Outcome answer(RunStatus status, const RunOptions& options) {
   const std::string folder = options.folder.string();
   switch (status) {
     case RunStatus::finished:
-      return Outcome::done;
+      return answer_of_finished(options);
     case RunStatus::interrupted:
       std::fprintf(stderr, "the run was stopped on request; `--resume` goes on from the last increment in %s\n",
                    folder.c_str());

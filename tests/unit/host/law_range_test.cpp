@@ -63,6 +63,8 @@ TEST(LawRange, ATestBeyondItDoesNotHold) {
   BiaxialCurve curve;
   curve.mean_overlap = most_mean_overlap;
   EXPECT_TRUE(held(curve, {}));
+  EXPECT_TRUE(held(curve, {.late_rise = 0.9 * most_late_rise}));
+  EXPECT_FALSE(held(curve, {.late_rise = 1.1 * most_late_rise})) << "a test that ends before its peak has no strength";
   curve.mean_overlap *= 1.01;
   EXPECT_FALSE(held(curve, {}));
 }
