@@ -86,8 +86,12 @@ for setting, parts in OTHER_SOILS.items():
 # The engine's settings may differ and are said; a state that is not at rest for them is not called converged.
 said = run(words("check", "second.toml", ["engine.precision=float"])).stdout
 check("engine.precision: this case has float, the state in" in said, f"another precision is not said: {said}")
-strict = run(words("run", "second.toml", ["engine.hold_tolerance=1e-6", "engine.hold_cap=10"], fresh("strict")))
+# Its results are written, and the run ends as one of an invalid test does.
+strict = run(words("run", "second.toml", ["engine.hold_tolerance=1e-6", "engine.hold_cap=10"], fresh("strict")), code=3)
 check("does not begin at rest" in strict.stderr, f"a restless state is not said: {strict.stderr}")
+held = run(words("run", "second.toml", ["engine.hold_cap=0"], fresh("held")), code=3)
+check("rows of the path ended at the step limit" in held.stderr, f"a restless path is not said: {held.stderr}")
+check(Path("held/probe.csv").exists(), "a probe that is not at rest has lost its results")
 with Path("strict/path.csv").open(newline="") as opened:
     for row in csv.DictReader(opened):
         rests = float(row["unbalanced_ratio"]) <= 1e-6
@@ -107,6 +111,14 @@ with h5py.File(old, "r+") as opened:
         del opened["labels"].attrs[name]
 one_line(run(words("check", "second.toml"), code=2), "packing.file", "does not say which soil")
 shutil.copy("kept.h5", old)
+with h5py.File(old, "r+") as opened:
+    keys = [name for name in opened["labels"].attrs if name.startswith("soil.")]
+for key in keys:
+    with h5py.File(old, "r+") as opened:
+        del opened["labels"].attrs[key]
+    for command in ("check", "run"):
+        one_line(run(words(command, "second.toml"), code=2), "packing.file", f"does not say {key} of the soil")
+    shutil.copy("kept.h5", old)
 with h5py.File(old, "r+") as opened:
     opened["history"].attrs["names"] = np.bytes_("tangential_force,twist")
 one_line(run(words("check", "second.toml"), code=2), "law: this program's contact law keeps", "twist")
