@@ -34,6 +34,8 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// Below this size an array stands in the header of its dataset, whose checksum holds for it as well [bytes].
+constexpr std::size_t most_in_header = 4096;
 constexpr std::size_t memory_step = std::size_t{1} << 20;  ///< by which a file in memory grows [bytes]
 
 /// HDF5 prints its error stack by default; here the innermost entry becomes part of an exception instead.
@@ -62,6 +64,20 @@ Handle text_type(std::size_t size) {
   H5Tset_size(type, size);
   H5Tset_cset(type, H5T_CSET_UTF8);
   return {type, H5Tclose};
+}
+
+/// Properties of a dataset of `bytes` bytes that give its values a checksum: HDF5 has none for values that stand apart
+/// from the header, except as a filter of chunks. The whole array is one chunk.
+Handle with_checksum(const std::vector<hsize_t>& extents, std::size_t bytes) {
+  const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+  constexpr std::size_t most_in_chunk = 0xffffffff;  // of HDF5; a larger array has no checksum
+  if (bytes <= most_in_header) {
+    H5Pset_layout(list, H5D_COMPACT);
+  } else if (!extents.empty() && bytes < most_in_chunk) {
+    H5Pset_chunk(list, static_cast<int>(extents.size()), extents.data());
+    H5Pset_fletcher32(list);
+  }
+  return {list, H5Pclose};
 }
 
 herr_t append_name(hid_t, const char* name, void* out) {
@@ -93,6 +109,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   Hdf5File file(-1, path);
   const Handle access(file.checked(H5Pcreate(H5P_FILE_ACCESS), "create the file"), H5Pclose);
   file.checked(H5Pset_fapl_core(access, memory_step, 0), "create the file");
+  file.checked(H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110), "create the file");
   // HDF5 first tries to open an existing file, which would be read into memory in vain; no file can have this name.
   const std::string name = "/dev/null/" + path.filename().string();
   file.file_ = file.checked(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), "create the file");
@@ -136,8 +153,8 @@ void Hdf5File::write_array(const std::string& name, const void* values, std::siz
   const Handle space(checked(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), what),
                      H5Sclose);
   const Handle links = making_groups();
-  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), what),
-                   H5Dclose);
+  const Handle storage = with_checksum(extents, count * H5Tget_size(type));
+  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, storage, H5P_DEFAULT), what), H5Dclose);
   if (count > 0) {
     checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), what);
   }
@@ -159,8 +176,8 @@ void Hdf5File::write_text(const std::string& name, const std::string& text) {
   const Handle type = text_type(text.size() + 1);
   const Handle space(checked(H5Screate(H5S_SCALAR), what), H5Sclose);
   const Handle links = making_groups();
-  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), what),
-                   H5Dclose);
+  const Handle storage = with_checksum({}, text.size() + 1);
+  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, storage, H5P_DEFAULT), what), H5Dclose);
   checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), what);
 }
 
@@ -220,6 +237,20 @@ bool Hdf5File::has(const std::string& name) const {
     }
   }
   return name == "/" || H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+void Hdf5File::require_format(const std::string& format, std::int64_t version, const std::string& what) const {
+  if (text_attribute("/", "format") != format) {
+    throw std::runtime_error(fmt::format("{}: it is not {}", path_.string(), what));
+  }
+  // A version that is no whole number must not be rounded to one that is known.
+  const double found = number_attribute("/", "format_version");
+  if (found != static_cast<double>(version)) {
+    throw std::runtime_error(
+        fmt::format("{}: its format_version is {}, but this program knows {} only: another "
+                    "version of the program wrote the file",
+                    path_.string(), found, version));
+  }
 }
 
 std::vector<std::string> Hdf5File::members(const std::string& group) const {

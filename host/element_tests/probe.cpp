@@ -244,8 +244,7 @@ Outcome run_probe(const Case& input, const RunOptions& options) {
       confirm_lock(options, print);
       io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed), end_of_path(rve, input));
     }
-    static_cast<void>(
-        has_failed(take_probes(input.probe, input.engine, rve, tables, &rve == &rves.front())));
+    static_cast<void>(has_failed(take_probes(input.probe, input.engine, rve, tables, &rve == &rves.front())));
   }
   confirm_lock(options, print);
   if (!input.probe.path.empty()) io::write_text(options.folder / "path.csv", tables.path);

@@ -168,8 +168,8 @@ TEST(LaneChoice, TheVariableComesBeforeTheProcessorAndAWishBeforeTheVariable) {
 
 TEST(LaneChoice, RefusesAVariableThatNamesNoSet) {
   const Variable wrong("avx9");
-  expect_throws<UnusableLanes>(
-      [] { choose_lanes({}); }, "the environment variable VOUSSOIR_ISA is \"avx9\"; it can be auto, scalar, v3 or v4");
+  expect_throws<UnusableLanes>([] { choose_lanes({}); },
+                               "the environment variable VOUSSOIR_ISA is \"avx9\"; it can be auto, scalar, v3 or v4");
 }
 
 TEST(LaneChoice, EverySetIsTakeableOrSaysWhyNot) {
