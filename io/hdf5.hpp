@@ -24,7 +24,8 @@ struct Array {
 /// because after a failed write it cannot close its file and ends in a segmentation fault when the program exits.
 ///
 /// HDF5 may also end in a segmentation fault where it reads damaged metadata. A file is therefore written in the format
-/// of HDF5 1.10, in which every piece of metadata has a checksum, and its arrays have checksums of their own.
+/// of HDF5 1.8, in which every piece of metadata has a checksum. Small arrays are metadata too; larger ones have an
+/// attribute `checksum`, which is compared when they are read. Files without checksums are read as well.
 class Hdf5File {
  public:
   [[nodiscard]] static Hdf5File create(const std::filesystem::path& path);
@@ -74,6 +75,8 @@ class Hdf5File {
                    const std::vector<std::size_t>& shape, Id type, const std::string& unit);
   template <class T>
   [[nodiscard]] Array<T> read_array(const std::string& name, Id type) const;
+  void add_checksum(const std::string& name, const void* values, std::size_t bytes);
+  void require_checksum(const std::string& name, const void* values, std::size_t bytes) const;
   void set_scalar(const std::string& object, const std::string& name, Id type, const void* value);
   void get_scalar(const std::string& object, const std::string& name, Id type, void* value) const;
   /// Returns `id` when it is valid; otherwise throws, with the action that was tried and HDF5's reason.
