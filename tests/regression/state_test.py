@@ -124,6 +124,25 @@ with h5py.File(old, "r+") as opened:
 one_line(run(words("check", "second.toml"), code=2), "law: this program's contact law keeps", "twist")
 shutil.copy("kept.h5", old)
 
+# A file of another version, and one with a damaged byte anywhere, is refused in one line.
+for version in (0, 2, 99, 1.5, "one"):
+    with h5py.File(old, "r+") as opened:
+        opened.attrs["format_version"] = version
+    for command in ("check", "run"):
+        one_line(run(words(command, "second.toml"), code=2), "packing.file", "format_version")
+    shutil.copy("kept.h5", old)
+whole = old.read_bytes()
+refused = 0
+for place in range(0, len(whole), 61):
+    old.write_bytes(whole[:place] + bytes([whole[place] ^ 0x10]) + whole[place + 1 :])
+    done = run(words("check", "second.toml"), code=None)
+    check(done.returncode in (0, 2), f"byte {place} is damaged: exit {done.returncode}")
+    refused += done.returncode == 2
+    if done.returncode == 2:
+        one_line(done, "packing.file")
+check(refused > 0.5 * len(range(0, len(whole), 61)), f"only {refused} damaged files were refused")
+shutil.copy("kept.h5", old)
+
 # A stored packing of a recipe is compared by its recipe, too.
 packing = next(Path("packings").glob("packing_*.h5"))
 settings = [f"packing.file={packing.absolute()}"]
