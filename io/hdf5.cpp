@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "io/atomic_file.hpp"
+#include "io/checksum.hpp"
+#include "io/superblock.hpp"
 #include "io/text_file.hpp"
 
 namespace voussoir::io {
@@ -34,6 +36,8 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// Below this size an array stands in the header of its dataset, whose checksum holds for it as well [bytes].
+constexpr std::size_t most_in_header = 4096;
 constexpr std::size_t memory_step = std::size_t{1} << 20;  ///< by which a file in memory grows [bytes]
 
 /// HDF5 prints its error stack by default; here the innermost entry becomes part of an exception instead.
@@ -62,6 +66,19 @@ Handle text_type(std::size_t size) {
   H5Tset_size(type, size);
   H5Tset_cset(type, H5T_CSET_UTF8);
   return {type, H5Tclose};
+}
+
+/// Properties of a dataset of `bytes` bytes: small ones stand in the header.
+Handle storage_for(std::size_t bytes) {
+  const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+  if (bytes > 0 && bytes <= most_in_header) H5Pset_layout(list, H5D_COMPACT);
+  return {list, H5Pclose};
+}
+
+std::int64_t checksum_of(const void* values, std::size_t bytes) {
+  Checksum sum;
+  sum.add(std::span(static_cast<const std::byte*>(values), bytes));
+  return static_cast<std::int64_t>(sum.value());
 }
 
 herr_t append_name(hid_t, const char* name, void* out) {
@@ -93,6 +110,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   Hdf5File file(-1, path);
   const Handle access(file.checked(H5Pcreate(H5P_FILE_ACCESS), "create the file"), H5Pclose);
   file.checked(H5Pset_fapl_core(access, memory_step, 0), "create the file");
+  file.checked(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), "create the file");
   // HDF5 first tries to open an existing file, which would be read into memory in vain; no file can have this name.
   const std::string name = "/dev/null/" + path.filename().string();
   file.file_ = file.checked(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), "create the file");
@@ -115,6 +133,7 @@ void Hdf5File::publish() {
   std::vector<std::byte> image(
       static_cast<std::size_t>(checked(H5Fget_file_image(file_, nullptr, 0), "finish the file")));
   checked(H5Fget_file_image(file_, image.data(), image.size()), "finish the file");
+  renew_superblock_checksum(image);
   checked(H5Fclose(std::exchange(file_, -1)), "finish the file");
   AtomicFile target(path_);
   target.write(image);
@@ -136,12 +155,13 @@ void Hdf5File::write_array(const std::string& name, const void* values, std::siz
   const Handle space(checked(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr), what),
                      H5Sclose);
   const Handle links = making_groups();
-  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), what),
-                   H5Dclose);
+  const Handle storage = storage_for(count * H5Tget_size(type));
+  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, storage, H5P_DEFAULT), what), H5Dclose);
   if (count > 0) {
     checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), what);
   }
   set_attribute(name, "unit", unit);
+  add_checksum(name, values, count * H5Tget_size(type));
 }
 
 void Hdf5File::write(const std::string& name, std::span<const double> values, const std::vector<std::size_t>& shape,
@@ -154,14 +174,27 @@ void Hdf5File::write(const std::string& name, std::span<const std::int64_t> valu
   write_array(name, values.data(), values.size(), shape, H5T_NATIVE_INT64, unit);
 }
 
+void Hdf5File::add_checksum(const std::string& name, const void* values, std::size_t bytes) {
+  if (bytes > most_in_header) set_attribute(name, "checksum", checksum_of(values, bytes));
+}
+
+void Hdf5File::require_checksum(const std::string& name, const void* values, std::size_t bytes) const {
+  if (H5Aexists_by_name(file_, name.c_str(), "checksum", H5P_DEFAULT) <= 0) return;  // small, or of another program
+  if (integer_attribute(name, "checksum") != checksum_of(values, bytes)) {
+    throw std::runtime_error(
+        fmt::format("{}: cannot read {} (it is damaged: its checksum is wrong)", path_.string(), name));
+  }
+}
+
 void Hdf5File::write_text(const std::string& name, const std::string& text) {
   const std::string what = fmt::format("write {}", name);
   const Handle type = text_type(text.size() + 1);
   const Handle space(checked(H5Screate(H5S_SCALAR), what), H5Sclose);
   const Handle links = making_groups();
-  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), what),
-                   H5Dclose);
+  const Handle storage = storage_for(text.size() + 1);
+  const Handle set(checked(H5Dcreate2(file_, name.c_str(), type, space, links, storage, H5P_DEFAULT), what), H5Dclose);
   checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), what);
+  add_checksum(name, text.c_str(), text.size() + 1);
 }
 
 void Hdf5File::write_texts(const std::string& name, const std::vector<std::string>& texts) {
@@ -222,6 +255,20 @@ bool Hdf5File::has(const std::string& name) const {
   return name == "/" || H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0;
 }
 
+void Hdf5File::require_format(const std::string& format, std::int64_t version, const std::string& what) const {
+  if (text_attribute("/", "format") != format) {
+    throw std::runtime_error(fmt::format("{}: it is not {}", path_.string(), what));
+  }
+  // A version that is no whole number must not be rounded to one that is known.
+  const double found = number_attribute("/", "format_version");
+  if (found != static_cast<double>(version)) {
+    throw std::runtime_error(
+        fmt::format("{}: its format_version is {}, but this program knows {} only: another "
+                    "version of the program wrote the file",
+                    path_.string(), found, version));
+  }
+}
+
 std::vector<std::string> Hdf5File::members(const std::string& group) const {
   std::vector<std::string> names;
   if (has(group)) {
@@ -264,6 +311,7 @@ Array<T> Hdf5File::read_array(const std::string& name, Id type) const {
   if (count > 0) {
     checked(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()), what);
   }
+  require_checksum(name, array.values.data(), count * sizeof(T));
   return array;
 }
 
@@ -294,6 +342,7 @@ std::vector<std::string> Hdf5File::read_texts(const std::string& name) const {
   if (count > 0) {
     checked(H5Dread(set, stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()), what);
   }
+  require_checksum(name, packed.data(), packed.size());
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < count; ++i) {
     texts.emplace_back(packed.substr(i * size, size).c_str());

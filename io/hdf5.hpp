@@ -22,6 +22,10 @@ struct Array {
 ///
 /// A new file is made in memory, and `publish` gives its bytes to an AtomicFile. HDF5 itself never writes to a disk,
 /// because after a failed write it cannot close its file and ends in a segmentation fault when the program exits.
+///
+/// HDF5 may also end in a segmentation fault where it reads damaged metadata. A file is therefore written in the format
+/// of HDF5 1.8, in which every piece of metadata has a checksum. Small arrays are metadata too; larger ones have an
+/// attribute `checksum`, which is compared when they are read. Files without checksums are read as well.
 class Hdf5File {
  public:
   [[nodiscard]] static Hdf5File create(const std::filesystem::path& path);
@@ -48,6 +52,8 @@ class Hdf5File {
   void set_attribute(const std::string& object, const std::string& name, std::int64_t value);
 
   [[nodiscard]] bool has(const std::string& name) const;
+  /// Throws unless the attributes `format` and `format_version` of "/" are these; `what` names such a file.
+  void require_format(const std::string& format, std::int64_t version, const std::string& what) const;
   /// Names below a group in alphabetical order; empty for a group that does not exist.
   [[nodiscard]] std::vector<std::string> members(const std::string& group) const;
   [[nodiscard]] std::vector<std::string> attributes(const std::string& object) const;
@@ -69,6 +75,8 @@ class Hdf5File {
                    const std::vector<std::size_t>& shape, Id type, const std::string& unit);
   template <class T>
   [[nodiscard]] Array<T> read_array(const std::string& name, Id type) const;
+  void add_checksum(const std::string& name, const void* values, std::size_t bytes);
+  void require_checksum(const std::string& name, const void* values, std::size_t bytes) const;
   void set_scalar(const std::string& object, const std::string& name, Id type, const void* value);
   void get_scalar(const std::string& object, const std::string& name, Id type, void* value) const;
   /// Returns `id` when it is valid; otherwise throws, with the action that was tried and HDF5's reason.

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t gauss_points = 4;
 constexpr const char* format_name = "voussoir increment";
-const std::set<std::string> no_columns{"format", "format_version", "stage"};
+constexpr std::int64_t format_version = 1;
+const std::set<std::string> no_columns{"format", "format_version", "case_kind", "fingerprint", "stage"};
 
 struct Location {
   FieldLocation location;
@@ -39,9 +40,11 @@ std::vector<std::size_t> shape_of(const Field& field) {
   return {rows, components};
 }
 
-void write_info(Hdf5File& file, const IncrementInfo& info) {
+void write_info(Hdf5File& file, const Provenance& run, const IncrementInfo& info) {
   file.set_attribute("/", "format", std::string(format_name));
-  file.set_attribute("/", "format_version", std::int64_t{1});
+  file.set_attribute("/", "format_version", format_version);
+  file.set_attribute("/", "case_kind", run.case_kind);
+  file.set_attribute("/", "fingerprint", run.fingerprint);
   file.set_attribute("/", "stage", info.stage);
   file.make_group("/units");
   for_each_number(info, [&](const char* name, const char* unit, auto value) {
@@ -133,11 +136,11 @@ RveSnapshot read_snapshot(const Hdf5File& file, const std::string& name) {
 
 }  // namespace
 
-void write_increment_file(const std::filesystem::path& path, const MeshData& mesh, const IncrementInfo& info,
-                          const std::vector<Field>& fields, const std::vector<RveSnapshot>& snapshots,
-                          const std::vector<double>& coordinates) {
+void write_increment_file(const std::filesystem::path& path, const Provenance& run, const MeshData& mesh,
+                          const IncrementInfo& info, const std::vector<Field>& fields,
+                          const std::vector<RveSnapshot>& snapshots, const std::vector<double>& coordinates) {
   Hdf5File file = Hdf5File::create(path);
-  write_info(file, info);
+  write_info(file, run, info);
   if (!coordinates.empty()) {
     file.write("/mesh/coordinates", coordinates, {mesh.nodes(), 2}, "m");
   }
@@ -153,11 +156,26 @@ void write_increment_file(const std::filesystem::path& path, const MeshData& mes
   file.publish();
 }
 
-IncrementInfo read_increment_info(const std::filesystem::path& path) {
+/// Throws where the file says that it is another run's.
+void require_run(const Hdf5File& file, const std::vector<std::string>& names, const std::filesystem::path& path,
+                 const Provenance& run) {
+  const auto require = [&](const char* name, const std::string& wanted) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) return;
+    const std::string found = file.text_attribute("/", name);
+    if (found != wanted) {
+      throw std::runtime_error(fmt::format("{}: it is the file of another run, whose {} is {} and not {}",
+                                           path.string(), name, found, wanted));
+    }
+  };
+  require("case_kind", run.case_kind);
+  require("fingerprint", run.fingerprint);
+}
+
+IncrementInfo read_increment_info(const std::filesystem::path& path, const Provenance& run) {
   const Hdf5File file = Hdf5File::open(path);
-  if (file.text_attribute("/", "format") != format_name) {
-    throw std::runtime_error(fmt::format("{}: it is not an increment of a result", path.string()));
-  }
+  file.require_format(format_name, format_version, "an increment of a result");
+  const std::vector<std::string> names = file.attributes("/");
+  require_run(file, names, path, run);
   IncrementInfo info;
   info.stage = file.text_attribute("/", "stage");
   std::set<std::string> known = no_columns;
@@ -170,10 +188,14 @@ IncrementInfo read_increment_info(const std::filesystem::path& path) {
       value = static_cast<Value>(file.integer_attribute("/", name));
     }
   });
-  for (const auto& name : file.attributes("/")) {
+  for (const auto& name : names) {
     if (!known.contains(name)) {
       info.extra[name] = {file.number_attribute("/", name), file.text_attribute("/units", name)};
     }
+  }
+  if (fmt::format("{:04}", info.index) != path.stem().string()) {
+    throw std::runtime_error(
+        fmt::format("{}: it is a copy of increment {}, under the name of another one", path.string(), info.index));
   }
   if (file.has("/convergence/residual")) {
     info.residual_history = file.read_doubles("/convergence/residual").values;

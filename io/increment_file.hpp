@@ -24,12 +24,14 @@ void for_each_number(Info& info, Visit&& visit) {
   visit("wall_s", "s", info.wall_s);
 }
 
-/// Writes and publishes an increment's file.
-void write_increment_file(const std::filesystem::path& path, const MeshData& mesh, const IncrementInfo& info,
-                          const std::vector<Field>& fields, const std::vector<RveSnapshot>& snapshots,
-                          const std::vector<double>& coordinates);
+/// Writes and publishes an increment's file, with the kind and the fingerprint of the run that it belongs to.
+void write_increment_file(const std::filesystem::path& path, const Provenance& run, const MeshData& mesh,
+                          const IncrementInfo& info, const std::vector<Field>& fields,
+                          const std::vector<RveSnapshot>& snapshots, const std::vector<double>& coordinates);
 
-[[nodiscard]] IncrementInfo read_increment_info(const std::filesystem::path& path);
+/// Throws std::runtime_error where the file is damaged, is the file of another run, or has the name of another index.
+/// Files of older versions do not say their run.
+[[nodiscard]] IncrementInfo read_increment_info(const std::filesystem::path& path, const Provenance& run);
 
 /// The <Grid> element of one increment; `path` is the increment's file in its folder below the XDMF file.
 [[nodiscard]] std::string xdmf_grid(const std::filesystem::path& path, const MeshData& mesh, const IncrementInfo& info);

@@ -14,6 +14,7 @@ namespace voussoir::io {
 namespace {
 
 constexpr const char* format_name = "voussoir packing";
+constexpr std::int64_t format_version = 1;
 
 /// A sentence that says where the arrays disagree; empty when they agree.
 std::string disagreement(const Packing& packing) {
@@ -60,7 +61,7 @@ void write_packing(Hdf5File& file, const Packing& packing) {
   const std::vector<std::size_t> grains{packing.grains()};
   const std::vector<std::size_t> contacts{packing.contacts()};
   file.set_attribute("/", "format", std::string(format_name));
-  file.set_attribute("/", "format_version", std::int64_t{1});
+  file.set_attribute("/", "format_version", format_version);
   file.set_attribute("/", "thickness", packing.thickness);
   file.write("/radius", packing.radius, grains, "m");
   file.write("/x", packing.x, grains, "m");
@@ -98,9 +99,7 @@ void save_packing(const std::filesystem::path& path, const Packing& packing) {
 
 Packing load_packing(const std::filesystem::path& path) {
   const Hdf5File file = Hdf5File::open(path);
-  if (file.text_attribute("/", "format") != format_name) {
-    throw std::runtime_error(fmt::format("{}: it is not a packing", path.string()));
-  }
+  file.require_format(format_name, format_version, "a packing");
   Packing packing;
   packing.thickness = file.number_attribute("/", "thickness");
   packing.radius = file.read_doubles("/radius").values;

@@ -17,6 +17,7 @@ namespace voussoir::io {
 namespace {
 
 constexpr const char* format_name = "voussoir run";
+constexpr std::int64_t format_version = 1;
 namespace fs = std::filesystem;
 
 /// Calls visit(name, member) for the texts that every provenance has. These and the texts of for_each_later_text are
@@ -43,7 +44,7 @@ void for_each_later_text(Source& source, Visit&& visit) {
 
 void write_provenance(Hdf5File& file, const Provenance& provenance) {
   file.set_attribute("/", "format", std::string(format_name));
-  file.set_attribute("/", "format_version", std::int64_t{1});
+  file.set_attribute("/", "format_version", format_version);
   file.write_text("/input", provenance.input);
   file.make_group("/provenance");
   const auto write = [&](const char* name, const std::string& text) { file.set_attribute("/provenance", name, text); };
@@ -156,7 +157,7 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& folder, Provenanc
       continue;
     }
     try {
-      writer.increments_.push_back(read_increment_info(path));
+      writer.increments_.push_back(read_increment_info(path, writer.provenance_));
       writer.grids_.push_back(xdmf_grid(path, writer.mesh_, writer.increments_.back()));
     } catch (const std::exception& damage) {
       throw std::runtime_error(std::string(damage.what()) +
@@ -200,7 +201,7 @@ void ResultWriter::write(const IncrementInfo& info, const std::vector<Field>& fi
     check(field);
   }
   const auto path = increment_path(folder_, info.index);
-  write_increment_file(path, mesh_, info, fields, snapshots, coordinates);
+  write_increment_file(path, provenance_, mesh_, info, fields, snapshots, coordinates);
   increments_.push_back(info);
   grids_.push_back(xdmf_grid(path, mesh_, info));
   write_index();
@@ -240,9 +241,7 @@ void ResultWriter::write_index() const {
 
 Provenance read_provenance(const std::filesystem::path& run_file) {
   const Hdf5File file = Hdf5File::open(run_file);
-  if (file.text_attribute("/", "format") != format_name) {
-    throw std::runtime_error(fmt::format("{}: it is not the result of a run", run_file.string()));
-  }
+  file.require_format(format_name, format_version, "the result of a run");
   Provenance provenance;
   provenance.input = file.read_text("/input");
   const auto read = [&](const char* name, std::string& text) { text = file.text_attribute("/provenance", name); };
@@ -292,9 +291,10 @@ std::vector<IncrementInfo> read_increments(const std::filesystem::path& run_file
   // The folder is read and not the table of run.h5, because a kill between the two renames leaves an increment that the
   // table lacks.
   const auto folder = run_file.parent_path();
+  const Provenance run = read_provenance(run_file);
   std::vector<IncrementInfo> increments;
   for (const int index : list_increments(folder)) {
-    increments.push_back(read_increment_info(increment_path(folder, index)));
+    increments.push_back(read_increment_info(increment_path(folder, index), run));
   }
   return increments;
 }

@@ -41,6 +41,12 @@ void check_state(const io::Table& root, const io::Packing& file, Case& input) {
   }
   const std::vector<io::KeyDifference> different = differences(soil_keys(input.soil), soil);
   if (!different.empty()) refuse(root, different.front(), maker);
+  // A key that the file has lost, others being there, would let any value of the case pass.
+  for (const io::KeyDifference& lost : differences(soil, soil_keys(input.soil))) {
+    throw packing.error("file", fmt::format("does not say {} of the soil that {} was made with, but other keys of it: "
+                                            "make the state anew",
+                                            lost.key, maker));
+  }
   for (const io::KeyDifference& d : differences(engine_keys(input.engine), engine_keys_of(file))) {
     input.remarks.push_back(
         fmt::format("{}: this case has {}, {} was made with {}; the two may differ, because the run "

@@ -102,13 +102,15 @@ io::Packing end_of_path(const PackedRve& rve, const Case& input) {
   return file;
 }
 
-/// Says that a packing does not begin at rest. Its first row has the status `step_limit` then.
-void say_restless(const PackedRve& rve, const kernels::RveReport& start, const EngineCase& engine) {
-  if (start.status != kernels::RveStatus::step_limit) return;
+/// Says that a packing does not begin at rest, and returns whether it does. Its first row has the status `step_limit`
+/// where it does not.
+bool begins_at_rest(const PackedRve& rve, const kernels::RveReport& start, const EngineCase& engine) {
+  if (start.status != kernels::RveStatus::step_limit) return true;
   std::fprintf(
       stderr,
       "probe: seed %lld does not begin at rest: its unbalanced ratio is %.2g, and engine.hold_tolerance is %.2g\n",
       static_cast<long long>(rve.seed), start.unbalanced, engine.hold_tolerance);
+  return false;
 }
 
 /// Counts what the rows of a path or of probes are not: at rest, and within the contact law's range.
@@ -135,11 +137,17 @@ struct Doubts {
   }
 };
 
-/// Takes the path and stores its end in `rve`. Returns a sentence about a failure, empty without one.
-std::string take_path(const ProbeCase& probe, const EngineCase& engine, PackedRve& rve, Tables& tables) {
+/// What became of a path or of the probes of one packing.
+struct Verdict {
+  std::string failure = {};  ///< a sentence; empty where all rows were computed
+  bool at_rest = true;       ///< of the start and of all rows; a test that does not rest is not valid
+};
+
+/// Takes the path and stores its end in `rve`.
+Verdict take_path(const ProbeCase& probe, const EngineCase& engine, PackedRve& rve, Tables& tables) {
   const std::vector<double> scale = scales(probe.replicas);
   RvePool pool(rve, {engine}, scale.size());
-  say_restless(rve, pool.committed_reports().front(), engine);
+  const bool begins = begins_at_rest(rve, pool.committed_reports().front(), engine);
   Doubts doubts;
   const PathEnd end = walk_path(pool, probe.path, scale, [&](const PathPoint& at) {
     tables.path += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},", rve.seed, at.rve,
@@ -158,17 +166,17 @@ std::string take_path(const ProbeCase& probe, const EngineCase& engine, PackedRv
         rve.seed, end.missed, end.largest_miss * 100);
     std::fprintf(stderr, "probe: %s\n", said.c_str());
   }
-  if (!end.usable) return fmt::format("seed {}, {}", rve.seed, end.message);
+  if (!end.usable) return {.failure = fmt::format("seed {}, {}", rve.seed, end.message), .at_rest = false};
   PackedRve last = pool.packed(0);
   last.seed = rve.seed;
   last.consolidation_friction = rve.consolidation_friction;
   rve = std::move(last);
-  return {};
+  return {.at_rest = begins && doubts.restless == 0};
 }
 
-/// Makes all probes of all replicas from the state `rve`. Returns a sentence about a failure, empty without one.
-std::string take_probes(const ProbeCase& wanted, const EngineCase& engine, const PackedRve& rve, Tables& tables,
-                        bool show) {
+/// Makes all probes of all replicas from the state `rve`.
+Verdict take_probes(const ProbeCase& wanted, const EngineCase& engine, const PackedRve& rve, Tables& tables,
+                    bool show) {
   const std::vector<Probe> all = probes(wanted.strain);
   const std::vector<double> scale = scales(wanted.replicas);
   const std::size_t n = all.size() * scale.size();
@@ -182,7 +190,7 @@ std::string take_probes(const ProbeCase& wanted, const EngineCase& engine, const
   std::vector<fem::Tangent> unused(n);
   pool.committed(before, unused);
   const kernels::RveReport start = pool.committed_reports().front();
-  if (wanted.path.empty()) say_restless(rve, start, engine);
+  const bool begins = !wanted.path.empty() || begins_at_rest(rve, start, engine);
   const fem::BatchReport report = pool.evaluate(gradients, after, unused);
   pool.commit();
   if (show)
@@ -200,7 +208,8 @@ std::string take_probes(const ProbeCase& wanted, const EngineCase& engine, const
   }
   doubts.say(rve, "probes");
   if (show) print_tangent(start);
-  return report.usable ? "" : fmt::format("seed {}, {}", rve.seed, report.message);
+  return {.failure = report.usable ? "" : fmt::format("seed {}, {}", rve.seed, report.message),
+          .at_rest = begins && doubts.restless == 0};
 }
 
 /// The packings that are probed. Where there are several, all are used, so that no bias has to be measured to choose.
@@ -224,18 +233,18 @@ Outcome run_probe(const Case& input, const RunOptions& options) {
   confirm_lock(options, print);
   Tables tables;
   Outcome outcome = Outcome::done;
-  const auto note_failure = [&outcome](const std::string& failure) {
-    if (!failure.empty()) std::fprintf(stderr, "probe: %s\n", failure.c_str());
-    if (!failure.empty()) outcome = Outcome::no_equilibrium;
-    return !failure.empty();
+  const auto has_failed = [&outcome](const Verdict& verdict) {
+    if (!verdict.failure.empty()) std::fprintf(stderr, "probe: %s\n", verdict.failure.c_str());
+    if (!verdict.failure.empty() || !verdict.at_rest) outcome = Outcome::no_equilibrium;
+    return !verdict.failure.empty();
   };
   for (PackedRve& rve : rves) {
     if (!input.probe.path.empty()) {
-      if (note_failure(take_path(input.probe, input.engine, rve, tables))) continue;
+      if (has_failed(take_path(input.probe, input.engine, rve, tables))) continue;
       confirm_lock(options, print);
       io::save_packing(options.folder / fmt::format("end_{}.h5", rve.seed), end_of_path(rve, input));
     }
-    note_failure(take_probes(input.probe, input.engine, rve, tables, &rve == &rves.front()));
+    static_cast<void>(has_failed(take_probes(input.probe, input.engine, rve, tables, &rve == &rves.front())));
   }
   confirm_lock(options, print);
   if (!input.probe.path.empty()) io::write_text(options.folder / "path.csv", tables.path);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 
 #include "host/record/remarks.hpp"
@@ -79,6 +80,15 @@ RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& proven
                     "without them",
                     result_index_ - present, result_index_, (folder_ / "increments").string()));
   }
+}
+
+void RunRecorder::require_all_files() const {
+  const std::vector<io::IncrementInfo> present = io::read_increments(folder_ / "run.h5");
+  if (static_cast<int>(present.size()) == result_index_) return;
+  throw std::runtime_error(fmt::format(
+      "{}: the last checkpoint says that the run is finished and has written {} result files, but there are "
+      "{}: put the files back, or begin anew with --replace",
+      (folder_ / "increments").string(), result_index_, present.size()));
 }
 
 void RunRecorder::confirm() {

@@ -25,7 +25,9 @@ class RunRecorder {
   RunRecorder(const RunOptions& options, const io::Provenance& provenance, io::MeshData mesh, RunLog& log);
 
   [[nodiscard]] bool finished() const { return finished_; }  ///< an earlier process has finished this run
-  [[nodiscard]] const io::Checkpoint* resumed() const;       ///< the checkpoint to go on from; nullptr at a start
+  /// Throws std::runtime_error where result files of a finished run are missing, damaged or those of another run.
+  void require_all_files() const;
+  [[nodiscard]] const io::Checkpoint* resumed() const;  ///< the checkpoint to go on from; nullptr at a start
   [[nodiscard]] const std::string& resumed_stage() const { return resumed_stage_; }  ///< empty at a start
   [[nodiscard]] int resumed_stage_index() const { return resumed_stage_index_; }
   [[nodiscard]] RunLog& log() { return log_; }

@@ -55,6 +55,7 @@ void GroundRun::open_ground(const MaterialCase& material, const PackingNote& not
 }
 
 void GroundRun::report_finished() {
+  recorder_.require_all_files();
   log().line(fmt::format("the run in {} is finished already, there is nothing to do", recorder_.folder().string()));
 }
 

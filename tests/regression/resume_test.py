@@ -1,5 +1,6 @@
 """A run that is stopped or killed and resumed gives the bits of a run that was left alone."""
 
+import shutil
 import signal
 
 import h5py
@@ -52,6 +53,30 @@ check("kind column" in column.stderr, f"the column of a tunnel passes for the tu
 check_same(straight, killed)
 run(command(CASE, straight, SETTINGS, "--replace"))
 check_same(straight, killed)
+
+# An increment of another run, one under another name and one of another version stop a resume; so do missing files of a
+# run that its checkpoints call finished.
+mixed = fresh("mixed")
+start_and_signal(command(CASE, mixed, SETTINGS), mixed / "increments/0006.h5", signal.SIGTERM)
+kept = (mixed / "increments/0003.h5").read_bytes()
+for source, said in (
+    (straight / "column/increments/0003.h5", "another run, whose case_kind is column"),
+    (mixed / "increments/0005.h5", "a copy of increment 5"),
+):
+    shutil.copy(source, mixed / "increments/0003.h5")
+    refused = run(command(CASE, mixed, SETTINGS, "--resume"), code=4)
+    check(said in refused.stderr and "0003.h5" in refused.stderr, f"a wrong increment is not named: {refused.stderr}")
+for attribute, value in (("fingerprint", "0123456789abcdef"), ("format_version", 2)):
+    (mixed / "increments/0003.h5").write_bytes(kept)
+    with h5py.File(mixed / "increments/0003.h5", "r+") as opened:
+        opened.attrs[attribute] = value
+    refused = run(command(CASE, mixed, SETTINGS, "--resume"), code=4)
+    check(attribute in refused.stderr and "0003.h5" in refused.stderr, f"{attribute}: {refused.stderr}")
+(mixed / "increments/0003.h5").write_bytes(kept)
+shutil.rmtree(mixed / "checkpoints")
+shutil.copytree(straight / "checkpoints", mixed / "checkpoints")
+refused = run(command(CASE, mixed, SETTINGS, "--resume"), code=4)
+check("result files, but there are" in refused.stderr, f"missing results are not said: {refused.stderr}")
 
 # A run killed before it had a run.h5 is no obstacle; another kind in its place leaves nothing of a replaced run.
 for words in ([], ["--resume"], ["--replace"]):

@@ -86,8 +86,12 @@ for setting, parts in OTHER_SOILS.items():
 # The engine's settings may differ and are said; a state that is not at rest for them is not called converged.
 said = run(words("check", "second.toml", ["engine.precision=float"])).stdout
 check("engine.precision: this case has float, the state in" in said, f"another precision is not said: {said}")
-strict = run(words("run", "second.toml", ["engine.hold_tolerance=1e-6", "engine.hold_cap=10"], fresh("strict")))
+# Its results are written, and the run ends as one of an invalid test does.
+strict = run(words("run", "second.toml", ["engine.hold_tolerance=1e-6", "engine.hold_cap=10"], fresh("strict")), code=3)
 check("does not begin at rest" in strict.stderr, f"a restless state is not said: {strict.stderr}")
+held = run(words("run", "second.toml", ["engine.hold_cap=0"], fresh("held")), code=3)
+check("rows of the path ended at the step limit" in held.stderr, f"a restless path is not said: {held.stderr}")
+check(Path("held/probe.csv").exists(), "a probe that is not at rest has lost its results")
 with Path("strict/path.csv").open(newline="") as opened:
     for row in csv.DictReader(opened):
         rests = float(row["unbalanced_ratio"]) <= 1e-6
@@ -108,8 +112,35 @@ with h5py.File(old, "r+") as opened:
 one_line(run(words("check", "second.toml"), code=2), "packing.file", "does not say which soil")
 shutil.copy("kept.h5", old)
 with h5py.File(old, "r+") as opened:
+    keys = [name for name in opened["labels"].attrs if name.startswith("soil.")]
+for key in keys:
+    with h5py.File(old, "r+") as opened:
+        del opened["labels"].attrs[key]
+    for command in ("check", "run"):
+        one_line(run(words(command, "second.toml"), code=2), "packing.file", f"does not say {key} of the soil")
+    shutil.copy("kept.h5", old)
+with h5py.File(old, "r+") as opened:
     opened["history"].attrs["names"] = np.bytes_("tangential_force,twist")
 one_line(run(words("check", "second.toml"), code=2), "law: this program's contact law keeps", "twist")
+shutil.copy("kept.h5", old)
+
+# A file of another version, and one with a damaged byte anywhere, is refused in one line.
+for version in (0, 2, 99, 1.5, "one"):
+    with h5py.File(old, "r+") as opened:
+        opened.attrs["format_version"] = version
+    for command in ("check", "run"):
+        one_line(run(words(command, "second.toml"), code=2), "packing.file", "format_version")
+    shutil.copy("kept.h5", old)
+whole = old.read_bytes()
+refused = 0
+for place in range(0, len(whole), 61):
+    old.write_bytes(whole[:place] + bytes([whole[place] ^ 0x10]) + whole[place + 1 :])
+    done = run(words("check", "second.toml"), code=None)
+    check(done.returncode in (0, 2), f"byte {place} is damaged: exit {done.returncode}")
+    refused += done.returncode == 2
+    if done.returncode == 2:
+        one_line(done, "packing.file")
+check(refused > 0.5 * len(range(0, len(whole), 61)), f"only {refused} damaged files were refused")
 shutil.copy("kept.h5", old)
 
 # A stored packing of a recipe is compared by its recipe, too.
