@@ -6,9 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "host/record/remarks.hpp"
+#include "io/input_error.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -44,6 +47,27 @@ std::string remarks(const EquilibriumReport& found) {
   return text;
 }
 
+/// Throws where a checkpoint is one of another kind of run, as a tunnel's and its column's, which share the
+/// fingerprint.
+void expect_kind(const io::Checkpoint& checkpoint, const std::string& kind, const std::filesystem::path& folder) {
+  const bool told = checkpoint.blobs().contains("kind");
+  // Checkpoints of older versions do not tell it; there run.h5 does.
+  if (!told && std::filesystem::exists(folder / "run.h5")) return;
+  const std::string theirs = told ? checkpoint.get_text("kind") : "that no file tells";
+  if (theirs == kind) return;
+  throw io::InputError("--resume", folder.string(),
+                       "holds a checkpoint of the kind " + theirs + ", but this case is a " + kind);
+}
+
+io::Provenance provenance_in(const std::filesystem::path& file) {
+  try {
+    return io::read_provenance(file);
+  } catch (const std::runtime_error& damage) {
+    throw std::runtime_error(std::string(damage.what()) +
+                             "; where that file is removed, --resume makes it anew and goes on");
+  }
+}
+
 }  // namespace
 
 RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& provenance, io::MeshData mesh, RunLog& log)
@@ -68,9 +92,16 @@ RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& proven
   finished_ = record.at(2) != 0;
   sequence_ = loaded_->increment;
   totals_ = totals_from(checkpoint);
-  if (std::filesystem::exists(folder_ / "run.h5")) provenance_ = io::read_provenance(folder_ / "run.h5");
+  expect_kind(checkpoint, provenance.case_kind, folder_);
+  const bool indexed = std::filesystem::exists(folder_ / "run.h5");
+  if (indexed) provenance_ = provenance_in(folder_ / "run.h5");
+  if (!indexed)
+    log_.warning(
+        fmt::format("{} has vanished; it is made anew from the increments, and tables that the run wrote "
+                    "before its checkpoint may be missing in it",
+                    (folder_ / "run.h5").string()));
   for (const std::string& line : resume_differences(provenance_, provenance)) log_.line(line);
-  if (finished_) return;
+  if (finished_ && indexed) return;
   writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
   const auto present = static_cast<int>(writer_->increments().size());
   if (present < result_index_) {
@@ -149,6 +180,7 @@ void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn
 void RunRecorder::save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished) {
   confirm();
   checkpoint.put_text("stage", stage);
+  checkpoint.put_text("kind", provenance_.case_kind);
   host::save(totals_, checkpoint);
   const std::array<std::int64_t, 3> record{stage_index, result_index_, finished ? 1 : 0};
   checkpoint.put_integers("record", record);
