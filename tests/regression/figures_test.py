@@ -147,6 +147,14 @@ class Runs(unittest.TestCase):
         self.assertEqual((status, out, len(err)), (2, [f"wrote {folder}/convergence.png"], 1))
         self.assertIn("left out: runs/hole/increments/0002.h5 cannot be read", err[0])
 
+    def test_a_pipe_is_not_waited_for(self):
+        folder = copy("piped")
+        (folder / "increments/0002.h5").unlink()
+        os.mkfifo(folder / "increments/0002.h5")
+        status, _, err = call(figures, folder, "--only", "convergence")
+        self.assertEqual((status, len(err)), (2, 1))
+        self.assertIn("increments/0002.h5 cannot be read: it is a folder, a pipe or a device", err[0])
+
 
 class Faults(unittest.TestCase):
     def test_one_figure_loses_no_other(self):
