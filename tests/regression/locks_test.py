@@ -97,7 +97,11 @@ newest = max((two / "checkpoints").iterdir())
 newest.unlink()
 os.mkfifo(newest)
 second = start(command(CASE, two, LONG, "--resume"))
-wait_until(lambda: lock.exists() and f"process {second.pid}\n" in (two / "run.lock").read_text(), second, "lock of the second run")
+wait_until(
+    lambda: lock.exists() and f"process {second.pid}\n" in (two / "run.lock").read_text(),
+    second,
+    "lock of the second run",
+)
 # Another process takes the folder over, for example from another host: this run ends and leaves the folder.
 kept = (two / "run.lock").read_text()
 (two / "new.tmp").write_text(kept.replace(f"process {second.pid}\n", "process 1\n"))
@@ -154,6 +158,15 @@ expect_refusal(command(CASE, swept / "two", QUICK), "the folder above it", f"pro
 sweep.send_signal(signal.SIGTERM)
 sweep.communicate(timeout=60)
 check(sweep.returncode == 130, f"the sweep ended with {sweep.returncode}")
+
+# One of its runs is killed: the others run, and one line says which and why.
+sweep = start([*words, "--resume"])
+one = swept / "one/run.lock"
+wait_until(lambda: one.exists() and "process" in one.read_text(), sweep, "a lock of a run")
+os.kill(int(one.read_text().split("process ")[1].split()[0]), signal.SIGKILL)
+said = sweep.communicate(timeout=60)[1]
+check(sweep.returncode == 4 and said.count("\n") == 1, f"a killed run of a sweep: exit {sweep.returncode}: {said}")
+check("swept/one was killed by SIGKILL; --resume goes on" in said, f"the line does not say what happened: {said}")
 
 
 # Packings: the second process waits for the first.
