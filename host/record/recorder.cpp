@@ -101,14 +101,15 @@ RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& proven
                     "before its checkpoint may be missing in it",
                     (folder_ / "run.h5").string()));
   for (const std::string& line : resume_differences(provenance_, provenance)) log_.line(line);
-  if (finished_ && indexed) return;
-  writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
-  const auto present = static_cast<int>(writer_->increments().size());
+  const bool whole = finished_ && indexed;
+  if (!whole) writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
+  // The files of a finished run are read, too: there is nothing to do only where they are there and not damaged.
+  const auto present = static_cast<int>(writer_ ? writer_->increments().size()
+                                                : io::read_increments(folder_ / "run.h5").size());
   if (present < result_index_) {
-    log_.warning(
-        fmt::format("{} of the {} result files that the run had written have vanished from {}; it goes on "
-                    "without them",
-                    result_index_ - present, result_index_, (folder_ / "increments").string()));
+    log_.warning(fmt::format("{} of the {} result files that the run had written have vanished from {}{}",
+                             result_index_ - present, result_index_, (folder_ / "increments").string(),
+                             finished_ ? "; --replace computes them anew" : "; it goes on without them"));
   }
 }
 

@@ -140,6 +140,15 @@ for change in (truncate, Path.touch, Path.mkdir, os.mkfifo):
     attempt(kept, 4, ["--resume"], "its run.h5 cannot be used", "--resume", "--replace")
 attempt(kept, 0, ["--replace"])
 attempt(altered(truncate, ["checkpoints", "column"]), 0, ["--replace"])
+# A finished run whose increments have vanished or are damaged is not simply finished.
+kept = fresh("altered")
+shutil.copytree(whole, kept)
+(kept / "increments/0002.h5").unlink()
+attempt(kept, 0, ["--resume"])
+said = f"1 of the {len(rows)} result files that the run had written have vanished"
+check(said in (kept / "run.log").read_text(), "the log does not say that an increment has vanished")
+(kept / "increments/0001.h5").write_bytes(b"z" * 100)
+attempt(kept, 4, ["--resume"], "0001.h5")
 foreign = fresh("foreign")
 foreign.mkdir()
 (foreign / "run.h5").write_text("of somebody else")
