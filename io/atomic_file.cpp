@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/file_lock.hpp"
+#include "io/regular_file.hpp"
 
 namespace voussoir::io {
 
@@ -151,7 +152,7 @@ void remove_leftovers(const std::filesystem::path& folder) {
     }
   }
   for (const auto& path : temporaries) {
-    const int file = ::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    const int file = open_regular(path, O_WRONLY | O_NOFOLLOW);
     if (file < 0) {
       continue;  // its writer has renamed it by now, or it belongs to another user
     }

@@ -247,7 +247,8 @@ std::string Table::choice(std::string_view key, const std::vector<std::string>& 
   note(node, KeyType::choice, fallback ? toml_text(*fallback) : "", !fallback).choices = choices;
   std::string value = read_text(node, fallback);
   if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    fail(node, fmt::format("must be one of {}, is {}", fmt::join(choices, ", "), in_one_line(value)));
+    fail(node, fmt::format("must be one of {}, is {}", fmt::join(choices, ", "),
+                           value.empty() ? "empty" : in_one_line(value)));
   }
   return value;
 }

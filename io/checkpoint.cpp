@@ -1,15 +1,18 @@
 #include "io/checkpoint.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 
 #include "io/atomic_file.hpp"
 #include "io/checksum.hpp"
 #include "io/input_error.hpp"
+#include "io/regular_file.hpp"
 
 namespace voussoir::io {
 
@@ -96,15 +99,9 @@ struct Content {
 
 /// Throws std::runtime_error with a reason when the file is damaged.
 Content read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file.tellg();
-  if (!file || size < static_cast<std::streamoff>(sizeof(std::uint64_t))) {
-    throw std::runtime_error("is empty or cannot be read");
-  }
-  std::vector<std::byte> all(static_cast<std::size_t>(size));
-  file.seekg(0).read(reinterpret_cast<char*>(all.data()), size);
-  if (!file) {
-    throw std::runtime_error("cannot be read");
+  const std::vector<std::byte> all = read_regular(path);
+  if (all.size() < sizeof(std::uint64_t)) {
+    throw std::runtime_error("is empty");
   }
   const auto body = std::span<const std::byte>(all).first(all.size() - sizeof(std::uint64_t));
   Checksum sum;
@@ -252,6 +249,20 @@ void CheckpointStore::clear() const {
   if (fs::is_directory(folder_)) {
     remove_leftovers(folder_);
   }
+}
+
+bool holds_checkpoints(const std::filesystem::path& folder) {
+  const auto present = list(folder);
+  return std::any_of(present.begin(), present.end(), [](const auto& checkpoint) {
+    const int file = open_regular(checkpoint.second, O_RDONLY);
+    if (file < 0) {
+      return false;
+    }
+    std::string head(magic.size(), '\0');
+    const ssize_t n = ::pread(file, head.data(), head.size(), sizeof(std::uint64_t));  // behind the text's length
+    ::close(file);
+    return n == static_cast<ssize_t>(magic.size()) && head == magic;
+  });
 }
 
 }  // namespace voussoir::io

@@ -62,4 +62,8 @@ class CheckpointStore {
   std::string fingerprint_;
 };
 
+/// True where a file of the folder has the name of a checkpoint and begins as one; whether it is whole is not looked
+/// at.
+[[nodiscard]] bool holds_checkpoints(const std::filesystem::path& folder);
+
 }  // namespace voussoir::io

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "io/hash.hpp"
+#include "io/regular_file.hpp"
 
 namespace voussoir::io {
 namespace {
@@ -95,9 +96,9 @@ std::string text_of(int file) {
   return text;
 }
 
-/// Text of the file that has the name `path` now; nothing where there is none.
+/// Text of the file that has the name `path` now; nothing, with the reason in errno, where there is none to read.
 std::optional<std::string> text_at(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = open_regular(path, O_RDONLY);
   if (file < 0) return {};
   std::string text = text_of(file);
   ::close(file);
@@ -149,14 +150,20 @@ bool stays(const fs::path& path, const std::string& text) {
   return text_at(path) == text;
 }
 
-/// The holder as the file names it. A process that took the lock in this moment has not written its name yet.
-std::optional<LockHolder> holder_soon(int file) {
+/// The holder as the text names it, which is asked for anew. A process that took the lock in this moment has not
+/// written its name yet.
+template <class Text>
+std::optional<LockHolder> holder_soon(const Text& text) {
   constexpr int looks = 25;
   for (int k = 0; k < looks; ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    if (auto holder = holder_in(text_of(file))) return holder;
+    if (auto holder = holder_in(text())) return holder;
   }
   return {};
+}
+
+bool is_this_process(const LockHolder& holder) {
+  return holder.on_this_host() && holder.process == static_cast<int>(::getpid());
 }
 
 }  // namespace
@@ -192,7 +199,7 @@ void FileLock::close_file() {
 }
 
 bool FileLock::make_anew() {
-  const int file = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const int file = open_regular(path_, O_RDWR | O_CREAT | O_EXCL);
   if (file < 0 && errno != EEXIST) fail(path_, "was removed and cannot be made anew");
   if (file < 0) return false;
   if (by_kernel_ && ask_(file) != 0) {
@@ -207,21 +214,29 @@ bool FileLock::make_anew() {
 
 FileLock::Standing FileLock::confirm() {
   if (identity_of(folder_of(path_)) != folder_) return Standing::gone;
-  const std::optional<std::string> now = text_at(path_);
+  std::optional<std::string> now = text_at(path_);
+  const bool missing = !now && errno == ENOENT;
+  if (missing && make_anew()) return Standing::made_anew;
+  const bool same = is_at(file_, path_);
+  if (!now && same) now = text_of(file_);  // somebody has taken the right to open it away
   if (now == text_) return Standing::ours;
-  if (now) return Standing::taken_over;
-  return make_anew() ? Standing::made_anew : Standing::taken_over;
+  const auto holder = holder_soon([&] { return text_at(path_).value_or(""); });
+  if (holder && !is_this_process(*holder)) return Standing::taken_over;
+  if (!same) return Standing::replaced;
+  write_text(file_, path_, text_);
+  return Standing::rewritten;
 }
 
 LockAttempt LockAttempt::make(const fs::path& path, bool take_over, FileLock::Ask ask) {
   for (;;) {
     std::unique_ptr<FileLock> lock(new FileLock(path, ask));
-    lock->file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    lock->file_ = open_regular(path, O_RDWR | O_CREAT);
+    if (lock->file_ < 0 && (errno == EISDIR || errno == ENXIO)) return {nullptr, Refusal::not_a_lock, {}};
     if (lock->file_ < 0) fail(path, "cannot be made");
     const int answer = ask(lock->file_);
     if (answer != 0 && !is_no_lock_here(errno)) {
       if (errno != EAGAIN && errno != EACCES && errno != EINTR) fail(path, "cannot be locked");
-      std::optional<LockHolder> holder = holder_soon(lock->file_);
+      std::optional<LockHolder> holder = holder_soon([&] { return text_of(lock->file_); });
       // The holder may have ended since, and the next look will find no lock.
       if (!holder && !is_at(lock->file_, path)) continue;
       return {nullptr, Refusal::running, std::move(holder)};
@@ -244,7 +259,7 @@ LockAttempt LockAttempt::make(const fs::path& path, bool take_over, FileLock::As
 }
 
 std::optional<LockHolder> running_holder(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = open_regular(path, O_RDONLY);
   if (file < 0) return {};
   struct flock whole{};
   whole.l_type = F_RDLCK;

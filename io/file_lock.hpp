@@ -47,7 +47,9 @@ class FileLock {
   enum class Standing {
     ours,        ///< it is as it was
     made_anew,   ///< it was gone and has been made anew
+    rewritten,   ///< it was this process's own file with other bytes, and has its text again
     taken_over,  ///< it names another process now
+    replaced,    ///< something else has its name, which names no process
     gone         ///< its folder is gone, or another one has its name
   };
   [[nodiscard]] Standing confirm();
@@ -73,7 +75,7 @@ struct LockAttempt {
     none,
     running,     ///< the holder runs
     other_host,  ///< the file names a process of another host, which nobody here can ask, and was not given back
-    not_a_lock   ///< the file holds something else
+    not_a_lock   ///< the file holds something else, or is no regular file
   };
   std::unique_ptr<FileLock> lock;
   Refusal refusal = Refusal::none;

@@ -1,10 +1,14 @@
 #include "io/text_file.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <system_error>
+
+#include "io/regular_file.hpp"
 
 namespace voussoir::io {
 
@@ -82,7 +86,12 @@ std::string file_fault(const std::filesystem::path& path) {
     default:
       return "is a pipe or a device, which could not be read a second time";
   }
-  return std::ifstream(path, std::ios::binary) ? "" : "may not be opened";
+  const int file = open_regular(path, O_RDONLY);
+  if (file < 0) {
+    return "may not be opened";
+  }
+  ::close(file);
+  return "";
 }
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t most_bytes) {

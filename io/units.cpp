@@ -129,8 +129,9 @@ double parse_quantity(std::string_view text, Dimension expected) {
   }
   if (found->dimension != expected) {
     throw UnitError(symbol.empty() ? fmt::format("\"{}\" has no unit, expected {}", shown, expectation(expected))
-                                   : fmt::format("\"{}\" is a {}, expected {}", shown, dimension_name(found->dimension),
-                                                 expectation(expected)));
+                                   : fmt::format("\"{}\" is {} {}, expected {}", shown,
+                                                 found->dimension == Dimension::angle ? "an" : "a",
+                                                 dimension_name(found->dimension), expectation(expected)));
   }
   const double in_si = value * found->factor;
   if (!std::isfinite(in_si)) {

@@ -17,6 +17,7 @@
 #include "host/case/packing_origin.hpp"
 #include "io/case_file.hpp"
 #include "io/hash.hpp"
+#include "io/text_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -87,6 +88,7 @@ void check_teams(const io::Table& root, const Case& input) {
 }
 
 std::string bytes_of(const std::filesystem::path& file) {
+  if (!io::file_fault(file).empty()) return {};  // the packing's reader says what is wrong
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -115,7 +117,8 @@ std::string default_title(const std::filesystem::path& file) {
 std::string read_title(const io::Table& root, const std::filesystem::path& file) {
   constexpr std::size_t longest = 200;  // of 255 bytes that the name of a file may have, the rest is for endings
   std::string title = root.text("title", default_title(file));
-  if (title.empty() || title.front() == '.' || title.find('/') != std::string::npos) {
+  if (title.empty()) throw root.error("title", "names the folder of the results: it must not be empty");
+  if (title.front() == '.' || title.find('/') != std::string::npos) {
     throw root.error("title", "names the folder of the results: there must be no / in it and no dot at its beginning");
   }
   if (title.size() > longest) {

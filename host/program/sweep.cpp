@@ -133,7 +133,10 @@ void wait_for_one(std::map<pid_t, SweepRun*>& running, bool& passed_on) {
   SweepRun& run = *found->second;
   run.end = end_of(status, passed_on);
   std::printf("%s: %s\n", run.name.c_str(), name_of(run.end).c_str());
-  static_cast<void>(lost_output());  // the summary says the same
+  static_cast<void>(lost_output());       // the summary says the same
+  if (WIFSIGNALED(status) && !passed_on)  // a run that ends by itself has said why
+    std::fprintf(stderr, "voussoir: the run %s was %s; --resume goes on with it\n", run.folder.c_str(),
+                 name_of(run.end).c_str());
   running.erase(found);
 }
 

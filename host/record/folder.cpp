@@ -9,6 +9,8 @@
 #include "host/case/load_case.hpp"
 #include "io/atomic_file.hpp"
 #include "io/case_compare.hpp"
+#include "io/checkpoint.hpp"
+#include "io/increment_file.hpp"
 #include "io/input_error.hpp"
 #include "io/result_file.hpp"
 
@@ -34,14 +36,69 @@ bool is_left_by_a_probe(const std::filesystem::directory_entry& entry) {
   return name == "probe.csv" || name == "path.csv" || is_end || is_left_by_a_start(entry);
 }
 
-/// Where the results of a folder come from; throws io::InputError where run.h5 is no result of this program.
-io::Provenance origin_of_results(const RunOptions& options) {
-  try {
-    return io::read_provenance(options.folder / "run.h5");
-  } catch (const std::runtime_error& error) {
-    throw io::InputError("--output", options.folder.string(),
-                         std::string("its run.h5 cannot be used: ") + error.what());
+/// True where a file of the folder shows by its content that a run of this program wrote there, whatever has become of
+/// run.h5.
+bool holds_increments_or_checkpoints(const std::filesystem::path& folder) {
+  const std::vector<int> increments = io::list_increments(folder);
+  const bool any = std::any_of(increments.begin(), increments.end(), [&](int index) {
+    try {
+      return io::read_increment_info(io::increment_path(folder, index)).index == index;
+    } catch (const std::exception&) {
+      return false;
+    }
+  });
+  return any || io::holds_checkpoints(folder / "checkpoints");
+}
+
+/// True where all that lies in the folder has a name that a run gives, and the folder of the increments is there.
+bool looks_like_a_run(const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  const auto known = [](const fs::directory_entry& entry) {
+    const std::string name = entry.path().filename().string();
+    return is_left_by_a_probe(entry) ||
+           std::find(further_names.begin(), further_names.end(), name) != further_names.end();
+  };
+  return fs::is_directory(folder / "increments") &&
+         std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), known);
+}
+
+/// check_folder of a folder without run.h5.
+void check_without_index(const RunOptions& options) {
+  namespace fs = std::filesystem;
+  const std::string folder = options.folder.string();
+  const bool has_probe = fs::exists(options.folder / "probe.csv");
+  const bool results = holds_increments_or_checkpoints(options.folder);
+  const bool ours = results ||
+                    std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_probe);
+  if (!ours) {
+    throw io::InputError("--output", folder, "holds files that are no results of this program; choose another folder");
   }
+  if (options.replace) return;
+  if (has_probe && !results) {
+    throw io::InputError("--output", folder, "holds a probe, which has nothing to resume: add --replace to remove it");
+  }
+  if (!results) return;  // a probe that has failed may have left the ends of its paths without probe.csv
+  const bool can_go_on = io::holds_checkpoints(options.folder / "checkpoints");
+  if (options.resume && can_go_on) return;
+  throw io::InputError(
+      options.resume ? "--resume" : "--output", folder,
+      std::string("holds results already, whose run.h5 is missing: ") +
+          (can_go_on ? "add --resume to go on, which makes it anew, or --replace to remove the results"
+                     : "there is no checkpoint from which the run could go on; add --replace to remove the results"));
+}
+
+/// check_folder of a folder whose run.h5 cannot be read.
+void check_damaged_index(const RunOptions& options, const std::string& reason) {
+  const std::string folder = options.folder.string();
+  if (!holds_increments_or_checkpoints(options.folder) && !looks_like_a_run(options.folder)) {
+    throw io::InputError("--output", folder,
+                         "its run.h5 cannot be used, and no other file there is of this program: " + reason);
+  }
+  if (options.replace) return;
+  const bool can_go_on = io::holds_checkpoints(options.folder / "checkpoints");
+  throw std::runtime_error(folder + ": its run.h5 cannot be used: " + reason + "; " +
+                           (can_go_on ? "where that file is removed, --resume makes it anew and goes on; " : "") +
+                           "--replace removes the whole run");
 }
 
 /// A sentence that names the keys in which a run's case and this case differ.
@@ -70,18 +127,17 @@ void check_folder(const RunOptions& options, const CaseIdentity& wanted) {
   const std::string folder = options.folder.string();
   if (!fs::exists(options.folder)) return;
   if (!fs::is_directory(options.folder)) throw io::InputError("--output", folder, "is not a folder");
-  const bool has_probe = fs::exists(options.folder / "probe.csv");
   if (!fs::exists(options.folder / "run.h5")) {
-    const bool ours = std::all_of(fs::directory_iterator(options.folder), fs::directory_iterator(), is_left_by_a_probe);
-    if (has_probe && ours && options.replace) return;
-    if (has_probe && ours) {
-      throw io::InputError("--output", folder,
-                           "holds a probe, which has nothing to resume: add --replace to remove it");
-    }
-    if (ours) return;  // a probe that has failed may have left the ends of its paths without probe.csv
-    throw io::InputError("--output", folder, "holds files that are no results of this program; choose another folder");
+    check_without_index(options);
+    return;
   }
-  const io::Provenance theirs = origin_of_results(options);
+  io::Provenance theirs;
+  try {
+    theirs = io::read_provenance(options.folder / "run.h5");
+  } catch (const std::runtime_error& error) {
+    check_damaged_index(options, error.what());
+    return;
+  }
   if (options.resume) {
     if (theirs.case_kind != wanted.kind) {
       throw io::InputError("--resume", folder,
@@ -100,7 +156,8 @@ void check_folder(const RunOptions& options, const CaseIdentity& wanted) {
 
 void remove_earlier_run(const RunOptions& options) {
   namespace fs = std::filesystem;
-  if (!fs::exists(options.folder / "run.h5") && !fs::exists(options.folder / "probe.csv"))
+  if (!fs::exists(options.folder / "run.h5") && !fs::exists(options.folder / "probe.csv") &&
+      !holds_increments_or_checkpoints(options.folder))
     return;  // the next run overwrites the files that such a start left
   for (const std::string_view name : first_names) fs::remove_all(options.folder / name);
   if (fs::exists(options.folder / "probe.csv")) {

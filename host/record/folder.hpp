@@ -37,7 +37,9 @@ struct CaseIdentity {
 
 /// Throws io::InputError where the run of this case must not start: the folder holds results and neither resume nor
 /// replace is asked for; it holds other files and no results; or resume is asked for and the results belong to another
-/// case. A run that was killed before it had a run.h5 leaves files that are no obstacle.
+/// case. A run that was killed before it had a run.h5 leaves files that are no obstacle. Where run.h5 has vanished, its
+/// increments and checkpoints show that the folder holds a run. Throws std::runtime_error where such a folder's run.h5
+/// cannot be read and replace is not asked for.
 void check_folder(const RunOptions& options, const CaseIdentity& wanted);
 
 /// Removes everything that a run of any kind leaves in options.folder, which check_folder has accepted before. Called

@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "host/record/remarks.hpp"
+#include "io/input_error.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -45,6 +47,27 @@ std::string remarks(const EquilibriumReport& found) {
   return text;
 }
 
+/// Throws where a checkpoint is one of another kind of run, as a tunnel's and its column's, which share the
+/// fingerprint.
+void expect_kind(const io::Checkpoint& checkpoint, const std::string& kind, const std::filesystem::path& folder) {
+  const bool told = checkpoint.blobs().contains("kind");
+  // Checkpoints of older versions do not tell it; there run.h5 does.
+  if (!told && std::filesystem::exists(folder / "run.h5")) return;
+  const std::string theirs = told ? checkpoint.get_text("kind") : "that no file tells";
+  if (theirs == kind) return;
+  throw io::InputError("--resume", folder.string(),
+                       "holds a checkpoint of the kind " + theirs + ", but this case is a " + kind);
+}
+
+io::Provenance provenance_in(const std::filesystem::path& file) {
+  try {
+    return io::read_provenance(file);
+  } catch (const std::runtime_error& damage) {
+    throw std::runtime_error(std::string(damage.what()) +
+                             "; where that file is removed, --resume makes it anew and goes on");
+  }
+}
+
 }  // namespace
 
 RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& provenance, io::MeshData mesh, RunLog& log)
@@ -69,16 +92,24 @@ RunRecorder::RunRecorder(const RunOptions& options, const io::Provenance& proven
   finished_ = record.at(2) != 0;
   sequence_ = loaded_->increment;
   totals_ = totals_from(checkpoint);
-  if (std::filesystem::exists(folder_ / "run.h5")) provenance_ = io::read_provenance(folder_ / "run.h5");
-  for (const std::string& line : resume_differences(provenance_, provenance)) log_.line(line);
-  if (finished_) return;
-  writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
-  const auto present = static_cast<int>(writer_->increments().size());
-  if (present < result_index_) {
+  expect_kind(checkpoint, provenance.case_kind, folder_);
+  const bool indexed = std::filesystem::exists(folder_ / "run.h5");
+  if (indexed) provenance_ = provenance_in(folder_ / "run.h5");
+  if (!indexed)
     log_.warning(
-        fmt::format("{} of the {} result files that the run had written have vanished from {}; it goes on "
-                    "without them",
-                    result_index_ - present, result_index_, (folder_ / "increments").string()));
+        fmt::format("{} has vanished; it is made anew from the increments, and tables that the run wrote "
+                    "before its checkpoint may be missing in it",
+                    (folder_ / "run.h5").string()));
+  for (const std::string& line : resume_differences(provenance_, provenance)) log_.line(line);
+  const bool whole = finished_ && indexed;
+  if (!whole) writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
+  // The files of a finished run are read, too: there is nothing to do only where they are there and not damaged.
+  const auto present = static_cast<int>(writer_ ? writer_->increments().size()
+                                                : io::read_increments(folder_ / "run.h5").size());
+  if (present < result_index_) {
+    log_.warning(fmt::format("{} of the {} result files that the run had written have vanished from {}{}",
+                             result_index_ - present, result_index_, (folder_ / "increments").string(),
+                             finished_ ? "; --replace computes them anew" : "; it goes on without them"));
   }
 }
 
@@ -159,6 +190,7 @@ void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn
 void RunRecorder::save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished) {
   confirm();
   checkpoint.put_text("stage", stage);
+  checkpoint.put_text("kind", provenance_.case_kind);
   host::save(totals_, checkpoint);
   const std::array<std::int64_t, 3> record{stage_index, result_index_, finished ? 1 : 0};
   checkpoint.put_integers("record", record);

@@ -5,8 +5,11 @@
 
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 
 #include "io/input_error.hpp"
+#include "io/text_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -19,6 +22,14 @@ std::string text_of(const std::optional<io::LockHolder>& holder) {
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& sentence) {
   throw io::InputError("--output", folder.string(), sentence);
+}
+
+/// What lies in place of a lock file, as the end of a sentence.
+std::string what_is(const fs::path& file) {
+  const std::string fault = io::file_fault(file);
+  if (!fault.empty()) return fault;
+  std::error_code failure;
+  return fs::file_size(file, failure) == 0 ? "is an empty file" : "is no lock file of this program";
 }
 
 /// A sweep holds the folder above those of its runs, and they are its children.
@@ -51,7 +62,8 @@ RunLock::RunLock(const fs::path& folder, bool take_over) : folder_(folder) {
                                  "scheduler has moved the job",
                                  text_of(attempt.holder)));
     case io::LockAttempt::Refusal::not_a_lock:
-      refuse(folder, fmt::format("its {} is no lock file of this program", run_lock_name));
+      refuse(folder,
+             fmt::format("its {} {}; where no process uses the folder, remove it", run_lock_name, what_is(file)));
   }
   lock_ = std::move(attempt.lock);
   expect_unlocked(folder / "column");
@@ -63,16 +75,22 @@ RunLock::RunLock(const fs::path& folder, bool take_over) : folder_(folder) {
 }
 
 std::string RunLock::confirm() const {
+  const fs::path file = folder_ / run_lock_name;
   switch (lock_->confirm()) {
     case io::FileLock::Standing::ours:
       return {};
     case io::FileLock::Standing::made_anew:
-      return fmt::format("somebody removed {} while this run holds the folder; it was made anew",
-                         (folder_ / run_lock_name).string());
-    case io::FileLock::Standing::taken_over: {
+      return fmt::format("somebody removed {} while this run holds the folder; it was made anew", file.string());
+    case io::FileLock::Standing::rewritten:
+      return fmt::format("somebody changed {} while this run holds the folder; it has its text again", file.string());
+    case io::FileLock::Standing::taken_over:
       throw std::runtime_error(
           fmt::format("{}: another process has taken the folder over; this run ends and leaves it", folder_.string()));
-    }
+    case io::FileLock::Standing::replaced:
+      throw std::runtime_error(
+          fmt::format("{}: somebody has replaced it while this run holds the folder: it {}; this run ends, since it "
+                      "cannot keep others out; where no process uses the folder, remove it, and --resume goes on",
+                      file.string(), what_is(file)));
     case io::FileLock::Standing::gone:
       break;
   }

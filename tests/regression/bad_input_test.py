@@ -1,9 +1,11 @@
 """Wrong input gives one line, exit code 2, and writes nothing."""
 
+import os
+import shutil
 import subprocess
 from pathlib import Path
 
-from program import PROGRAM, ROOT, check, fresh
+from program import PROGRAM, ROOT, check, command, fresh, run, table
 
 CASE = ROOT / "cases" / "tunnel_elastic" / "case.toml"
 OUT = fresh("results")
@@ -23,6 +25,11 @@ def expect_complaint(words, *fragments):
 def with_line(text, name="bad.toml"):
     """The case with a line appended; returns its path."""
     Path(name).write_text(CASE.read_text() + "\n" + text + "\n")
+    return name
+
+
+def fresh_file(name):
+    Path(name).unlink(missing_ok=True)
     return name
 
 
@@ -53,7 +60,12 @@ expect_complaint(run_with("output.rves=[1000000]"), "output.rves", "1000000")
 expect_complaint(["check", CASE, "--set", "output.rves=[1000000]"], "output.rves", "1000000")
 expect_complaint(run_with('output.fields=["stress", "strian"]'), "output.fields", "strian")
 expect_complaint(run_with("title=../elsewhere"), "title")
-expect_complaint(run_with("kind=tunel"), "kind", "tunnel")
+expect_complaint(run_with("title="), "title", "must not be empty")
+expect_complaint(run_with("kind=tunel"), "kind", "tunnel", "is tunel")
+expect_complaint(run_with("kind="), "kind", "tunnel", "is empty")
+expect_complaint(run_with("ground.diameter=5 deg"), "ground.diameter", "is an angle")
+os.mkfifo(fresh_file("pipe.h5"))
+expect_complaint(run_with(f"packing.file={Path('pipe.h5').absolute()}"), "packing.file", "pipe")
 Path("bad_particles.csv").write_text("id,x_m,y_m,r_m,theta_z_rad\n0,nowhere,0,0.001,0\n")
 Path("bad_meta.json").write_text('{"hSize": [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]}')
 Path("bad_packing.h5").write_text("no packing")
@@ -73,3 +85,73 @@ Path("sweep.toml").write_text(f"base = '{CASE}'\n[[run]]\nname = 'a'\n[[run]]\nn
 expect_complaint(["sweep", "sweep.toml", "-o", OUT], "name")
 Path("sweep.toml").write_text(f"base = '{CASE}'\n[[run]]\nname = 'a,b'\n")
 expect_complaint(["sweep", "sweep.toml", "-o", OUT], "name", "letters")
+
+# A run whose run.h5 has vanished or is damaged is known by its other files, and the line says the way on.
+whole = fresh("whole")
+settings = ["ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m", "volume_loss.increments=2", "gravity.ratio=2",
+            "gravity.uniform_step=0.5"]  # fmt: skip
+run(command("tunnel_elastic", whole, settings))
+rows = table(whole)
+
+
+def altered(change, left_out=()):
+    """A copy of the run whose run.h5 was changed, without the folders named."""
+    folder = fresh("altered")
+    shutil.copytree(whole, folder)
+    for name in left_out:
+        shutil.rmtree(folder / name)
+    (folder / "run.h5").unlink()
+    change(folder / "run.h5")
+    return folder
+
+
+def attempt(folder, code, option, *fragments):
+    said = run(command("tunnel_elastic", folder, settings, *option), code=code).stderr
+    check(code == 0 or said.count("\n") == 1, f"{option}: not one line: {said}")
+    for fragment in fragments:
+        check(fragment in said, f"{option}: '{fragment}' is missing in: {said}")
+    print(f"ok: {said.strip()}")
+
+
+def vanish(_file):
+    pass
+
+
+def truncate(file):
+    file.write_bytes((whole / "run.h5").read_bytes()[:1000])
+
+
+kept = altered(vanish)
+attempt(kept, 2, [], "run.h5 is missing", "--resume", "--replace")
+attempt(kept, 0, ["--resume"])
+columns = ("stage", "stage_index", "load_parameter", "residual")
+check([[row[c] for c in columns] for row in table(kept)] == [[row[c] for c in columns] for row in rows], "other rows")
+check("has vanished; it is made anew" in (kept / "run.log").read_text(), "the log does not tell of the new run.h5")
+attempt(altered(vanish), 0, ["--replace"])
+attempt(altered(vanish, ["checkpoints"]), 2, ["--resume"], "no checkpoint", "--replace")
+# The checkpoint of a column is none of a tunnel, though both have one fingerprint.
+kept = altered(vanish)
+shutil.rmtree(kept / "checkpoints")
+shutil.copytree(kept / "column" / "checkpoints", kept / "checkpoints")
+attempt(kept, 2, ["--resume"], "kind column")
+for change in (truncate, Path.touch, Path.mkdir, os.mkfifo):
+    kept = altered(change)
+    attempt(kept, 4, [], "its run.h5 cannot be used", "--resume", "--replace")
+    attempt(kept, 4, ["--resume"], "its run.h5 cannot be used", "--resume", "--replace")
+attempt(kept, 0, ["--replace"])
+attempt(altered(truncate, ["checkpoints", "column"]), 0, ["--replace"])
+# A finished run whose increments have vanished or are damaged is not simply finished.
+kept = fresh("altered")
+shutil.copytree(whole, kept)
+(kept / "increments/0002.h5").unlink()
+attempt(kept, 0, ["--resume"])
+said = f"1 of the {len(rows)} result files that the run had written have vanished"
+check(said in (kept / "run.log").read_text(), "the log does not say that an increment has vanished")
+(kept / "increments/0001.h5").write_bytes(b"z" * 100)
+attempt(kept, 4, ["--resume"], "0001.h5")
+foreign = fresh("foreign")
+foreign.mkdir()
+(foreign / "run.h5").write_text("of somebody else")
+for option in ([], ["--resume"], ["--replace"]):
+    attempt(foreign, 2, option, "its run.h5 cannot be used")
+check((foreign / "run.h5").read_text() == "of somebody else", "a file of somebody else is gone")

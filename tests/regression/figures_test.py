@@ -2,6 +2,7 @@
 figure that fails loses no other one, and the exit status tells what happened."""
 
 import contextlib
+import errno
 import io
 import json
 import os
@@ -146,6 +147,14 @@ class Runs(unittest.TestCase):
         self.assertEqual((status, out, len(err)), (2, [f"wrote {folder}/convergence.png"], 1))
         self.assertIn("left out: runs/hole/increments/0002.h5 cannot be read", err[0])
 
+    def test_a_pipe_is_not_waited_for(self):
+        folder = copy("piped")
+        (folder / "increments/0002.h5").unlink()
+        os.mkfifo(folder / "increments/0002.h5")
+        status, _, err = call(figures, folder, "--only", "convergence")
+        self.assertEqual((status, len(err)), (2, 1))
+        self.assertIn("increments/0002.h5 cannot be read: it is a folder, a pipe or a device", err[0])
+
 
 class Faults(unittest.TestCase):
     def test_one_figure_loses_no_other(self):
@@ -207,6 +216,30 @@ class Machine(unittest.TestCase):
         done = self.script("runs/specimen", "--only", "trends", "void_ratio", stdout=write)
         os.close(write)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_a_disk_that_refuses_is_no_fault_of_the_tool(self):
+        folder = copy("refusing", of="specimen")
+        for number in (errno.EROFS, errno.EACCES, errno.ENOSPC, errno.EIO):
+            refusal = OSError(number, os.strerror(number))
+            with (
+                mock.patch.object(Path, "write_bytes", side_effect=refusal),
+                mock.patch.object(Path, "unlink", side_effect=refusal),
+            ):
+                status, _, err = call(figures, folder, "--only", "convergence")
+            self.assertEqual((status, len(err)), (4, 1), err)
+            self.assertIn(f"convergence.png: cannot be written: {os.strerror(number)}", err[0])
+            for name, where in (("convergence.png", "--only"), ("trends.md", "--trends")):
+                further = ("convergence",) if where == "--only" else ()
+                with (
+                    mock.patch.dict(FIGURES, {name: mock.Mock(side_effect=refusal)}),
+                    mock.patch.object(trend_table, "curve", side_effect=refusal),
+                ):
+                    status, _, err = call(figures, "runs/coarse", where, *further)
+                self.assertEqual((status, len(err)), (4, 1), err)
+                self.assertIn(os.strerror(number), err[0])
+            with mock.patch.object(figures, "Result", side_effect=refusal):
+                status, _, err = call(figures, folder)
+            self.assertEqual((status, len(err)), (4, 1), err)
 
     def test_a_folder_that_cannot_be_made(self):
         status, out, err = call(figures, "runs/specimen", "-o", "tunnel.toml")

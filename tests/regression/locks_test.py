@@ -2,6 +2,7 @@
 run that was killed does not block; a lock of another host is taken over only where the user says so. In the folder of
 packings the second process waits for the first."""
 
+import contextlib
 import os
 import shutil
 import signal
@@ -45,7 +46,7 @@ wait_until((two / "increments/0002.h5").exists, first, "a second increment")
 names = (f"process {first.pid} ", f"host {socket.gethostname()}")
 for option in ([], ["--resume"], ["--replace"], ["--resume", "--take-over"]):
     expect_refusal(command(CASE, two, LONG, *option), *names)
-expect_refusal(command(CASE, two / "column", LONG, "--resume"), "the folder above it", *names)
+expect_refusal(command("column", two / "column", [], "--replace"), "the folder above it", *names)
 check((two / "increments/0002.h5").exists(), "a refused --replace has removed results")
 
 # A user removes the lock file: the run makes it anew and says so.
@@ -54,12 +55,53 @@ wait_until((two / "run.lock").exists, first, "a new lock file")
 expect_refusal(command(CASE, two, LONG, "--resume"), *names)
 check("it was made anew" in (two / "run.log").read_text(), "the log does not say that the lock file was removed")
 
+# Other bytes in the run's own lock file are replaced by its text.
+for content in ("", "my notes\n"):
+    (two / "run.lock").write_text(content)
+    wait_until(lambda: f"process {first.pid}\n" in (two / "run.lock").read_text(), first, "text of the lock file")
+check("it has its text again" in (two / "run.log").read_text(), "the log does not say that the lock file was changed")
+
 # kill -9, and the next run goes on.
 first.kill()
 first.communicate()
 check((two / "run.lock").exists(), "a killed run has no lock file to leave")
+
+# What is no lock file is left as it is, and is never waited for.
+lock = two / "run.lock"
+for make, what in (
+    (lambda: lock.write_text("my notes\n"), "is no lock file of this program"),
+    (lambda: os.mkfifo(lock), "is a pipe or a device"),
+    (lambda: lock.symlink_to("/dev/zero"), "is a pipe or a device"),
+):
+    lock.unlink()
+    make()
+    for word in ("--resume", "--replace"):
+        expect_refusal(command(CASE, two, LONG, word), f"its run.lock {what}", "where no process uses the folder")
+lock.unlink()
+
+# A folder takes the place of the lock file while a run goes on: the run ends and accuses no other process.
+replaced = start(command(CASE, two, LONG, "--resume"))
+wait_until(lambda: lock.exists() and f"process {replaced.pid}\n" in lock.read_text(), replaced, "its lock")
+while not lock.is_dir():
+    lock.unlink(missing_ok=True)
+    with contextlib.suppress(FileExistsError):  # the run may have been faster
+        lock.mkdir()
+said = replaced.communicate(timeout=60)[1]
+check(replaced.returncode == 4 and said.count("\n") == 1, f"exit {replaced.returncode}: {said}")
+check("run.lock: somebody has replaced it" in said and "it is a folder" in said, f"not what was found: {said}")
+expect_refusal(command(CASE, two, LONG, "--resume"), "its run.lock is a folder", "remove it")
+lock.rmdir()
+
+# A pipe in place of the newest checkpoint is passed over.
+newest = max((two / "checkpoints").iterdir())
+newest.unlink()
+os.mkfifo(newest)
 second = start(command(CASE, two, LONG, "--resume"))
-wait_until(lambda: f"process {second.pid}\n" in (two / "run.lock").read_text(), second, "lock of the second run")
+wait_until(
+    lambda: lock.exists() and f"process {second.pid}\n" in (two / "run.lock").read_text(),
+    second,
+    "lock of the second run",
+)
 # Another process takes the folder over, for example from another host: this run ends and leaves the folder.
 kept = (two / "run.lock").read_text()
 (two / "new.tmp").write_text(kept.replace(f"process {second.pid}\n", "process 1\n"))
@@ -68,7 +110,6 @@ said = second.communicate(timeout=60)[1]
 check(second.returncode == 4 and "taken the folder over" in said, f"exit {second.returncode}: {said}")
 
 # A lock of another host is refused whatever its age, and taken over where the user says so.
-lock = two / "run.lock"
 lock.write_text(kept.replace(f"host {socket.gethostname()}\n", "host elsewhere\n"))
 os.utime(lock, (0, 0))
 expect_refusal(command(CASE, two, LONG, "--resume"), "host elsewhere", "--take-over")
@@ -117,6 +158,15 @@ expect_refusal(command(CASE, swept / "two", QUICK), "the folder above it", f"pro
 sweep.send_signal(signal.SIGTERM)
 sweep.communicate(timeout=60)
 check(sweep.returncode == 130, f"the sweep ended with {sweep.returncode}")
+
+# One of its runs is killed: the others run, and one line says which and why.
+sweep = start([*words, "--resume"])
+one = swept / "one/run.lock"
+wait_until(lambda: one.exists() and "process" in one.read_text(), sweep, "a lock of a run")
+os.kill(int(one.read_text().split("process ")[1].split()[0]), signal.SIGKILL)
+said = sweep.communicate(timeout=60)[1]
+check(sweep.returncode == 4 and said.count("\n") == 1, f"a killed run of a sweep: exit {sweep.returncode}: {said}")
+check("swept/one was killed by SIGKILL; --resume goes on" in said, f"the line does not say what happened: {said}")
 
 
 # Packings: the second process waits for the first.

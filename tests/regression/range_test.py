@@ -9,7 +9,7 @@ from program import PROGRAM, check, fresh, run, table
 PACKING = '[packing]\ngrains = 60\nseeds = [1]\nfolder = "packings"\n'
 Path("pack.toml").write_text(f'kind = "pack"\n{PACKING}')
 Path("test.toml").write_text(
-    f'kind = "biaxial"\n{PACKING}[biaxial]\nstrain = "4 %"\ninertial_number = 1e-3\npressures = ["800 kPa"]\n'
+    f'kind = "biaxial"\n{PACKING}[biaxial]\nstrain = "10 %"\ninertial_number = 1e-3\npressures = ["800 kPa"]\n'
 )
 Path("column.toml").write_text(
     f'kind = "column"\n{PACKING}[engine]\npreset = "fast"\n[ground]\nheight = "20 m"\n[column]\nelements = 2\n'

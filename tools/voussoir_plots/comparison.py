@@ -257,6 +257,8 @@ def write(results: Sequence[Result], path: Path) -> None:
         except Missing as reason:
             row = trends.Trend(_statement(judge), trends.NO_DATA, str(reason))
         except Exception as error:
+            if output.is_of_the_machine(error):
+                raise
             row = trends.fault(_statement(judge), error)
             faults.append(error)
         lines.append(f"| {row.statement} | **{row.verdict}** | {row.numbers} |")

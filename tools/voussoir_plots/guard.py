@@ -18,7 +18,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 
-from .output import CannotWrite, say
+from .output import CannotWrite, is_of_the_machine, say
 from .result import Missing, Unreadable
 
 DRAWN, FAULT, UNREADABLE, MACHINE, STOPPED = 0, 1, 2, 4, 130
@@ -46,9 +46,11 @@ class Guard:
                 say(f"skipped {name}: {reason}")
                 if isinstance(reason, Unreadable):
                     self.unreadable()
-            except (CannotWrite, MemoryError):
-                raise
             except Exception as error:  # whatever it is, it must not lose the other figures
+                if isinstance(error, OSError) and is_of_the_machine(error):
+                    raise CannotWrite(f"{error.filename or path}: {error.strerror}") from error
+                if is_of_the_machine(error):
+                    raise
                 self.fault(name, error)
             else:
                 say(f"wrote {path}")
@@ -97,6 +99,9 @@ def run(main: Callable[[], int]) -> int:
         say("stopped", error=True)
         return STOPPED
     except Exception as error:  # no figure script shows a traceback without being asked
+        if isinstance(error, OSError) and is_of_the_machine(error):
+            say(f"{error.filename or Path(sys.argv[0]).name}: {error.strerror}", error=True)
+            return MACHINE
         guard = Guard("--traceback" in sys.argv)
         guard.fault(Path(sys.argv[0]).name, error)
         return guard.status

@@ -1,5 +1,6 @@
 """Files and lines that the figure scripts leave behind."""
 
+import contextlib
 import os
 import sys
 from pathlib import Path
@@ -9,6 +10,12 @@ class CannotWrite(Exception):
     """A file or a line cannot be written; the message names it and the reason."""
 
 
+def is_of_the_machine(error: BaseException) -> bool:
+    """True for what the system refuses, as a disk that is full or may not be written. An OSError without a number is
+    a library's own, as HDF5's about the content of a file."""
+    return isinstance(error, MemoryError | CannotWrite) or (isinstance(error, OSError) and error.errno is not None)
+
+
 def write(path: Path, content: bytes | str) -> None:
     """Writes a whole file or nothing: a figure of an earlier call stays as it is when the new one cannot be written."""
     temporary = path.with_name(path.name + ".tmp")
@@ -16,7 +23,8 @@ def write(path: Path, content: bytes | str) -> None:
         temporary.write_bytes(content.encode() if isinstance(content, str) else content)
         temporary.replace(path)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # of a folder that may not be written
+            temporary.unlink(missing_ok=True)
         raise CannotWrite(f"{path}: cannot be written: {error.strerror}") from error
 
 

@@ -35,6 +35,8 @@ class Unreadable(Missing):
 def reading(path: Path) -> Iterator[h5py.File]:
     """An HDF5 file. Whatever h5py, TOML and texts raise where a file is damaged becomes Unreadable."""
     try:
+        if path.exists() and not path.is_file():  # HDF5 would wait for a pipe
+            raise Unreadable(f"{path} cannot be read: it is a folder, a pipe or a device")
         with h5py.File(path, "r") as file:
             yield file
     except Missing:

@@ -80,6 +80,8 @@ def table(result: Result) -> tuple[list[trends.Trend], list[Exception]]:
         except Missing as reason:
             rows.append(trends.Trend(make.__doc__ or "", trends.NO_DATA, str(reason)))
         except Exception as error:
+            if output.is_of_the_machine(error):
+                raise
             rows.append(trends.fault(make.__doc__ or "", error))
             faults.append(error)
     return rows, faults

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <atomic>
 #include <bit>
@@ -107,6 +108,17 @@ TEST_F(CheckpointTest, KilledWriterLeavesTheFormerOne) {
   EXPECT_EQ(store_.load_latest()->increment, 1);
   store_.clear();
   EXPECT_TRUE(names().empty());
+}
+
+TEST_F(CheckpointTest, WhatIsNoRegularFileIsSkippedAndNotWaitedFor) {
+  store_.save(1, example(1));
+  const auto path = folder_ / "checkpoint_0002.bin";
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(store_.load_latest()->increment, 1);
+  EXPECT_NE(store_.load_latest()->skipped.at(0).find("is a pipe or a device"), std::string::npos);
+  fs::remove(path);
+  fs::create_directory(path);
+  EXPECT_NE(store_.load_latest()->skipped.at(0).find("is a folder"), std::string::npos);
 }
 
 TEST_F(CheckpointTest, AnotherCaseIsRefused) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -137,6 +138,40 @@ TEST_F(FileLockTest, ALockFileOfAnotherProcessIsNotTouched) {
     end(child);
   }
   EXPECT_TRUE(fs::exists(file_));
+}
+
+TEST_F(FileLockTest, OtherBytesInItsOwnFileAreReplacedByItsText) {
+  const LockAttempt attempt = LockAttempt::make(file_, false);
+  const std::string whole = text();
+  for (const char* bytes : {"", "my notes\n"}) {
+    std::ofstream(file_) << bytes;
+    EXPECT_EQ(attempt.lock->confirm(), Standing::rewritten);
+    EXPECT_EQ(text(), whole);
+  }
+  EXPECT_EQ(attempt.lock->confirm(), Standing::ours);
+}
+
+TEST_F(FileLockTest, SomethingElseOfItsNameIsNoOtherProcess) {
+  const LockAttempt attempt = LockAttempt::make(file_, false);
+  fs::remove(file_);
+  std::ofstream(file_) << "my notes\n";
+  EXPECT_EQ(attempt.lock->confirm(), Standing::replaced);
+  fs::remove(file_);
+  fs::create_directory(file_);
+  EXPECT_EQ(attempt.lock->confirm(), Standing::replaced);
+}
+
+TEST_F(FileLockTest, WhatIsNoRegularFileIsNeverWaitedFor) {
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  EXPECT_EQ(LockAttempt::make(file_, true).refusal, Refusal::not_a_lock);
+  EXPECT_FALSE(running_holder(file_));
+  fs::remove(file_);
+  fs::create_directory(file_);
+  EXPECT_EQ(LockAttempt::make(file_, true).refusal, Refusal::not_a_lock);
+  EXPECT_FALSE(running_holder(file_));
+  fs::remove(file_);
+  fs::create_symlink("/dev/zero", file_);
+  EXPECT_EQ(LockAttempt::make(file_, true).refusal, Refusal::not_a_lock);
 }
 
 TEST_F(FileLockTest, AFolderThatIsGoneIsSaid) {
