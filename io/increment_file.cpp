@@ -171,6 +171,15 @@ void require_run(const Hdf5File& file, const std::vector<std::string>& names, co
   require("fingerprint", run.fingerprint);
 }
 
+bool is_increment_file(const std::filesystem::path& path) {
+  try {
+    Hdf5File::open(path).require_format(format_name, format_version, "an increment of a result");
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 IncrementInfo read_increment_info(const std::filesystem::path& path, const Provenance& run) {
   const Hdf5File file = Hdf5File::open(path);
   file.require_format(format_name, format_version, "an increment of a result");

@@ -40,13 +40,8 @@ bool is_left_by_a_probe(const std::filesystem::directory_entry& entry) {
 /// run.h5.
 bool holds_increments_or_checkpoints(const std::filesystem::path& folder) {
   const std::vector<int> increments = io::list_increments(folder);
-  const bool any = std::any_of(increments.begin(), increments.end(), [&](int index) {
-    try {
-      return io::read_increment_info(io::increment_path(folder, index)).index == index;
-    } catch (const std::exception&) {
-      return false;
-    }
-  });
+  const bool any = std::any_of(increments.begin(), increments.end(),
+                               [&](int index) { return io::is_increment_file(io::increment_path(folder, index)); });
   return any || io::holds_checkpoints(folder / "checkpoints");
 }
 
