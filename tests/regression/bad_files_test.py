@@ -276,6 +276,7 @@ for content in (
     write("good.toml", content)
     done = subprocess.run([PROGRAM, "check", "good.toml"], check=False, capture_output=True, text=True, timeout=60)
     note(f"{content!r}", done.stderr)
+Path("fifo.toml").unlink(missing_ok=True)
 os.mkfifo("fifo.toml")
 for name, fragment in (
     (".", "folder"),
