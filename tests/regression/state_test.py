@@ -2,12 +2,13 @@
 said, and nothing that is not at rest is called converged."""
 
 import csv
+import json
 import shutil
 from pathlib import Path
 
 import h5py
 import numpy as np
-from program import PROGRAM, check, fresh, run
+from program import PROGRAM, ROOT, check, fresh, run
 
 FIRST = """kind = "probe"
 title = "first"
@@ -150,8 +151,10 @@ run(words("check", "second.toml", settings))
 one_line(run(words("check", "second.toml", [*settings, "soil.damping=0.1"]), code=2), "soil.damping: this case has 0.1")
 
 # A packing of another code comes to rest anew: its soil may differ and is said, its thickness must not.
-Path("disc_particles.csv").write_text("id,x_m,y_m,r_m,theta_z_rad\n0,0,0,1e-3,0\n1,2e-3,0,1e-3,0\n")
-Path("disc_meta.json").write_text('{"hSize": [[0.02, 0], [0, 0.02]], "Lz": 0.1, "E": 1e9}')
+SOURCE = ROOT / "tests/data/packings"
+shutil.copy(SOURCE / "cps_d_150_particles.csv", "disc_particles.csv")
+meta = json.loads((SOURCE / "cps_d_150_meta.json").read_text())
+Path("disc_meta.json").write_text(json.dumps({**meta, "Lz": 0.1, "E": 1e9}))
 settings = ["packing.file=disc_particles.csv"]
 said = run(words("check", "second.toml", settings)).stdout
 check("soil.modulus: this case has 3 GPa, the packing in" in said and "was made with 1 GPa" in said, said)
