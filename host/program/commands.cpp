@@ -62,8 +62,8 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
   refuse_too_large(input, accepted.size, rank_count());
   options.threads = kokkos.threads().count;
   options.threads_note = kokkos.threads().note;
-  // A run on a mesh stops between two increments. While grains are packed (GroundRun says when this is over), and in all
-  // other kinds, there is no increment to end first.
+  // A run on a mesh stops between two increments. While grains are packed (GroundRun says when this is over), and in
+  // all other kinds, there is no increment to end first.
   const bool has_increments = runs_on_a_mesh(input.kind) && input.material != MaterialKind::grains;
   has_increments ? catch_interrupts() : end_on_interrupts(exit_code(Outcome::interrupted));
   // A case of this kind writes into the folder of packings only, but it removes what lies in its own with --replace.

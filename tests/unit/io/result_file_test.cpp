@@ -77,6 +77,7 @@ TEST_F(ResultFileTest, ProvenanceOfTheFirstVersionsIsRead) {
   fs::create_directories(folder_);
   Hdf5File file = Hdf5File::create(folder_ / "run.h5");
   file.set_attribute("/", "format", std::string("voussoir run"));
+  file.set_attribute("/", "format_version", std::int64_t{1});
   file.write_text("/input", provenance_.input);
   file.make_group("/provenance");
   for (const char* name : {"case_kind", "fingerprint", "version", "git_hash", "kokkos", "command", "date"}) {
