@@ -31,7 +31,7 @@ inline constexpr double most_lateral_scatter = 0.1;
 
 /// The rise of q/p from the third to the last quarter of a test [-] above which the test ended before its peak. Tests
 /// to 20 % end on their critical state or, of loose packings, on a plateau.
-inline constexpr double most_late_rise = 0.05;
+inline constexpr double most_late_rise = 0.15;
 
 /// True if the test reached its end, sigma_xx was held (most_lateral_scatter), the strength did not rise any more
 /// (most_late_rise), and the overlaps stayed within what the contact law is good for (packing/law_range.hpp).

@@ -7,6 +7,7 @@ import h5py
 from program import PROGRAM, check, fresh, run, table
 
 PACKING = '[packing]\ngrains = 60\nseeds = [1]\nfolder = "packings"\n'
+fresh("packings")
 Path("pack.toml").write_text(f'kind = "pack"\n{PACKING}')
 Path("test.toml").write_text(
     f'kind = "biaxial"\n{PACKING}[biaxial]\nstrain = "10 %"\ninertial_number = 1e-3\npressures = ["800 kPa"]\n'
