@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <initializer_list>
+#include <string_view>
 
 namespace voussoir::host {
 namespace {
@@ -18,7 +19,12 @@ extern "C" void voussoir_on_signal(int signal) {
   if (signal != SIGHUP) std::signal(signal, SIG_DFL);
 }
 
-extern "C" void voussoir_end_on_signal(int /*signal*/) { _exit(code_at_once); }
+extern "C" void voussoir_end_on_signal(int /*signal*/) {
+  constexpr std::string_view
+      line = "voussoir: stopped on request; packings and tests that were not finished begin anew\n";
+  static_cast<void>(!::write(STDERR_FILENO, line.data(), line.size()));
+  _exit(code_at_once);
+}
 
 /// Gives all requests to stop to a handler. mpirun passes SIGUSR1 on and does not end the ranks itself. Under nohup
 /// SIGHUP is ignored and stays so.

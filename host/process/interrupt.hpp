@@ -8,7 +8,7 @@ namespace voussoir::host {
 /// a second SIGHUP. Where SIGHUP is ignored, as under nohup, it stays ignored.
 void catch_interrupts();
 
-/// From now on these signals end the process at once, with this exit code.
+/// From now on these signals end the process at once, with one line on standard error and this exit code.
 void end_on_interrupts(int code);
 
 /// True once a signal has arrived.

@@ -199,7 +199,7 @@ wait_until(lambda: log.exists() and "waits for process" in log.read_text(), firs
 stopped.send_signal(signal.SIGTERM)
 said = stopped.communicate(timeout=60)[1]
 check(
-    stopped.returncode == 130 and "waited for process" in said, f"stopped while waiting: {stopped.returncode}: {said}"
+    stopped.returncode == 130 and "stopped on request" in said, f"stopped while waiting: {stopped.returncode}: {said}"
 )
 first.kill()
 first.communicate()
