@@ -26,11 +26,6 @@ std::string text_of(int reason) {
   return reason == EFBIG ? text + ", the limit is that of `ulimit -f` or of the file system" : text;
 }
 
-/// A failure of fsync or of a lock that says that the file system lacks it, as some network and FUSE mounts do.
-bool is_missing_feature(int reason) {
-  return reason == EINVAL || reason == ENOSYS || reason == ENOTSUP || reason == EOPNOTSUPP || reason == ENOLCK;
-}
-
 /// Syncs an open file or folder; returns 0 or the reason of the failure. Where a file system cannot sync, the rename
 /// alone must suffice.
 int sync(int file) { return ::fsync(file) == 0 || is_missing_feature(errno) ? 0 : errno; }

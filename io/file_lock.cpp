@@ -9,7 +9,6 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <ctime>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -18,6 +17,7 @@
 
 #include "io/hash.hpp"
 #include "io/regular_file.hpp"
+#include "io/utc.hpp"
 
 namespace voussoir::io {
 namespace {
@@ -41,15 +41,6 @@ std::string machine_hash() {
   std::string id;
   file >> id;
   return id.empty() ? "" : fingerprint_of("voussoir " + id);  // the id itself is not for others to read
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text.data();
 }
 
 /// Start of a process, the 22nd field of /proc/PID/stat; 0 where it cannot be read.
@@ -139,10 +130,6 @@ bool runs_here(const LockHolder& holder) {
   return holder.born_tick == 0 || birth_of(holder.process) == holder.born_tick;
 }
 
-bool is_no_lock_here(int reason) {
-  return reason == ENOLCK || reason == EOPNOTSUPP || reason == ENOSYS || reason == EINVAL;
-}
-
 /// True where the file still has the text that this process wrote, a moment later. Without locks of the file system two
 /// processes may both find the file free; then the last to write stays.
 bool stays(const fs::path& path, const std::string& text) {
@@ -167,6 +154,10 @@ bool is_this_process(const LockHolder& holder) {
 }
 
 }  // namespace
+
+bool is_missing_feature(int reason) {
+  return reason == EINVAL || reason == ENOSYS || reason == ENOTSUP || reason == EOPNOTSUPP || reason == ENOLCK;
+}
 
 std::string LockHolder::text() const { return fmt::format("process {} on host {} since {}", process, host, since); }
 
@@ -234,7 +225,7 @@ LockAttempt LockAttempt::make(const fs::path& path, bool take_over, FileLock::As
     if (lock->file_ < 0 && (errno == EISDIR || errno == ENXIO)) return {nullptr, Refusal::not_a_lock, {}};
     if (lock->file_ < 0) fail(path, "cannot be made");
     const int answer = ask(lock->file_);
-    if (answer != 0 && !is_no_lock_here(errno)) {
+    if (answer != 0 && !is_missing_feature(errno)) {
       if (errno != EAGAIN && errno != EACCES && errno != EINTR) fail(path, "cannot be locked");
       std::optional<LockHolder> holder = holder_soon([&] { return text_of(lock->file_); });
       // The holder may have ended since, and the next look will find no lock.

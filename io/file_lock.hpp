@@ -12,6 +12,10 @@
 
 namespace voussoir::io {
 
+/// True for a failure of a lock or of fsync (errno) that says that the file system lacks it, as some network and FUSE
+/// mounts do.
+[[nodiscard]] bool is_missing_feature(int reason);
+
 /// The process that a lock file names.
 struct LockHolder {
   std::string host;     ///< name of the machine, or of the container

@@ -70,7 +70,9 @@ AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<st
     const std::string missing = missing_coarse_grains(accepted.input.soil, accepted.input.packing.grains);
     if (!missing.empty()) accepted.input.remarks.push_back(missing);
   }
-  for (std::string& warning : foretell(accepted.input).warnings) accepted.input.remarks.push_back(std::move(warning));
+  Foretold foretold = foretell(accepted.input);
+  for (std::string& warning : foretold.warnings) accepted.input.remarks.push_back(std::move(warning));
+  accepted.range = std::move(foretold.line);
   return accepted;
 }
 

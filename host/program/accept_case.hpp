@@ -14,6 +14,7 @@ namespace voussoir::host {
 struct AcceptedCase {
   Case input;
   CaseSize size;
+  std::string range = {};  ///< Foretold::line; its warnings are among the remarks of the input
 };
 
 /// Loads a case, reads the packing's file whole, makes the mesh to count its points, and estimates the memory. Throws

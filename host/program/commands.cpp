@@ -9,7 +9,6 @@
 
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
-#include "host/estimate/range.hpp"
 #include "host/estimate/report.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
@@ -82,15 +81,14 @@ Outcome command_run(const std::filesystem::path& case_file, const std::vector<st
 }
 
 Outcome command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides) {
-  const auto [input, size] = accept_case(case_file, overrides);
+  const auto [input, size, range] = accept_case(case_file, overrides);
   refuse_too_large(input, size, rank_count());
   std::string answer = input.resolved + "\n";
   if (uses_engine(input.kind, input.material)) answer += "# " + engine_note(input.engine) + "\n";
   answer += "# " + kernels::lanes_sentence(kernels::choose_lanes(input.engine.isa)) + "\n";
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";
-  const Foretold range = foretell(input);
-  if (!range.line.empty()) answer += "# " + range.line + "\n";
+  if (!range.empty()) answer += "# " + range + "\n";
   for (const std::string& remark : input.remarks) answer += "# warning: " + remark + "\n";
   return print_answer(answer);
 }

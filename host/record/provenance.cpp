@@ -3,11 +3,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <Kokkos_Core.hpp>
-#include <array>
-#include <ctime>
 
 #include "host/process/build_info.hpp"
 #include "host/ranks/session.hpp"
+#include "io/utc.hpp"
 #include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::host {
@@ -20,15 +19,6 @@ std::string kokkos_description() {
 
 std::string lanes_of(const kernels::LaneChoice& choice) {
   return fmt::format("{}; {}", kernels::description_of(choice.lanes->isa), choice.reason);
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text.data();
 }
 
 }  // namespace
@@ -44,7 +34,7 @@ io::Provenance provenance_of(const RunOptions& options, const Case& input, const
   p.build_type = build_type;
   p.kokkos = kokkos_description();
   p.command = options.command;
-  p.date = utc_now();
+  p.date = io::utc_now();
   p.threads = options.threads;
   p.ranks = rank_count();
   p.processor = kernels::processor_name();
