@@ -155,9 +155,9 @@ std::string read_text(CaseNode& node, const std::optional<std::string>& fallback
   return value;
 }
 
-/// Reads an array entry by entry: read_one(entry, default of this entry) -> value.
+/// Reads an array entry by entry: read_one(entry, default of this entry) -> value. `info` is the node's own.
 template <class T, class Default, class ReadOne>
-std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Default>>& fallback, ReadOne read_one) {
+std::vector<T> read_array(CaseNode& node, KeyInfo& info, const std::optional<std::vector<Default>>& fallback, ReadOne read_one) {
   if (node.written) {
     expect(node, Kind::array);
     if (node.children.size() > most_entries) {
@@ -178,8 +178,8 @@ std::vector<T> read_array(CaseNode& node, const std::optional<std::vector<Defaul
     meanings.push_back(entry->meaning);
   }
   node.resolved = fmt::format("[{}]", fmt::join(texts, ", "));
-  node.info->fallback = node.written ? "" : node.resolved;
-  node.info->most_entries = most_entries;
+  info.fallback = node.written ? "" : node.resolved;
+  info.most_entries = most_entries;
   node.meaning = fmt::format("[{}]", fmt::join(meanings, ", "));
   return values;
 }
@@ -286,8 +286,8 @@ std::filesystem::path Table::optional_path(std::string_view key) const {
 std::vector<double> Table::quantities(std::string_view key, Dimension dimension, const QuantityRule& rule,
                                       const std::optional<std::vector<std::string>>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
-  with_limits(note(node, KeyType::quantity, "", !fallback, true), dimension, rule);
-  return read_array<double>(node, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
+  KeyInfo& info = with_limits(note(node, KeyType::quantity, "", !fallback, true), dimension, rule);
+  return read_array<double>(node, info, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
     return read_quantity(entry, dimension, rule, entry_fallback);
   });
 }
@@ -295,8 +295,8 @@ std::vector<double> Table::quantities(std::string_view key, Dimension dimension,
 std::vector<std::int64_t> Table::integers(std::string_view key, const IntegerRule& rule,
                                           const std::optional<std::vector<std::int64_t>>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
-  with_limits(note(node, KeyType::integer, "", !fallback, true), rule);
-  return read_array<std::int64_t>(node, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
+  KeyInfo& info = with_limits(note(node, KeyType::integer, "", !fallback, true), rule);
+  return read_array<std::int64_t>(node, info, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
     return read_integer(entry, rule, entry_fallback);
   });
 }
@@ -304,8 +304,8 @@ std::vector<std::int64_t> Table::integers(std::string_view key, const IntegerRul
 std::vector<std::string> Table::texts(std::string_view key,
                                       const std::optional<std::vector<std::string>>& fallback) const {
   CaseNode& node = take(key, fallback.has_value());
-  note(node, KeyType::text, "", !fallback, true);
-  return read_array<std::string>(node, fallback, read_text);
+  KeyInfo& info = note(node, KeyType::text, "", !fallback, true);
+  return read_array<std::string>(node, info, fallback, read_text);
 }
 
 Table Table::table(std::string_view key) const {

@@ -76,7 +76,8 @@ void add_to_log(const RunOptions& options, const std::string& sentence) {
   if (!std::filesystem::exists(file)) return;
   try {
     RunLog(file, true).detail("the run ends: " + sentence);
-  } catch (const std::exception&) {  // a disk that is full may be the reason itself
+    // NOLINTNEXTLINE(bugprone-empty-catch): a disk that is full may be the reason itself, and it is on standard error.
+  } catch (const std::exception&) {
   }
 }
 

@@ -30,7 +30,8 @@ std::vector<std::string> resume_differences(const io::Provenance& begun, const i
   try {
     for (const io::KeyDifference& d : io::differences(now.input, begun.input))
       compare(d.key.c_str(), d.theirs, d.ours, no_number);
-  } catch (const std::runtime_error&) {  // an old file may hold no resolved case; its fingerprint has been compared
+    // NOLINTNEXTLINE(bugprone-empty-catch): an old file may hold no resolved case; its fingerprint has been compared.
+  } catch (const std::runtime_error&) {
   }
   compare("threads", begun.threads, now.threads, no_number);
   compare("ranks", begun.ranks, now.ranks, no_number);

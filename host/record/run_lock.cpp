@@ -26,7 +26,7 @@ std::string text_of(const std::optional<io::LockHolder>& holder) {
 
 /// What lies in place of a lock file, as the end of a sentence.
 std::string what_is(const fs::path& file) {
-  const std::string fault = io::file_fault(file);
+  std::string fault = io::file_fault(file);
   if (!fault.empty()) return fault;
   std::error_code failure;
   return fs::file_size(file, failure) == 0 ? "is an empty file" : "is no lock file of this program";
