@@ -118,9 +118,12 @@ PackingCase read_packing(const io::Table& table) {
   if (std::set<std::int64_t>(packing.seeds.begin(), packing.seeds.end()).size() != packing.seeds.size()) {
     throw table.error("seeds", "names a seed twice");
   }
+  read_integer(table, "variety", packing.variety, {.at_least = 1, .at_most = 1000});
+  packing.candidates = packing.variety;
   read_integer(table, "candidates", packing.candidates, {.at_least = 1, .at_most = 1000});
   read_quantity(table, "consolidation_friction", Dimension::none, packing.consolidation_friction,
                 {.at_least = "0", .at_most = "2"});
+  packing.consolidation_rolling = table.boolean("consolidation_rolling", packing.consolidation_rolling);
   read_quantity(table, "void_ratio", Dimension::none, packing.void_ratio, {.at_least = "0", .at_most = "1"});
   read_quantity(table, "pressure", Dimension::pressure, packing.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
   packing.mirrored = table.boolean("mirrored", packing.mirrored);

@@ -31,6 +31,7 @@ double result_file_bytes(MaterialKind material, const PackingCase& recipe, const
   double bytes = file_overhead;
   for (const ResultField& field : result_field_table) {
     if (!is_wanted(output, field) || (field.of_grains && material != MaterialKind::grains)) continue;
+    if (field.of_mix && packing.variety == 1) continue;
     bytes += 8.0 * field.components * (field.location == io::FieldLocation::node ? 2.5 * nodes : 1.25 * points);
   }
   const double snapshot = 32.0 + 48.0 * contacts_a_grain;  // bytes a grain

@@ -7,7 +7,7 @@
 #include "host/material/deferral.hpp"
 #include "host/material/snapshot_source.hpp"
 #include "host/material/state_records.hpp"
-#include "host/packing/packed_rve.hpp"
+#include "host/packing/variety.hpp"
 #include "kernels/advance_rves.hpp"
 
 namespace voussoir::host {
@@ -23,8 +23,10 @@ struct PoolOptions {
 
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
+  /// One RVE at each point, with the state of the packing that the mix names for it.
+  RvePool(const PackingMix& mix, const PoolOptions& options);
   /// Makes `n` clones of `rve`.
-  RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n);
+  RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n) : RvePool(clones_of(rve, n), options) {}
 
   [[nodiscard]] std::size_t size() const override { return batch_.size(); }
   void begin_increment() override;

@@ -191,18 +191,38 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
   return out;
 }
 
-PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note) {
+namespace {
+
+/// The `count` packings with the least bias of the recipe's candidates, the least biased first.
+std::vector<PackedRve> least_biased(const SoilCase& soil, const PackingCase& recipe, std::size_t count,
+                                    const PackingNote& note) {
   std::vector<PackedRve> all = obtain_packings(soil, recipe, seeds_of(recipe), note);
-  if (all.size() == 1) return std::move(all.front());
-  const auto less_biased = [](const PackedRve& a, const PackedRve& b) {
-    return a.bias != b.bias ? a.bias < b.bias : a.seed < b.seed;
-  };
-  PackedRve best = *std::min_element(all.begin(), all.end(), less_biased);
-  if (note) {
-    note(fmt::format("packing of seed {} is used: its largest |tau_xy|/sigma_yy in oedometric compression is {:.4f}",
-                     best.seed, best.bias));
+  if (all.size() < count) {
+    throw std::runtime_error(fmt::format("packing.variety asks for {} packings, but only {} of this recipe are at rest",
+                                         count, all.size()));
   }
-  return best;
+  if (all.size() == 1) return all;
+  std::sort(all.begin(), all.end(), [](const PackedRve& a, const PackedRve& b) {
+    return a.bias != b.bias ? a.bias < b.bias : a.seed < b.seed;
+  });
+  all.erase(all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
+  for (std::size_t k = 0; note && k < count; ++k) {
+    note(fmt::format("packing of seed {} is used{}: its largest |tau_xy|/sigma_yy in oedometric compression is {:.4f}",
+                     all[k].seed, count > 1 ? fmt::format(" as packing {}", k) : std::string(), all[k].bias));
+  }
+  return all;
+}
+
+}  // namespace
+
+PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note) {
+  return std::move(least_biased(soil, recipe, 1, note).front());
+}
+
+PackingMix choose_packings(const SoilCase& soil, const PackingCase& recipe, std::size_t n, const PackingNote& note) {
+  const auto variety = static_cast<std::size_t>(recipe.variety);
+  std::vector<PackedRve> packings = least_biased(soil, recipe, variety, note);
+  return variety == 1 ? clones_of(std::move(packings.front()), n) : mix(std::move(packings), n, recipe.seed);
 }
 
 }  // namespace voussoir::host

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/packing/packed_rve.hpp"
+#include "host/packing/variety.hpp"
 
 namespace voussoir::host {
 
@@ -30,5 +30,11 @@ enum class Bias { measured, left };
 /// The packing with the least bias of those of the recipe's candidate seeds. One packing cloned to all points biases
 /// tau_xy at all of them.
 [[nodiscard]] PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note = {});
+
+/// The packings of `n` Gauss points: the `recipe.variety` packings with the least bias of those of the recipe's
+/// candidate seeds, spread by `recipe.seed`. Throws std::runtime_error where fewer packings come to rest, because a
+/// result whose variety is smaller than the case says would pass for a surer one than it is.
+[[nodiscard]] PackingMix choose_packings(const SoilCase& soil, const PackingCase& recipe, std::size_t n,
+                                         const PackingNote& note = {});
 
 }  // namespace voussoir::host

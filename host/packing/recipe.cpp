@@ -67,6 +67,7 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     loose[k] = loose_packing(soil, recipe, seeds[k]);
     loose[k].consolidation_friction = recipe.consolidation_friction;
+    loose[k].consolidation_rolling = recipe.consolidation_rolling;
   }
   if (loose.empty()) return loose;
   return recipe.void_ratio > 0 ? settle_at_void_ratio(std::move(loose), recipe.pressure, recipe.void_ratio)
@@ -84,6 +85,10 @@ std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::in
                                  soil.size_minimum, soil.size_maximum, soil.damping, soil.thickness, recipe.grains,
                                  recipe.consolidation_friction, recipe.pressure, seed);
   if (recipe.void_ratio > 0) text += fmt::format(" e {}", recipe.void_ratio);
+  // Without friction there is no torque and hence no rolling, so that the key does not matter.
+  if (!recipe.consolidation_rolling && (recipe.consolidation_friction > 0 || recipe.void_ratio > 0)) {
+    text += " rolling 0";
+  }
   for (const kernels::GrainMaterial& m : grain_materials(soil)) {
     for (const auto& [name, number] : kernels::material_numbers) text += fmt::format(" {} {}", name, m.*number);
   }

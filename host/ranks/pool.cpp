@@ -65,17 +65,16 @@ std::vector<std::vector<std::size_t>> deal_points(std::size_t n, std::span<const
   return points;
 }
 
-RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std::span<const RankInfo> ranks,
-                   PackingNote note)
-    : rve_(std::move(rve)),
+RankPool::RankPool(PackingMix mix, const PoolOptions& options, std::span<const RankInfo> ranks, PackingNote note)
+    : mix_(std::move(mix)),
       options_(options),
       note_(std::move(note)),
-      points_(deal_points(n, ranks)),
-      trial_(n),
-      committed_(n) {
+      points_(deal_points(mix_.points(), ranks)),
+      trial_(mix_.points()),
+      committed_(mix_.points()) {
   const auto replies = ask(
       others(), [&](std::size_t r) { return make_message(r); },
-      [&] { own_ = std::make_unique<RvePool>(rve_, options_, points_[0].size()); });
+      [&] { own_ = std::make_unique<RvePool>(mix_.part(points_[0]), options_); });
   place(own_->committed_reports(), points_[0], committed_);
   std::string text = fmt::format("{} ranks:", ranks.size());
   for (std::size_t r = 0; r < ranks.size(); ++r) {
@@ -113,9 +112,8 @@ void RankPool::describe_costs() {
 Message RankPool::make_message(std::size_t rank) const {
   Message message = message_of(Command::make);
   ByteWriter write(message);
-  write_rve(write, rve_);
+  write_mix(write, mix_.part(points_[rank]));
   transfer_options(write, options_);
-  write.value(static_cast<std::uint64_t>(points_[rank].size()));
   return message;
 }
 

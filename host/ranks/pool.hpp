@@ -22,7 +22,7 @@ struct RankInfo {
 
 class RankPool final : public fem::MaterialBatch, public SnapshotSource {
  public:
-  RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std::span<const RankInfo> ranks, PackingNote note);
+  RankPool(PackingMix mix, const PoolOptions& options, std::span<const RankInfo> ranks, PackingNote note);
   ~RankPool() override;
 
   [[nodiscard]] std::size_t size() const override { return committed_.size(); }
@@ -54,7 +54,7 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
                                                                std::size_t n) const;
   void describe_costs();
 
-  PackedRve rve_;
+  PackingMix mix_;
   PoolOptions options_;
   PackingNote note_;
   std::vector<std::vector<std::size_t>> points_;  ///< by rank
