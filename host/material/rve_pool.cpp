@@ -10,7 +10,6 @@
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
-#include "host/packing/law_range.hpp"
 #include "kernels/state/committed_contacts.hpp"
 #include "kernels/state/describe_committed.hpp"
 
@@ -55,7 +54,8 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
       requests_(mix.points()),
       trial_reports_(mix.points()),
       committed_reports_(mix.points()),
-      deferral_(engine_.defer, settings_.pressure_floor) {
+      deferral_(engine_.defer, settings_.pressure_floor),
+      least_areas_(least_areas(mix)) {
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
   for (std::size_t k = 0; k < mix.points(); ++k) {
     kernels::RveReport& report = committed_reports_[k];
@@ -130,7 +130,7 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
                                    std::span<fem::Tangent> tangent) {
   const kernels::Work work = advance(gradients, !tangent.empty());
   copy_answers(trial_reports_, stress, tangent);
-  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor, least_area_);
+  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor, least_areas_);
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_.error();

@@ -74,10 +74,12 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
                                : settle(loose, recipe.pressure);
 }
 
-PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe) {
-  PackedRve rve = grains_from(io::load_packing_csv(recipe.file), soil);
-  rest_at(recipe.pressure, std::span(&rve, 1));
-  return rve;
+std::vector<PackedRve> settle_foreign_packings(const SoilCase& soil, const PackingCase& recipe) {
+  std::vector<PackedRve> rves;
+  for (const std::filesystem::path& file : recipe.files)
+    rves.push_back(grains_from(io::load_packing_csv(file), soil));
+  rest_at(recipe.pressure, rves);
+  return rves;
 }
 
 std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {

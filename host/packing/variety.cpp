@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "host/packing/grading.hpp"
+#include "host/packing/law_range.hpp"
 
 namespace voussoir::host {
 
@@ -11,6 +12,14 @@ PackingMix PackingMix::part(const std::vector<std::size_t>& points) const {
   PackingMix out{packings, {}};
   for (const std::size_t p : points) out.of_point.push_back(of_point[p]);
   return out;
+}
+
+std::vector<double> least_areas(const PackingMix& mix) {
+  std::vector<double> of_packing, of_point;
+  for (const PackedRve& rve : mix.packings)
+    of_packing.push_back((1 + least_void_ratio(rve.packing)) * rve.packing.solid_area());
+  for (const int packing : mix.of_point) of_point.push_back(of_packing[static_cast<std::size_t>(packing)]);
+  return of_point;
 }
 
 PackingMix clones_of(PackedRve rve, std::size_t n) {

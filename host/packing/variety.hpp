@@ -19,6 +19,9 @@ struct PackingMix {
   [[nodiscard]] PackingMix part(const std::vector<std::size_t>& points) const;
 };
 
+/// The cell area of each point below which its grains interpenetrate (law_range.hpp) [m^2].
+[[nodiscard]] std::vector<double> least_areas(const PackingMix& mix);
+
 /// Clones of one packing at `n` points.
 [[nodiscard]] PackingMix clones_of(PackedRve rve, std::size_t n);
 

@@ -69,6 +69,7 @@ RankPool::RankPool(PackingMix mix, const PoolOptions& options, std::span<const R
     : mix_(std::move(mix)),
       options_(options),
       note_(std::move(note)),
+      least_areas_(least_areas(mix_)),
       points_(deal_points(mix_.points(), ranks)),
       trial_(mix_.points()),
       committed_(mix_.points()) {
@@ -161,7 +162,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
     ledger_.bytes += static_cast<double>(replies[r - 1].size());
   }
   copy_answers(trial_, stress, tangent);
-  fem::BatchReport report = summarise(trial_, own_->pressure_floor(), own_->least_area());
+  fem::BatchReport report = summarise(trial_, own_->pressure_floor(), least_areas_);
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_error;

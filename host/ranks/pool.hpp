@@ -57,6 +57,7 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
   PackingMix mix_;
   PoolOptions options_;
   PackingNote note_;
+  std::vector<double> least_areas_;               ///< of all points, see least_areas [m^2]
   std::vector<std::vector<std::size_t>> points_;  ///< by rank
   std::unique_ptr<RvePool> own_;
   std::vector<kernels::RveReport> trial_, committed_;  ///< of all points
