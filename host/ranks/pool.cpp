@@ -268,11 +268,11 @@ void RankPool::set_state(std::span<const std::byte> bytes) {
 /// A pool of one RVE is filled from the RVE's record, which another rank may hold, and makes the snapshot.
 std::vector<io::RveSnapshot> RankPool::snapshots(std::span<const std::int64_t> points) const {
   std::vector<io::RveSnapshot> out;
-  RvePool one(rve_, options_, 1);
   for (const std::int64_t point : points) {
     if (point < 0 || point >= static_cast<std::int64_t>(size()))
       throw std::out_of_range("there is no Gauss point of this number");
     const auto p = static_cast<std::size_t>(point);
+    RvePool one(mix_.part({p}), options_);
     for (std::size_t r = 0; r < points_.size(); ++r) {
       const auto found = std::lower_bound(points_[r].begin(), points_[r].end(), p);
       if (found == points_[r].end() || *found != p) continue;
