@@ -277,10 +277,16 @@ std::filesystem::path Table::path(std::string_view key) const {
   return read_path(node, state_->path.parent_path());
 }
 
-std::filesystem::path Table::optional_path(std::string_view key) const {
+std::vector<std::filesystem::path> Table::optional_paths(std::string_view key) const {
   CaseNode& node = take(key, true);
-  note(node, KeyType::path, "", false);
-  return node.written ? read_path(node, state_->path.parent_path()) : std::filesystem::path{};
+  const std::filesystem::path folder = state_->path.parent_path();
+  note(node, KeyType::path, "", false, node.kind == Kind::array);
+  if (!node.written) return {};
+  if (node.kind != Kind::array) return {read_path(node, folder)};
+  if (node.children.empty()) fail(node, "must name a file, is an empty list");
+  return read_array<std::filesystem::path>(
+      node, std::optional<std::vector<std::string>>{},
+      [&](CaseNode& entry, const std::optional<std::string>&) { return read_path(entry, folder); });
 }
 
 std::vector<double> Table::quantities(std::string_view key, Dimension dimension, const QuantityRule& rule,

@@ -58,8 +58,8 @@ class Table {
   /// An existing file that can be read. The name is relative to the folder of the file that says it, with --set to that
   /// of the case file.
   [[nodiscard]] std::filesystem::path path(std::string_view key) const;
-  /// The same for a key that may be left out: the path is empty then.
-  [[nodiscard]] std::filesystem::path optional_path(std::string_view key) const;
+  /// The same for a key that may be left out, and that names one file or has an array of names.
+  [[nodiscard]] std::vector<std::filesystem::path> optional_paths(std::string_view key) const;
 
   /// Reads arrays. The limits of the rule hold for each entry; the rule's fallback is not used.
   [[nodiscard]] std::vector<double> quantities(std::string_view key, Dimension dimension, const QuantityRule& rule = {},

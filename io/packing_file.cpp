@@ -128,6 +128,10 @@ Packing load_packing(const std::filesystem::path& path) {
   return packing;
 }
 
+Packing load_any_packing(const std::filesystem::path& path) {
+  return path.extension() == ".h5" ? load_packing(path) : load_packing_csv(path);
+}
+
 std::filesystem::path packing_path(const std::filesystem::path& folder, const std::string& recipe_fingerprint) {
   return folder / fmt::format("packing_{}.h5", recipe_fingerprint);
 }

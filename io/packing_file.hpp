@@ -41,6 +41,9 @@ void save_packing(const std::filesystem::path& path, const Packing& packing);
 /// `labels`. The packing has no contact histories. Throws std::runtime_error naming file and line.
 [[nodiscard]] Packing load_packing_csv(const std::filesystem::path& path);
 
+/// Reads a file of either kind: load_packing for names that end in ".h5", load_packing_csv for others.
+[[nodiscard]] Packing load_any_packing(const std::filesystem::path& path);
+
 /// Name of the cached packing of a recipe: FOLDER/packing_FINGERPRINT.h5.
 [[nodiscard]] std::filesystem::path packing_path(const std::filesystem::path& folder,
                                                  const std::string& recipe_fingerprint);

@@ -53,20 +53,27 @@ struct SoilCase {
   double thickness = 0.1;          ///< out-of-plane thickness t of an RVE [m]
 };
 
-/// [packing] How the RVEs' common packing is made.
+/// [packing] How the RVEs' packings are made.
 struct PackingCase {
   int grains = 700;                 ///< grains of one RVE
   std::int64_t seed = 1;            ///< first seed; the candidates are seed, seed + 1, ...
   std::vector<std::int64_t> seeds;  ///< the seeds to make (kind = pack); empty: seed and candidates name them
-  int candidates = 1;               ///< number of seeds tried; the packing with the least |tau_xy|/sigma_yy is taken
-  bool mirrored = true;             ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
-  std::filesystem::path file;  ///< NAME_particles.csv of another code's packing, or a packing_*.h5; empty: the packing
-                               ///< is made from the recipe. A file has grains of its own: `grains`, seeds and density
-                               ///< are not used then
+  int candidates = 1;    ///< number of seeds tried; the `variety` packings with the least |tau_xy|/sigma_yy are taken;
+                         ///< without the key, as many as `variety`
+  int variety = 1;       ///< number of different packings at the points of a mesh (packing/variety.hpp); without the
+                         ///< key, as many as there are files
+  bool mirrored = true;  ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
+  /// NAME_particles.csv of packings of another code, or one packing_*.h5; empty: packings are made from the recipe.
+  /// Files have grains of their own: `grains`, seeds and density are not used then.
+  std::vector<std::filesystem::path> files;
   std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
   double consolidation_friction = 0.0;            ///< friction coefficient mu_t during consolidation [-]
+  bool consolidation_rolling = false;             ///< grains resist rolling during consolidation, too
   double void_ratio = 0.0;  ///< wanted at `pressure` [-]; mu_t is searched for it; 0: consolidation_friction is mu_t
   double pressure = 1.0e3;  ///< isotropic pressure of the finished packing [Pa]
+
+  /// True where the run starts from a stored state of this program.
+  [[nodiscard]] bool has_state() const { return !files.empty() && files.front().extension() == ".h5"; }
 };
 
 /// The key `engine.isa`; "auto" is the choice without a value.

@@ -1,5 +1,8 @@
 #include "host/case/grains.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
@@ -28,6 +31,7 @@ const io::QuantityRule rolling_rule{.at_least = "0", .at_most = "10"};  ///< of 
 /// Seeds are stored as float64 with the packings, and derived ones are larger by up to a million.
 constexpr std::int64_t largest_seed = 9'000'000'000'000'000;
 constexpr std::size_t most_seeds = 1000;
+constexpr std::int64_t most_variety = 1000;
 
 /// Reads `sizes` and `passing`, a grading curve, which also sets the smallest and the largest size.
 void read_grading(const io::Table& table, SoilCase& soil) {
@@ -76,10 +80,39 @@ void read_classes(const io::Table& table, SoilCase& soil) {
 /// The number of grains in a packing's file. The whole file is read, so that a fault in it is found before a run.
 int grains_of_file(const io::Table& table, const std::filesystem::path& file) {
   try {
-    const bool ours = file.extension() == ".h5";
-    return static_cast<int>((ours ? io::load_packing(file) : io::load_packing_csv(file)).grains());
+    return static_cast<int>(io::load_any_packing(file).grains());
   } catch (const std::runtime_error& error) {
     throw table.error("file", error.what());
+  }
+}
+
+/// Reads `file`, which names one file or several, and what depends on it.
+void read_files(const io::Table& table, PackingCase& packing) {
+  packing.files = table.optional_paths("file");
+  const std::set<std::filesystem::path> different(packing.files.begin(), packing.files.end());
+  if (different.size() < packing.files.size()) throw table.error("file", "names a file twice");
+  if (packing.files.empty()) return;
+  packing.grains = 0;
+  for (const std::filesystem::path& file : packing.files) {
+    packing.grains = std::max(packing.grains, grains_of_file(table, file));
+    if (packing.files.size() > 1 && file.extension() == ".h5")
+      throw table.error("file", "names a stored state among others: a state is read alone");
+  }
+}
+
+/// Reads `candidates` and `variety`. Without these keys all files are used, and one packing of those of the seeds.
+void read_variety(const io::Table& table, PackingCase& packing) {
+  packing.variety = packing.files.empty() ? 1 : static_cast<int>(packing.files.size());
+  read_integer(table, "variety", packing.variety, {.at_least = 1, .at_most = most_variety});
+  packing.candidates = packing.variety;
+  read_integer(table, "candidates", packing.candidates, {.at_least = 1, .at_most = 1000});
+  std::size_t there = static_cast<std::size_t>(packing.candidates);
+  const char* key = "candidates";
+  if (!packing.seeds.empty()) there = packing.seeds.size(), key = "seeds";
+  if (!packing.files.empty()) there = packing.files.size(), key = "file";
+  if (there < static_cast<std::size_t>(packing.variety)) {
+    throw table.error("variety", fmt::format("asks for {} different packings, but packing.{} has only {}",
+                                             packing.variety, key, there));
   }
 }
 
@@ -118,9 +151,9 @@ PackingCase read_packing(const io::Table& table) {
   if (std::set<std::int64_t>(packing.seeds.begin(), packing.seeds.end()).size() != packing.seeds.size()) {
     throw table.error("seeds", "names a seed twice");
   }
-  read_integer(table, "candidates", packing.candidates, {.at_least = 1, .at_most = 1000});
   read_quantity(table, "consolidation_friction", Dimension::none, packing.consolidation_friction,
                 {.at_least = "0", .at_most = "2"});
+  packing.consolidation_rolling = table.boolean("consolidation_rolling", packing.consolidation_rolling);
   read_quantity(table, "void_ratio", Dimension::none, packing.void_ratio, {.at_least = "0", .at_most = "1"});
   read_quantity(table, "pressure", Dimension::pressure, packing.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
   packing.mirrored = table.boolean("mirrored", packing.mirrored);
@@ -130,8 +163,8 @@ PackingCase read_packing(const io::Table& table) {
   const bool usable = folder == std::filesystem::file_type::directory ||
                       folder == std::filesystem::file_type::not_found;
   if (packing.folder.empty() || !usable) throw table.error("folder", "must name a folder, which may be a new one");
-  packing.file = table.optional_path("file");
-  if (!packing.file.empty()) packing.grains = grains_of_file(table, packing.file);
+  read_files(table, packing);
+  read_variety(table, packing);
   return packing;
 }
 

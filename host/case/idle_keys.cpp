@@ -20,10 +20,14 @@ struct IdleRule {
 
 bool on_a_mesh(const Case& c) { return runs_on_a_mesh(c.kind); }
 bool is_elastic(const Case& c) { return on_a_mesh(c) && c.material == MaterialKind::linear_elastic; }
-bool has_file(const Case& c) { return !c.packing.file.empty(); }
-bool has_state(const Case& c) { return c.packing.file.extension() == ".h5"; }
+bool has_file(const Case& c) { return !c.packing.files.empty(); }
+bool has_state(const Case& c) { return c.packing.has_state(); }
+bool has_no_mesh(const Case& c) { return !on_a_mesh(c); }
 bool has_seeds(const Case& c) { return !c.packing.seeds.empty(); }
+bool has_one_packing(const Case& c) { return has_file(c) && c.packing.variety == 1; }
+bool has_one_of_seeds(const Case& c) { return has_seeds(c) && (c.packing.variety == 1 || !on_a_mesh(c)); }
 bool searches_void_ratio(const Case& c) { return c.packing.void_ratio > 0; }
+bool is_frictionless(const Case& c) { return !searches_void_ratio(c) && c.packing.consolidation_friction == 0; }
 bool is_pack(const Case& c) { return c.kind == CaseKind::pack; }
 bool runs_tests(const Case& c) { return c.kind == CaseKind::biaxial || c.kind == CaseKind::calibrate; }
 bool has_own_pressure(const Case& c) {
@@ -36,7 +40,8 @@ const std::vector<IdleRule>& rules() {
       {"soil", {}, is_elastic, "material is \"linear_elastic\""},
       {"engine", {}, is_elastic, "material is \"linear_elastic\""},
       {"packing",
-       {"grains", "seed", "seeds", "candidates", "consolidation_friction", "void_ratio", "mirrored", "folder", "file"},
+       {"grains", "seed", "seeds", "candidates", "variety", "consolidation_friction", "consolidation_rolling",
+        "void_ratio", "mirrored", "folder", "file"},
        is_elastic,
        "material is \"linear_elastic\""},
       {"newton", {"tangent", "tangent_strain"}, is_elastic, "material is \"linear_elastic\""},
@@ -48,18 +53,22 @@ const std::vector<IdleRule>& rules() {
        runs_tests,
        "tests have the rate of biaxial.inertial_number and no hold"},
       {"packing",
-       {"grains", "seed", "seeds", "candidates", "consolidation_friction", "void_ratio", "folder"},
+       {"grains", "seeds", "candidates", "consolidation_friction", "consolidation_rolling", "void_ratio", "folder"},
        has_file,
        "packing.file has grains of its own"},
+      {"packing", {"seed"}, has_one_packing, "packing.file has grains of its own"},
       {"packing", {"pressure"}, has_state, "packing.file is a stored state, which has its own pressure"},
       {"probe", {"pressure"}, has_state, "packing.file is a stored state, which has its own pressure"},
-      {"packing", {"seed", "candidates"}, has_seeds, "packing.seeds names the seeds"},
+      {"packing", {"candidates"}, has_seeds, "packing.seeds names the seeds"},
+      {"packing", {"seed"}, has_one_of_seeds, "packing.seeds names the seeds"},
       {"packing", {"consolidation_friction"}, searches_void_ratio, "packing.void_ratio searches it"},
-      {"packing", {"pressure"}, has_own_pressure, "the kind's own table says the pressure of its packings"},
       {"packing",
-       {"mirrored"},
-       [](const Case& c) { return !on_a_mesh(c); },
-       "only kinds with a mesh have mirror images"},
+       {"consolidation_rolling"},
+       is_frictionless,
+       "packing.consolidation_friction is 0, without which grains feel no torque"},
+      {"packing", {"pressure"}, has_own_pressure, "the kind's own table says the pressure of its packings"},
+      {"packing", {"mirrored"}, has_no_mesh, "only kinds with a mesh have mirror images"},
+      {"packing", {"variety"}, has_no_mesh, "only kinds with a mesh mix packings"},
       {"soil", {"density"}, [](const Case&) { return true; }, "the motion is quasi-static, with masses of its own"},
       {"soil",
        {"passing_by"},

@@ -38,9 +38,12 @@ void read_grain_tables(const io::Table& root, Case& input) {
   input.packing = read_packing(root.table("packing"));
   input.engine = read_engine(root.table("engine"), runs_on_a_mesh(input.kind));
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
-  if (input.kind != CaseKind::probe && input.packing.file.extension() == ".h5") {
+  if (input.kind != CaseKind::probe && input.packing.has_state()) {
     throw root.table("packing").error(
         "file", "is a stored state: only kind = \"probe\" can start from it, all other kinds need isotropic pressure");
+  }
+  if (!runs_on_a_mesh(input.kind) && input.packing.files.size() > 1) {
+    throw root.table("packing").error("file", "names several files, but only kinds with a mesh mix packings");
   }
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) {
     input.biaxial = read_biaxial(root.table("biaxial"));
@@ -153,8 +156,8 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   input.resolved = text.resolved();
   input.places = text.places();
   input.fingerprint = text.fingerprint(keys_without_results);
-  if (!input.packing.file.empty())
-    input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(input.packing.file));
+  for (const std::filesystem::path& packing : input.packing.files)
+    input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(packing));
   return input;
 }
 

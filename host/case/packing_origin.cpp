@@ -24,8 +24,9 @@ constexpr std::size_t soil_prefix = 5;  ///< "soil."
       key, fmt::format("this case has {}, {} was made with {}", difference.ours, maker, difference.theirs));
 }
 
-void check_state(const io::Table& root, const io::Packing& file, Case& input) {
-  const std::string maker = "the state in " + input.packing.file.string();
+void check_state(const io::Table& root, const std::filesystem::path& name, Case& input) {
+  const io::Packing file = io::load_packing(name);
+  const std::string maker = "the state in " + name.string();
   const io::Table packing = root.table("packing");
   constexpr auto& names = kernels::PlainEngineLaw::history_names;
   const std::vector<std::string> ours(names.begin(), names.end());
@@ -55,8 +56,9 @@ void check_state(const io::Table& root, const io::Packing& file, Case& input) {
   }
 }
 
-void check_foreign_packing(const io::Table& root, const io::Packing& file, Case& input) {
-  const std::string maker = "the packing in " + input.packing.file.string();
+void check_foreign_packing(const io::Table& root, const std::filesystem::path& name, Case& input) {
+  const io::Packing file = io::load_packing_csv(name);
+  const std::string maker = "the packing in " + name.string();
   const auto length = [](double x) { return io::format_quantity(x, io::Dimension::length); };
   if (input.soil.thickness != file.thickness) {
     if (root.table("soil").has("thickness")) {
@@ -82,15 +84,32 @@ void check_foreign_packing(const io::Table& root, const io::Packing& file, Case&
   }
 }
 
+/// The RVEs of a mesh share one thickness, since their stresses are forces over it.
+void check_one_thickness(const io::Table& root, const Case& input) {
+  for (const std::filesystem::path& name : input.packing.files) {
+    if (input.packing.has_state()) continue;
+    const double thickness = io::load_packing_csv(name).thickness;
+    if (thickness == input.soil.thickness) continue;
+    throw root.table("packing").error(
+        "file", fmt::format("names packings of different thickness: {} in {} and {} in {}",
+                            io::format_quantity(thickness, io::Dimension::length), name.string(),
+                            io::format_quantity(input.soil.thickness, io::Dimension::length),
+                            input.packing.files.back().string()));
+  }
+}
+
 }  // namespace
 
 void check_packing_origin(const io::Table& root, Case& input) {
-  if (input.packing.file.empty() || (runs_on_a_mesh(input.kind) && input.material != MaterialKind::grains)) return;
-  if (input.packing.file.extension() == ".h5") {
-    check_state(root, io::load_packing(input.packing.file), input);
-  } else {
-    check_foreign_packing(root, io::load_packing_csv(input.packing.file), input);
+  if (runs_on_a_mesh(input.kind) && input.material != MaterialKind::grains) return;
+  for (const std::filesystem::path& name : input.packing.files) {
+    if (input.packing.has_state()) {
+      check_state(root, name, input);
+    } else {
+      check_foreign_packing(root, name, input);
+    }
   }
+  check_one_thickness(root, input);
 }
 
 }  // namespace voussoir::host

@@ -1,5 +1,5 @@
 #pragma once
-/// Whether the packing or the state in `packing.file` fits the case.
+/// Whether the packings or the state in `packing.file` fit the case.
 
 #include "host/case/case.hpp"
 #include "io/case_file.hpp"

@@ -140,7 +140,7 @@ struct Summary {
 /// Number of tests that a case asks for; tests whose packing does not come to rest are left out later. A file gives one
 /// packing for each pressure.
 std::size_t wanted_tests(const PackingCase& recipe, const BiaxialCase& test) {
-  return (recipe.file.empty() ? seeds_of(recipe).size() : 1) * test.pressures.size();
+  return count_of_packings(recipe) * test.pressures.size();
 }
 
 /// Outcome of a finished run, from the tests in its folder; nothing where there is no finished run.

@@ -215,7 +215,7 @@ Verdict take_probes(const ProbeCase& wanted, const EngineCase& engine, const Pac
 /// The packings that are probed. Where there are several, all are used, so that no bias has to be measured to choose.
 std::vector<PackedRve> packings_to_probe(const SoilCase& soil, PackingCase recipe, double pressure) {
   recipe.pressure = pressure;
-  if (recipe.seeds.empty() || !recipe.file.empty()) return {choose_packing(soil, recipe, print)};
+  if (recipe.seeds.empty() || !recipe.files.empty()) return {choose_packing(soil, recipe, print)};
   std::vector<PackedRve> rves;
   for (const std::int64_t seed : recipe.seeds)
     rves.push_back(obtain_packings(soil, recipe, std::span(&seed, 1), print).front());

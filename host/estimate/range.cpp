@@ -55,15 +55,15 @@ kernels::Packing grains_of(const Case& input) {
   if (input.kind == CaseKind::calibrate && !input.calibrate.thickness.empty())
     soil.thickness = std::max(soil.thickness, input.calibrate.thickness.back());
   const PackingCase& packing = input.packing;
-  const std::vector<double> radii = packing.file.empty() ? sample_radii(soil, packing.grains, packing.seed)
-                                                         : io::load_packing_csv(packing.file).radius;
+  const std::vector<double> radii = packing.files.empty() ? sample_radii(soil, packing.grains, packing.seed)
+                                                          : io::load_packing_csv(packing.files.front()).radius;
   return packing_of(soil, radii, soil.thickness);
 }
 
 }  // namespace
 
 Foretold foretell(const Case& input) {
-  const bool has_state = input.packing.file.extension() == ".h5";  // its pressure is known when it is read
+  const bool has_state = input.packing.has_state();  // its pressure is known when it is read
   if ((runs_on_a_mesh(input.kind) && input.material != MaterialKind::grains) || has_state) return {};
   const Load load = largest_load(input);
   const kernels::Packing grains = grains_of(input);

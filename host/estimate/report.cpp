@@ -22,7 +22,11 @@ void check_snapshot_points(const OutputCase& output, const CaseSize& size, const
 std::vector<std::string> describe(const CaseSize& size, MaterialKind material, const PackingCase& packing,
                                   const OutputCase& output) {
   std::vector<std::string> lines;
-  if (!packing.file.empty()) {
+  if (packing.files.size() > 1) {
+    lines.push_back(fmt::format("packing.file names {} packings of at most {} grains; packing.grains, seeds and "
+                                "density are not used",
+                                packing.files.size(), packing.grains));
+  } else if (!packing.files.empty()) {
     lines.push_back(
         fmt::format("packing.file holds {} grains; packing.grains, seeds and density are not used", packing.grains));
   } else if (material == MaterialKind::grains) {

@@ -31,6 +31,7 @@ double result_file_bytes(MaterialKind material, const PackingCase& recipe, const
   double bytes = file_overhead;
   for (const ResultField& field : result_field_table) {
     if (!is_wanted(output, field) || (field.of_grains && material != MaterialKind::grains)) continue;
+    if (field.of_mix && recipe.variety == 1) continue;
     bytes += 8.0 * field.components * (field.location == io::FieldLocation::node ? 2.5 * nodes : 1.25 * points);
   }
   const double snapshot = 32.0 + 48.0 * contacts_a_grain;  // bytes a grain
@@ -41,7 +42,7 @@ double result_file_bytes(MaterialKind material, const PackingCase& recipe, const
 
 void add_storage(CaseSize& size, MaterialKind material, const PackingCase& recipe, const OutputCase& output) {
   const auto points = static_cast<double>(size.points);
-  const auto made = recipe.file.empty() ? static_cast<double>(seeds_of(recipe).size()) : 1.0;
+  const auto made = static_cast<double>(count_of_packings(recipe));
   // Packings are made side by side in one batch, and so are tests. A mesh has its own matrix and its factors.
   const bool grains = material == MaterialKind::grains;
   const double side_by_side = grains ? recipe.grains * std::max(made, static_cast<double>(size.tests)) : 0.0;

@@ -50,11 +50,6 @@ double steps_per_evaluation(const SoilCase& soil, const EngineCase& engine, doub
          std::min(hold_steps, static_cast<double>(engine.hold_cap));
 }
 
-/// Number of packings at one pressure.
-std::size_t packings(const PackingCase& recipe) {
-  return recipe.file.empty() ? seeds_of(recipe).size() : std::size_t{1};
-}
-
 CaseSize probe_size(const ProbeCase& probe, const SoilCase& soil, const PackingCase& recipe, const EngineCase& engine) {
   double steps = 6.0 * steps_per_evaluation(soil, engine, probe.strain, probe.pressure);
   for (const PathSegment& segment : probe.path) {
@@ -62,7 +57,7 @@ CaseSize probe_size(const ProbeCase& probe, const SoilCase& soil, const PackingC
     const double strain = std::sqrt(g[0] * g[0] + g[3] * g[3] + 0.5 * (g[1] + g[2]) * (g[1] + g[2]));
     steps += segment.increments * steps_per_evaluation(soil, engine, strain, probe.pressure);
   }
-  const std::size_t copies = packings(recipe) * static_cast<std::size_t>(probe.replicas);
+  const std::size_t copies = count_of_packings(recipe) * static_cast<std::size_t>(probe.replicas);
   CaseSize size;
   size.tests = 6 * copies;
   size.particle_steps = static_cast<double>(copies) * recipe.grains * steps;
@@ -73,9 +68,9 @@ CaseSize biaxial_size(const BiaxialCase& test, const SoilCase& soil, const Packi
   CaseSize size;
   for (const double pressure : test.pressures) {
     const double steps = inertial_steps(soil, test.strain, pressure, test.inertial_number);
-    size.particle_steps += static_cast<double>(packings(recipe)) * recipe.grains * steps;
+    size.particle_steps += static_cast<double>(count_of_packings(recipe)) * recipe.grains * steps;
   }
-  size.tests = packings(recipe) * test.pressures.size();
+  size.tests = count_of_packings(recipe) * test.pressures.size();
   return size;
 }
 
@@ -155,7 +150,7 @@ CaseSize case_size(const Case& input) {
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) size = ground_size(input);
   add_storage(size, input.material, input.packing, input.output);
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) add_curves(size, input.biaxial);
-  size.packings = packings(input.packing) * (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
+  size.packings = count_of_packings(input.packing) * (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
   return size;
 }
 

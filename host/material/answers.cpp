@@ -45,7 +45,8 @@ void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::St
   }
 }
 
-fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor, double least_area) {
+fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor,
+                           std::span<const double> least_areas) {
   fem::BatchReport out;
   out.mean_overlap = 0;
   double noise = 0;
@@ -62,7 +63,7 @@ fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double p
     }
     if (r.steps == 0) ++out.deferred;
     if (r.status == kernels::RveStatus::open) ++out.open;
-    if (r.mean_overlap > most_mean_overlap || r.cell_area < least_area) ++out.out_of_range;
+    if (r.mean_overlap > most_mean_overlap || r.cell_area < least_areas[k]) ++out.out_of_range;
     out.mean_overlap = std::max(*out.mean_overlap, r.mean_overlap);
     if (r.status == kernels::RveStatus::step_limit) {
       ++out.step_limit;

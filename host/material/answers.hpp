@@ -24,8 +24,8 @@ void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::St
 
 /// The report of a whole evaluation, made from the reports of its RVEs. The caller sets `work` and `deferral_error`.
 /// @param pressure_floor the engine's unbalanced ratios are relative to at least this pressure [Pa]
-/// @param least_area the cell area below which the RVEs' grains interpenetrate [m^2] (packing/law_range.hpp)
+/// @param least_areas (RVE) the cell area below which its grains interpenetrate [m^2] (packing/law_range.hpp)
 [[nodiscard]] fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor,
-                                         double least_area);
+                                         std::span<const double> least_areas);
 
 }  // namespace voussoir::host

@@ -10,7 +10,6 @@
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
-#include "host/packing/law_range.hpp"
 #include "kernels/state/committed_contacts.hpp"
 #include "kernels/state/describe_committed.hpp"
 
@@ -35,22 +34,33 @@ int round_up(double steps) {
   return static_cast<int>(std::ceil(std::pow(1.25, std::ceil(std::log(steps) / std::log(1.25) - 1e-9))));
 }
 
+kernels::RveBatch batch_of_points(const PackingMix& mix) {
+  std::vector<kernels::Packing> packings;
+  for (const PackedRve& rve : mix.packings) packings.push_back(rve.packing);
+  kernels::RveBatch batch = kernels::make_batch(std::move(packings), mix.of_point);
+  for (std::size_t k = 0; k < mix.points(); ++k) {
+    store_rve(mix.packings[static_cast<std::size_t>(mix.of_point[k])], batch, k);
+  }
+  return batch;
+}
+
 }  // namespace
 
-RvePool::RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n)
+RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
     : engine_(options.engine),
       settings_(settings_of(options)),
       microstructure_(options.microstructure),
-      batch_(kernels::make_batch({rve.packing}, std::vector<int>(n, 0))),
-      requests_(n),
-      trial_reports_(n),
-      committed_reports_(n),
-      deferral_(engine_.defer, settings_.pressure_floor) {
-  least_area_ = (1 + least_void_ratio(rve.packing)) * rve.packing.solid_area();
-  for (std::size_t k = 0; k < n; ++k) store_rve(rve, batch_, k);
+      batch_(batch_of_points(mix)),
+      requests_(mix.points()),
+      trial_reports_(mix.points()),
+      committed_reports_(mix.points()),
+      deferral_(engine_.defer, settings_.pressure_floor),
+      least_areas_(least_areas(mix)) {
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
-  for (auto& report : committed_reports_) {
+  for (std::size_t k = 0; k < mix.points(); ++k) {
+    kernels::RveReport& report = committed_reports_[k];
     if (kernels::is_failure(report.status)) {
+      const PackedRve& rve = mix.packings[static_cast<std::size_t>(mix.of_point[k])];
       throw std::invalid_argument(
           fmt::format("the packing of seed {} cannot start: {}", rve.seed, kernels::name_of(report.status)));
     }
@@ -120,7 +130,7 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
                                    std::span<fem::Tangent> tangent) {
   const kernels::Work work = advance(gradients, !tangent.empty());
   copy_answers(trial_reports_, stress, tangent);
-  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor, least_area_);
+  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor, least_areas_);
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_.error();
@@ -162,6 +172,9 @@ std::vector<fem::PointField> RvePool::fields() const {
   add(result_field("unbalanced_ratio"), [&](std::size_t k) { return reports[k].unbalanced; });
   add(result_field("inertial_number"), [&](std::size_t k) { return reports[k].inertial_number; });
   add(result_field("steps"), [&](std::size_t k) { return static_cast<double>(reports[k].steps); });
+  if (batch_.packings.size() > 1) {
+    add(result_field("packing"), [&](std::size_t k) { return static_cast<double>(batch_.packing_of[k]); });
+  }
   if (!microstructure_.any()) return out;
   std::vector<kernels::Microstructure> all(size());
   kernels::describe_committed(batch_, microstructure_, all);

@@ -7,7 +7,7 @@
 #include "host/material/deferral.hpp"
 #include "host/material/snapshot_source.hpp"
 #include "host/material/state_records.hpp"
-#include "host/packing/packed_rve.hpp"
+#include "host/packing/variety.hpp"
 #include "kernels/advance_rves.hpp"
 
 namespace voussoir::host {
@@ -23,8 +23,10 @@ struct PoolOptions {
 
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
+  /// One RVE at each point, with the state of the packing that the mix names for it.
+  RvePool(const PackingMix& mix, const PoolOptions& options);
   /// Makes `n` clones of `rve`.
-  RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n);
+  RvePool(const PackedRve& rve, const PoolOptions& options, std::size_t n) : RvePool(clones_of(rve, n), options) {}
 
   [[nodiscard]] std::size_t size() const override { return batch_.size(); }
   void begin_increment() override;
@@ -50,7 +52,6 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] double pressure_floor() const {
     return settings_.pressure_floor;
   }  ///< least pressure that the reports' ratios are relative to [Pa]
-  [[nodiscard]] double least_area() const { return least_area_; }  ///< cell area of interpenetrating grains [m^2]
   [[nodiscard]] std::uint64_t identity() const;
   [[nodiscard]] std::vector<std::byte> state_of(std::size_t rve) const;
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
@@ -67,7 +68,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<int> running_;              ///< RVEs whose grains the evaluation needs; only where some may be deferred
   std::vector<fem::Gradient> increment_;  ///< of the last evaluation; only where some may be deferred
   bool steps_are_fixed_ = false;
-  double least_area_ = 0;
+  std::vector<double> least_areas_;  ///< (RVE), see least_areas [m^2]
 
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
   void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);

@@ -64,8 +64,10 @@ std::vector<PackedRve> settle(std::span<const PackedRve> loose, double pressure)
   std::vector<PackedRve> rves(loose.begin(), loose.end());
   kernels::RveBatch batch = batch_of(rves);
   for (std::size_t k = 0; k < rves.size(); ++k) {
-    for (kernels::GrainMaterial& material : batch.packings[k].materials)
+    for (kernels::GrainMaterial& material : batch.packings[k].materials) {
       material.friction = rves[k].consolidation_friction;
+      if (!rves[k].consolidation_rolling) material.rolling_stiffness = material.rolling_limit = 0;
+    }
   }
   consolidate(batch, pressure, 1.0);
   for (std::size_t k = 0; k < rves.size(); ++k) batch.packings[k].materials = rves[k].packing.materials;

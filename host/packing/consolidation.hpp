@@ -13,8 +13,8 @@ namespace voussoir::host {
 /// states, measures and status in them.
 void rest_at(double pressure, std::span<PackedRve> rves);
 
-/// Brings loose packings to rest at `pressure` [Pa], first with the temporary friction of each, then with the friction
-/// of its grains.
+/// Brings loose packings to rest at `pressure` [Pa], first with the temporary friction of each and, unless
+/// consolidation_rolling says otherwise, without rolling resistance; then with the materials of its grains.
 [[nodiscard]] std::vector<PackedRve> settle(std::span<const PackedRve> loose, double pressure);
 
 /// Finds for each packing the temporary friction that leads to the wanted void ratio, by bisection: more friction makes

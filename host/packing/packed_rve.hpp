@@ -20,12 +20,13 @@ struct PackedRve {
   std::vector<std::uint32_t> contact_key;
   std::vector<double> contact_history;  ///< (contact, k), k as in the law's history_names [SI]
   std::int64_t seed = 0;
-  double consolidation_friction = 0;  ///< temporary friction coefficient of its consolidation [-]
-  double void_ratio = 0;              ///< area of voids / area of grains [-]
-  double pressure = 0;                ///< [Pa]
-  double coordination = 0;            ///< 2 contacts / grains [-]
-  double unbalanced = 0;              ///< [-]
-  double mean_overlap = 0;            ///< mean over the contacts of overlap / (r_i + r_j) [-]; 0 where it is not known
+  double consolidation_friction = 0;   ///< temporary friction coefficient of its consolidation [-]
+  bool consolidation_rolling = false;  ///< grains resisted rolling during consolidation, too
+  double void_ratio = 0;               ///< area of voids / area of grains [-]
+  double pressure = 0;                 ///< [Pa]
+  double coordination = 0;             ///< 2 contacts / grains [-]
+  double unbalanced = 0;               ///< [-]
+  double mean_overlap = 0;             ///< mean over the contacts of overlap / (r_i + r_j) [-]; 0 where it is not known
   double bias = std::numeric_limits<double>::quiet_NaN();     ///< see bias.hpp [-]; NaN: not measured
   kernels::RveStatus status = kernels::RveStatus::converged;  ///< of the consolidation
 };

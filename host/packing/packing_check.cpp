@@ -170,17 +170,17 @@ void check_grains(const io::Packing& file, const SoilCase& soil, double skin) {
   check_overlaps(file);
 }
 
-void check_packing_file(const SoilCase& soil, const PackingCase& recipe, double skin) {
-  if (recipe.file.empty()) return;
-  const bool ours = recipe.file.extension() == ".h5";
-  const io::Packing file = ours ? io::load_packing(recipe.file) : io::load_packing_csv(recipe.file);
-  try {
-    check_grains(file, soil, skin);
-  } catch (const std::runtime_error& fault) {
-    throw std::runtime_error(recipe.file.string() + ": " + fault.what());
-  }
-  if (ours && !restored_packing(file, soil)) {
-    throw std::runtime_error(recipe.file.string() + " is not a complete packing of this program and its contact law");
+void check_packing_files(const SoilCase& soil, const PackingCase& recipe, double skin) {
+  for (const std::filesystem::path& name : recipe.files) {
+    const io::Packing file = io::load_any_packing(name);
+    try {
+      check_grains(file, soil, skin);
+    } catch (const std::runtime_error& fault) {
+      throw std::runtime_error(name.string() + ": " + fault.what());
+    }
+    if (recipe.has_state() && !restored_packing(file, soil)) {
+      throw std::runtime_error(name.string() + " is not a complete packing of this program and its contact law");
+    }
   }
 }
 

@@ -12,9 +12,9 @@ namespace voussoir::host {
 /// lie too deep in one another. @param skin of the neighbour lists, over the mean diameter [-]
 void check_grains(const io::Packing& file, const SoilCase& soil, double skin);
 
-/// Reads the recipe's file whole, as the run does, and checks it. Throws std::runtime_error. Does nothing where the
+/// Reads the recipe's files whole, as the run does, and checks them. Throws std::runtime_error. Does nothing where the
 /// recipe has no file.
-void check_packing_file(const SoilCase& soil, const PackingCase& recipe, double skin);
+void check_packing_files(const SoilCase& soil, const PackingCase& recipe, double skin);
 
 /// Throws std::runtime_error where packings of so many grains of this soil are no use: their cell is narrower than two
 /// contact distances of the largest grains, or the coarsest fifth of the soil has less than one grain.

@@ -137,6 +137,37 @@ void measure_bias(const SoilCase& soil, const PackingCase& recipe, std::vector<P
   }
 }
 
+PackedRve stored_state(const SoilCase& soil, const std::filesystem::path& file, const PackingNote& note) {
+  auto rve = restored_packing(io::load_packing(file), soil);
+  if (!rve)
+    throw io::InputError("packing.file", file.string(), "is not a complete packing of this program and its contact law");
+  if (const std::string fault = interpenetration(*rve); !fault.empty() && note) {
+    note("warning: the state in " + file.string() + ": " + fault);
+  }
+  if (note) note("packing read:  " + table_line(*rve));
+  return std::move(*rve);
+}
+
+/// The packings in the recipe's files, in their order. Those of another code come to rest side by side.
+std::vector<PackedRve> packings_of_files(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note) {
+  if (recipe.has_state()) return {stored_state(soil, recipe.files.front(), note)};
+  std::vector<PackedRve> rves = settle_foreign_packings(soil, recipe);
+  for (std::size_t k = 0; k < rves.size(); ++k) {
+    const std::string name = recipe.files[k].string();
+    if (rves[k].status != kernels::RveStatus::converged) {
+      throw NoEquilibrium(fmt::format("{} does not come to rest: {}", name, kernels::name_of(rves[k].status)));
+    }
+    if (const std::string fault = interpenetration(rves[k]); !fault.empty()) {
+      throw std::runtime_error(name + ": " + fault);
+    }
+    if (note) {
+      note(fmt::format("packing read:  {}{}  (packing.grains, seeds and density of the recipe are not used)",
+                       table_line(rves[k]), rves.size() > 1 ? "  " + name : std::string()));
+    }
+  }
+  return rves;
+}
+
 }  // namespace
 
 std::vector<std::int64_t> seeds_of(const PackingCase& recipe) {
@@ -145,32 +176,13 @@ std::vector<std::int64_t> seeds_of(const PackingCase& recipe) {
   return seeds;
 }
 
+std::size_t count_of_packings(const PackingCase& recipe) {
+  return recipe.files.empty() ? seeds_of(recipe).size() : recipe.files.size();
+}
+
 std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& recipe,
                                        std::span<const std::int64_t> seeds, const PackingNote& note, Bias bias) {
-  if (recipe.file.extension() == ".h5") {
-    auto rve = restored_packing(io::load_packing(recipe.file), soil);
-    if (!rve)
-      throw io::InputError("packing.file", recipe.file.string(),
-                           "is not a complete packing of this program and its contact law");
-    if (const std::string fault = interpenetration(*rve); !fault.empty() && note) {
-      note("warning: the state in " + recipe.file.string() + ": " + fault);
-    }
-    if (note) note("packing read:  " + table_line(*rve));
-    return {std::move(*rve)};
-  }
-  if (!recipe.file.empty()) {
-    PackedRve rve = settle_foreign_packing(soil, recipe);
-    if (rve.status != kernels::RveStatus::converged) {
-      throw NoEquilibrium(
-          fmt::format("{} does not come to rest: {}", recipe.file.string(), kernels::name_of(rve.status)));
-    }
-    if (const std::string fault = interpenetration(rve); !fault.empty()) {
-      throw std::runtime_error(recipe.file.string() + ": " + fault);
-    }
-    if (note)
-      note("packing read:  " + table_line(rve) + "  (packing.grains, seeds and density of the recipe are not used)");
-    return {rve};
-  }
+  if (!recipe.files.empty()) return packings_of_files(soil, recipe, note);
   std::filesystem::create_directories(recipe.folder);
   io::remove_leftovers(recipe.folder);
   const std::vector<std::int64_t> made_here = make_missing(soil, recipe, seeds, note);
@@ -191,18 +203,47 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
   return out;
 }
 
-PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note) {
-  std::vector<PackedRve> all = obtain_packings(soil, recipe, seeds_of(recipe), note);
-  if (all.size() == 1) return std::move(all.front());
-  const auto less_biased = [](const PackedRve& a, const PackedRve& b) {
-    return a.bias != b.bias ? a.bias < b.bias : a.seed < b.seed;
-  };
-  PackedRve best = *std::min_element(all.begin(), all.end(), less_biased);
-  if (note) {
-    note(fmt::format("packing of seed {} is used: its largest |tau_xy|/sigma_yy in oedometric compression is {:.4f}",
-                     best.seed, best.bias));
+namespace {
+
+/// The `count` packings with the least bias of the recipe's candidates, the least biased first. Where all of them are
+/// needed, they stay in their order and their bias does not have to be measured.
+std::vector<PackedRve> least_biased(const SoilCase& soil, const PackingCase& recipe, std::size_t count,
+                                    const PackingNote& note) {
+  const bool all_needed = count_of_packings(recipe) == count;
+  std::vector<PackedRve> all = obtain_packings(soil, recipe, seeds_of(recipe), note,
+                                               all_needed ? Bias::left : Bias::measured);
+  if (all.size() < count) {
+    throw NoEquilibrium(
+        fmt::format("packing.variety = {} asks for more packings than the {} of this recipe that come to rest (of {}); "
+                    "a larger packing.candidates gives more to choose from",
+                    count, all.size(), count_of_packings(recipe)));
   }
-  return best;
+  if (all_needed) return all;
+  if (!recipe.files.empty()) {
+    const std::vector<double> biases = biases_of(all);
+    for (std::size_t k = 0; k < all.size(); ++k) all[k].bias = biases[k];
+  }
+  std::stable_sort(all.begin(), all.end(), [](const PackedRve& a, const PackedRve& b) {
+    return a.bias != b.bias ? a.bias < b.bias : a.seed < b.seed;
+  });
+  all.erase(all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
+  for (std::size_t k = 0; note && k < count; ++k) {
+    note(fmt::format("packing of seed {} is used{}: its largest |tau_xy|/sigma_yy in oedometric compression is {:.4f}",
+                     all[k].seed, count > 1 ? fmt::format(" as packing {}", k) : std::string(), all[k].bias));
+  }
+  return all;
+}
+
+}  // namespace
+
+PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note) {
+  return std::move(least_biased(soil, recipe, 1, note).front());
+}
+
+PackingMix choose_packings(const SoilCase& soil, const PackingCase& recipe, std::size_t n, const PackingNote& note) {
+  const auto variety = static_cast<std::size_t>(recipe.variety);
+  std::vector<PackedRve> packings = least_biased(soil, recipe, variety, note);
+  return variety == 1 ? clones_of(std::move(packings.front()), n) : mix(std::move(packings), n, recipe.seed);
 }
 
 }  // namespace voussoir::host

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "host/packing/packed_rve.hpp"
+#include "host/packing/variety.hpp"
 
 namespace voussoir::host {
 
@@ -17,7 +17,7 @@ enum class Bias { measured, left };
 
 /// The packings of these seeds, in their order: found in the recipe's folder, or made side by side and stored there. A
 /// seed whose packing does not come to rest is noted and left out. With Bias::measured the bias is measured (bias.hpp)
-/// where there are several packings. A recipe that names a file has only the packing in this file. Where several
+/// where there are several packings. A recipe that names files has the packings in these files. Where several
 /// processes ask for one packing, one makes it and the others wait (packing_locks.hpp). Throws NoEquilibrium when no
 /// packing is left, Interrupted where a request to stop arrives during the wait.
 [[nodiscard]] std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& recipe,
@@ -27,8 +27,17 @@ enum class Bias { measured, left };
 /// The seeds that a recipe names: `seeds`, or `candidates` seeds from `seed` on.
 [[nodiscard]] std::vector<std::int64_t> seeds_of(const PackingCase& recipe);
 
+/// The number of packings at one pressure that a recipe makes or reads.
+[[nodiscard]] std::size_t count_of_packings(const PackingCase& recipe);
+
 /// The packing with the least bias of those of the recipe's candidate seeds. One packing cloned to all points biases
 /// tau_xy at all of them.
 [[nodiscard]] PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const PackingNote& note = {});
+
+/// The packings of `n` Gauss points: the `recipe.variety` packings with the least bias of those of the recipe's
+/// candidate seeds, spread by `recipe.seed`. Throws NoEquilibrium where fewer packings come to rest, because a
+/// result whose variety is smaller than the case says would pass for a surer one than it is.
+[[nodiscard]] PackingMix choose_packings(const SoilCase& soil, const PackingCase& recipe, std::size_t n,
+                                         const PackingNote& note = {});
 
 }  // namespace voussoir::host

@@ -67,16 +67,19 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
   for (std::size_t k = 0; k < seeds.size(); ++k) {
     loose[k] = loose_packing(soil, recipe, seeds[k]);
     loose[k].consolidation_friction = recipe.consolidation_friction;
+    loose[k].consolidation_rolling = recipe.consolidation_rolling;
   }
   if (loose.empty()) return loose;
   return recipe.void_ratio > 0 ? settle_at_void_ratio(std::move(loose), recipe.pressure, recipe.void_ratio)
                                : settle(loose, recipe.pressure);
 }
 
-PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe) {
-  PackedRve rve = grains_from(io::load_packing_csv(recipe.file), soil);
-  rest_at(recipe.pressure, std::span(&rve, 1));
-  return rve;
+std::vector<PackedRve> settle_foreign_packings(const SoilCase& soil, const PackingCase& recipe) {
+  std::vector<PackedRve> rves;
+  for (const std::filesystem::path& file : recipe.files)
+    rves.push_back(grains_from(io::load_packing_csv(file), soil));
+  rest_at(recipe.pressure, rves);
+  return rves;
 }
 
 std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
@@ -84,6 +87,10 @@ std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::in
                                  soil.size_minimum, soil.size_maximum, soil.damping, soil.thickness, recipe.grains,
                                  recipe.consolidation_friction, recipe.pressure, seed);
   if (recipe.void_ratio > 0) text += fmt::format(" e {}", recipe.void_ratio);
+  // Without friction there is no torque and hence no rolling, so that the key does not matter.
+  if (!recipe.consolidation_rolling && (recipe.consolidation_friction > 0 || recipe.void_ratio > 0)) {
+    text += " rolling 0";
+  }
   for (const kernels::GrainMaterial& m : grain_materials(soil)) {
     for (const auto& [name, number] : kernels::material_numbers) text += fmt::format(" {} {}", name, m.*number);
   }

@@ -18,10 +18,10 @@ namespace voussoir::host {
 [[nodiscard]] std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& recipe,
                                                    std::span<const std::int64_t> seeds);
 
-/// The packing of another code (`recipe.file`, see io::load_packing_csv) with this soil's grains: contacts are made
-/// from the overlaps, without history, and the packing comes to rest at `recipe.pressure`. Throws std::runtime_error on
+/// The packings of another code (`recipe.files`, see io::load_packing_csv) with this soil's grains: contacts are made
+/// from the overlaps, without history, and the packings come to rest at `recipe.pressure`. Throws std::runtime_error on
 /// an unusable file.
-[[nodiscard]] PackedRve settle_foreign_packing(const SoilCase& soil, const PackingCase& recipe);
+[[nodiscard]] std::vector<PackedRve> settle_foreign_packings(const SoilCase& soil, const PackingCase& recipe);
 
 /// All values that decide a packing's numbers, as text. Equal texts give equal packings.
 [[nodiscard]] std::string recipe_text(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed);

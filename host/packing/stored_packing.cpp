@@ -40,6 +40,7 @@ io::Packing stored_packing(const PackedRve& rve, const SoilCase& soil, const std
                   {"unbalanced_ratio", rve.unbalanced},
                   {"mean_overlap", rve.mean_overlap},
                   {"consolidation_friction", rve.consolidation_friction},
+                  {"consolidation_rolling", rve.consolidation_rolling ? 1.0 : 0.0},
                   {"bias", rve.bias},
                   {"seed", static_cast<double>(rve.seed)}};
   file.labels = {{"recipe", recipe}, {"recipe_fingerprint", fingerprint}};
@@ -84,6 +85,8 @@ std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCas
   // Files of older versions lack it.
   if (file.numbers.contains("mean_overlap")) rve.mean_overlap = number("mean_overlap");
   rve.consolidation_friction = number("consolidation_friction");
+  // Files of older versions lack it: their grains resisted rolling.
+  rve.consolidation_rolling = !(number("consolidation_rolling") == 0.0);
   const double seed = number("seed");
   if (!ascending || !finite || file.history_names != history_names() || !(rve.cell.det() > 0) ||
       !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {

@@ -32,14 +32,14 @@ std::string place_of(const Case& input, const std::string& key) {
 
 void check_packings(const Case& input) {
   try {
-    check_packing_file(input.soil, input.packing, skin_of(input));
+    check_packing_files(input.soil, input.packing, skin_of(input));
   } catch (const std::runtime_error& fault) {
     throw io::InputError(place_of(input, "packing.file"), "packing.file", fault.what());
   }
   if (!has_grains(input)) return;
   const char* key = "packing.grains";
   try {
-    if (input.packing.file.empty()) check_recipe(input.soil, input.packing.grains, skin_of(input));
+    if (input.packing.files.empty()) check_recipe(input.soil, input.packing.grains, skin_of(input));
     key = "calibrate.confirm_grains";
     if (input.kind == CaseKind::calibrate) check_recipe(input.soil, input.calibrate.confirm_grains, 0.0);
   } catch (const std::runtime_error& fault) {
@@ -66,7 +66,7 @@ AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<st
   accepted.size = checked_size(accepted.input);
   check_snapshot_points(accepted.input.output, accepted.size, place_of(accepted.input, "output.rves"));
   static_cast<void>(kernels::choose_lanes(accepted.input.engine.isa));
-  if (has_grains(accepted.input) && accepted.input.packing.file.empty()) {
+  if (has_grains(accepted.input) && accepted.input.packing.files.empty()) {
     const std::string missing = missing_coarse_grains(accepted.input.soil, accepted.input.packing.grains);
     if (!missing.empty()) accepted.input.remarks.push_back(missing);
   }

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "host/material/rve_pool.hpp"
-#include "host/packing/packed_rve.hpp"
+#include "host/packing/variety.hpp"
 #include "host/ranks/channel.hpp"
 #include "io/byte_stream.hpp"
 
@@ -66,6 +66,19 @@ inline PackedRve read_rve(ByteReader& read) {
   rve.contact_history = read.list<double>();
   rve.seed = read.value<std::int64_t>();
   return rve;
+}
+
+inline void write_mix(ByteWriter& write, const PackingMix& mix) {
+  write.value(static_cast<std::uint64_t>(mix.packings.size()));
+  for (const PackedRve& rve : mix.packings) write_rve(write, rve);
+  write.list(mix.of_point);
+}
+
+inline PackingMix read_mix(ByteReader& read) {
+  PackingMix mix;
+  for (auto n = read.value<std::uint64_t>(); n > 0; --n) mix.packings.push_back(read_rve(read));
+  mix.of_point = read.list<int>();
+  return mix;
 }
 
 /// Writes or reads the options of a pool. Every member is bound to a name here, so that a new option does not

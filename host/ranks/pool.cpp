@@ -65,17 +65,17 @@ std::vector<std::vector<std::size_t>> deal_points(std::size_t n, std::span<const
   return points;
 }
 
-RankPool::RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std::span<const RankInfo> ranks,
-                   PackingNote note)
-    : rve_(std::move(rve)),
+RankPool::RankPool(PackingMix mix, const PoolOptions& options, std::span<const RankInfo> ranks, PackingNote note)
+    : mix_(std::move(mix)),
       options_(options),
       note_(std::move(note)),
-      points_(deal_points(n, ranks)),
-      trial_(n),
-      committed_(n) {
+      least_areas_(least_areas(mix_)),
+      points_(deal_points(mix_.points(), ranks)),
+      trial_(mix_.points()),
+      committed_(mix_.points()) {
   const auto replies = ask(
       others(), [&](std::size_t r) { return make_message(r); },
-      [&] { own_ = std::make_unique<RvePool>(rve_, options_, points_[0].size()); });
+      [&] { own_ = std::make_unique<RvePool>(mix_.part(points_[0]), options_); });
   place(own_->committed_reports(), points_[0], committed_);
   std::string text = fmt::format("{} ranks:", ranks.size());
   for (std::size_t r = 0; r < ranks.size(); ++r) {
@@ -113,9 +113,8 @@ void RankPool::describe_costs() {
 Message RankPool::make_message(std::size_t rank) const {
   Message message = message_of(Command::make);
   ByteWriter write(message);
-  write_rve(write, rve_);
+  write_mix(write, mix_.part(points_[rank]));
   transfer_options(write, options_);
-  write.value(static_cast<std::uint64_t>(points_[rank].size()));
   return message;
 }
 
@@ -163,7 +162,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
     ledger_.bytes += static_cast<double>(replies[r - 1].size());
   }
   copy_answers(trial_, stress, tangent);
-  fem::BatchReport report = summarise(trial_, own_->pressure_floor(), own_->least_area());
+  fem::BatchReport report = summarise(trial_, own_->pressure_floor(), least_areas_);
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
   report.deferral_error = deferral_error;
@@ -269,11 +268,11 @@ void RankPool::set_state(std::span<const std::byte> bytes) {
 /// A pool of one RVE is filled from the RVE's record, which another rank may hold, and makes the snapshot.
 std::vector<io::RveSnapshot> RankPool::snapshots(std::span<const std::int64_t> points) const {
   std::vector<io::RveSnapshot> out;
-  RvePool one(rve_, options_, 1);
   for (const std::int64_t point : points) {
     if (point < 0 || point >= static_cast<std::int64_t>(size()))
       throw std::out_of_range("there is no Gauss point of this number");
     const auto p = static_cast<std::size_t>(point);
+    RvePool one(mix_.part({p}), options_);
     for (std::size_t r = 0; r < points_.size(); ++r) {
       const auto found = std::lower_bound(points_[r].begin(), points_[r].end(), p);
       if (found == points_[r].end() || *found != p) continue;

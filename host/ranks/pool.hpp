@@ -22,7 +22,7 @@ struct RankInfo {
 
 class RankPool final : public fem::MaterialBatch, public SnapshotSource {
  public:
-  RankPool(PackedRve rve, const PoolOptions& options, std::size_t n, std::span<const RankInfo> ranks, PackingNote note);
+  RankPool(PackingMix mix, const PoolOptions& options, std::span<const RankInfo> ranks, PackingNote note);
   ~RankPool() override;
 
   [[nodiscard]] std::size_t size() const override { return committed_.size(); }
@@ -54,9 +54,10 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
                                                                std::size_t n) const;
   void describe_costs();
 
-  PackedRve rve_;
+  PackingMix mix_;
   PoolOptions options_;
   PackingNote note_;
+  std::vector<double> least_areas_;               ///< of all points, see least_areas [m^2]
   std::vector<std::vector<std::size_t>> points_;  ///< by rank
   std::unique_ptr<RvePool> own_;
   std::vector<kernels::RveReport> trial_, committed_;  ///< of all points

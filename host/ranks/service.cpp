@@ -77,10 +77,10 @@ class Service {
 
   void make(ByteReader& read, ByteWriter& reply) {
     pool_.reset();
-    const PackedRve rve = read_rve(read);
+    const PackingMix mix = read_mix(read);
     PoolOptions options;
     transfer_options(read, options);
-    pool_.emplace(rve, options, read.value<std::uint64_t>());
+    pool_.emplace(mix, options);
     reply.list(pool().committed_reports());
   }
 

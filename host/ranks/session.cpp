@@ -59,9 +59,8 @@ void start_ranks(int threads, InstructionSetChoice isa) {
   ranks() = std::move(found);
 }
 
-std::unique_ptr<fem::MaterialBatch> make_rank_pool(PackedRve rve, const PoolOptions& options, std::size_t n,
-                                                   PackingNote note) {
-  return std::make_unique<RankPool>(std::move(rve), options, n, ranks(), std::move(note));
+std::unique_ptr<fem::MaterialBatch> make_rank_pool(PackingMix mix, const PoolOptions& options, PackingNote note) {
+  return std::make_unique<RankPool>(std::move(mix), options, ranks(), std::move(note));
 }
 
 }  // namespace voussoir::host

@@ -15,18 +15,18 @@ namespace {
 /// not save evaluations (fem/README.md).
 constexpr double newton_tangent_tolerance = 0.1;
 
-/// A pool with the chosen packing at all points.
+/// A pool with the chosen packings at the points.
 std::unique_ptr<fem::MaterialBatch> make_rve_pool(const MaterialCase& material, std::size_t n_points,
                                                   const PackingNote& note) {
-  PackedRve rve = choose_packing(material.soil, material.packing, note);
+  PackingMix mix = choose_packings(material.soil, material.packing, n_points, note);
   PoolOptions options{.engine = material.engine,
                       .tangent = tangent_kind(material.tangent, material.engine),
                       .tangent_strain = material.tangent_strain,
                       .microstructure = material.microstructure};
   // With a tolerance of a tenth, a loading tangent would hardly differ from the elastic tangent that it starts from.
   if (options.tangent != kernels::TangentKind::loading) options.tangent_tolerance = newton_tangent_tolerance;
-  if (rank_count() > 1) return make_rank_pool(std::move(rve), options, n_points, note);
-  return std::make_unique<RvePool>(rve, options, n_points);
+  if (rank_count() > 1) return make_rank_pool(std::move(mix), options, note);
+  return std::make_unique<RvePool>(mix, options);
 }
 
 }  // namespace
