@@ -280,12 +280,12 @@ std::filesystem::path Table::path(std::string_view key) const {
 std::vector<std::filesystem::path> Table::optional_paths(std::string_view key) const {
   CaseNode& node = take(key, true);
   const std::filesystem::path folder = state_->path.parent_path();
-  note(node, KeyType::path, "", false, node.kind == Kind::array);
+  KeyInfo& info = note(node, KeyType::path, "", false, node.kind == Kind::array);
   if (!node.written) return {};
   if (node.kind != Kind::array) return {read_path(node, folder)};
   if (node.children.empty()) fail(node, "must name a file, is an empty list");
   return read_array<std::filesystem::path>(
-      node, std::optional<std::vector<std::string>>{},
+      node, info, std::optional<std::vector<std::string>>{},
       [&](CaseNode& entry, const std::optional<std::string>&) { return read_path(entry, folder); });
 }
 

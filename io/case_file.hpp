@@ -95,7 +95,8 @@ class Table {
 class CaseFile {
  public:
   /// Reads a TOML file; each override is "table.key=value" ("stage[0].steps=4" inside an array of tables). The value is
-  /// TOML, or else taken as text, so that quotes may be left out: "mesh.size=0.5 m".
+  /// TOML, or else taken as text, so that quotes may be left out: "mesh.size=0.5 m". A table in
+  /// braces is joined with the table of the file.
   /// `extends = "other.toml"` (or an array of such names, relative to the file) takes over the keys of other files:
   /// later ones go before earlier ones, the file's own keys before all; an array is taken over or replaced as a whole.
   /// Throws InputError: no such file, bad TOML (with its line), bad override.

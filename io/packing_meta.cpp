@@ -44,6 +44,9 @@ Json parse(const std::string& text) {
   }
 }
 
+/// Numbers that the program compares with the grains or with the case; as texts they would pass unseen.
+constexpr const char* known_numbers[] = {"N", "E", "kt_over_kn", "phi_deg", "alphaKr", "etaRoll", "damping"};
+
 double number(const Json& value, const std::string& key) {
   if (!value.is_number() || !std::isfinite(value.get<double>())) {
     throw MetaFault(fmt::format("{} must be a finite number, is {}", key, in_one_line(value.dump(), 80)));
@@ -86,6 +89,9 @@ void take(const Json& meta, Packing& packing) {
   if (!(packing.thickness > 0)) {
     throw MetaFault(fmt::format("{}: the thickness must be positive, is {}", has_thickness ? "Lz" : "hSize[2][2]",
                                 packing.thickness));
+  }
+  for (const char* name : known_numbers) {
+    if (meta.contains(name)) static_cast<void>(number(meta[name], name));
   }
   for (const auto& [name, value] : meta.items()) {
     if (value.is_number()) {

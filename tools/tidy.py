@@ -38,6 +38,10 @@ CONFIGURATION = ROOT / ".clang-tidy"
 CLEAN_REVISION = ROOT / "tools/tidy_clean_revision.txt"
 STAMPS = ROOT / "build/tidy"
 SOURCES = (".cpp", ".hpp")
+GCC_ONLY = ("-fno-gnu-unique",)
+# The beginnings of findings. One that lies in a header of the system is no fault of ours, such as a "leak" of a library
+# that keeps what it is given.
+FINDING = re.compile(r"\n(?=\S+:\d+:\d+: (?:warning|error))")
 
 
 def git(*words: str) -> str | None:
@@ -77,6 +81,18 @@ def compile_commands(build: Path) -> dict[str, str]:
         if path.is_relative_to(ROOT) and not path.is_relative_to(build.resolve()):
             ours[path.relative_to(ROOT).as_posix()] = entry["command"]
     return ours
+
+
+def commands_for_clang(build: Path) -> Path:
+    """A folder with the compile commands without the options that g++ alone knows, which clang takes for errors."""
+    text = (build / "compile_commands.json").read_text()
+    for option in GCC_ONLY:
+        text = text.replace(f" {option} ", " ")
+    STAMPS.mkdir(parents=True, exist_ok=True)
+    target = STAMPS / "compile_commands.json"
+    if not target.exists() or target.read_text() != text:
+        target.write_text(text)
+    return STAMPS
 
 
 @cache
@@ -149,7 +165,7 @@ class Run:
 
     def __init__(self, commands: dict[str, str], build: Path, seconds: float) -> None:
         self.commands = commands
-        self.build = build
+        self.build = commands_for_clang(build)
         self.deadline = time.monotonic() + seconds
         # The commands are g++'s, which knows warnings that clang does not know.
         self.arguments = ["--extra-arg=-Wno-unknown-warning-option", *openmp_header(next(iter(commands.values())))]
@@ -168,7 +184,10 @@ class Run:
             cwd=ROOT,
         )
         # Where the standard output is empty, the error stands among the counts on the standard error.
-        return path, done.returncode, done.stdout or (done.stderr if done.returncode else "")
+        if not done.stdout:
+            return path, done.returncode, done.stderr if done.returncode else ""
+        ours = [finding for finding in FINDING.split(done.stdout.strip()) if not finding.startswith("/usr/")]
+        return path, done.returncode if ours else 0, "\n".join(ours)
 
     def report(self, path: str, status: int | None, findings: str) -> None:
         if status is None:
@@ -176,7 +195,7 @@ class Run:
         elif status == 0:
             self.clean += 1
             stamp_of(path, self.commands[path]).touch()
-        for finding in re.split(r"\n(?=\S+:\d+:\d+: (?:warning|error))", findings.strip()):
+        for finding in FINDING.split(findings.strip()):
             # A finding in a header appears once for each file that includes the header.
             if finding and finding not in self.printed:
                 self.printed.add(finding)

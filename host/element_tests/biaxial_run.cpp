@@ -15,6 +15,7 @@
 #include "host/element_tests/strength.hpp"
 #include "host/packing/law_range.hpp"
 #include "host/packing/packings.hpp"
+#include "host/process/exit_code.hpp"
 #include "host/record/provenance.hpp"
 #include "host/record/remarks.hpp"
 #include "io/result_file.hpp"
@@ -61,15 +62,22 @@ std::vector<io::TableColumn> curve_table(const BiaxialCurve& curve, const kernel
   return table;
 }
 
-/// All tests of a case: every seed at every pressure, each packing consolidated at its test's pressure.
+/// All tests of a case: every seed at every pressure, each packing consolidated at its test's pressure. A pressure at
+/// which no packing comes to rest is noted and left out. Throws NoEquilibrium where no pressure has a packing.
 std::vector<PackedRve> packings_of(const SoilCase& soil, PackingCase recipe, std::span<const double> pressures,
                                    const PackingNote& note) {
   std::vector<PackedRve> all;
   for (const double pressure : pressures) {
     recipe.pressure = pressure;
-    for (PackedRve& rve : obtain_packings(soil, recipe, seeds_of(recipe), note, Bias::left))
-      all.push_back(std::move(rve));
+    try {
+      for (PackedRve& rve : obtain_packings(soil, recipe, seeds_of(recipe), note, Bias::left))
+        all.push_back(std::move(rve));
+    } catch (const NoEquilibrium& none) {
+      if (pressures.size() == 1) throw;
+      note(none.what());
+    }
   }
+  if (all.empty()) throw NoEquilibrium("no packing comes to rest at any of the pressures of biaxial.pressures");
   return all;
 }
 

@@ -53,6 +53,8 @@ void add_storage(CaseSize& size, MaterialKind material, const PackingCase& recip
   size.checkpoint = size.grains * (24.0 + 20.0 * contacts_a_grain) + 300.0 * points;
 }
 
+double mesh_memory(double points) { return process_bytes + memory_a_point * points; }
+
 void add_curves(CaseSize& size, const BiaxialCase& test) {
   constexpr double bytes_a_sample = 300.0;  // a point of a curve, and its columns in the result file
   size.memory += bytes_a_sample * static_cast<double>(size.tests) * test.samples;

@@ -178,8 +178,9 @@ void check_packing_files(const SoilCase& soil, const PackingCase& recipe, double
     } catch (const std::runtime_error& fault) {
       throw std::runtime_error(name.string() + ": " + fault.what());
     }
-    if (recipe.has_state() && !restored_packing(file, soil)) {
-      throw std::runtime_error(name.string() + " is not a complete packing of this program and its contact law");
+    if (!recipe.has_state()) continue;
+    if (const std::string fault = fault_of_state(file); !fault.empty()) {
+      throw std::runtime_error(name.string() + " is not a complete packing of this program and its contact law: " + fault);
     }
   }
 }

@@ -138,9 +138,12 @@ void measure_bias(const SoilCase& soil, const PackingCase& recipe, std::vector<P
 }
 
 PackedRve stored_state(const SoilCase& soil, const std::filesystem::path& file, const PackingNote& note) {
-  auto rve = restored_packing(io::load_packing(file), soil);
-  if (!rve)
-    throw io::InputError("packing.file", file.string(), "is not a complete packing of this program and its contact law");
+  const io::Packing read = io::load_packing(file);
+  auto rve = restored_packing(read, soil);
+  if (!rve) {  // the file has changed since the case was accepted
+    throw io::InputError("packing.file", file.string(),
+                         "is not a complete packing of this program and its contact law: " + fault_of_state(read));
+  }
   if (const std::string fault = interpenetration(*rve); !fault.empty() && note) {
     note("warning: the state in " + file.string() + ": " + fault);
   }

@@ -1,9 +1,11 @@
 #include "host/packing/stored_packing.hpp"
 
-#include <algorithm>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
 #include <cmath>
-#include <functional>
 #include <limits>
+#include <utility>
 
 #include "host/case/made_with.hpp"
 
@@ -62,7 +64,32 @@ PackedRve grains_from(const io::Packing& file, const SoilCase& soil) {
   return rve;
 }
 
+std::string fault_of_state(const io::Packing& file) {
+  if (file.history_names != history_names()) {
+    return fmt::format("it has the histories [{}] of another contact law, where this program's law has [{}]",
+                       fmt::join(file.history_names, ", "), fmt::join(history_names(), ", "));
+  }
+  for (const char* name : {"seed", "void_ratio", "pressure", "coordination", "unbalanced_ratio"}) {
+    const auto found = file.numbers.find(name);
+    if (found == file.numbers.end()) return fmt::format("it lacks the number {}", name);
+    if (!(std::abs(found->second) < 1e16)) return fmt::format("its {} is {:g}", name, found->second);
+  }
+  if (!(file.cell[0] * file.cell[3] - file.cell[1] * file.cell[2] > 0)) return "its cell has no positive area";
+  for (std::size_t c = 0; c < file.contacts(); ++c) {
+    const auto i = file.contact_i[c], j = file.contact_j[c];
+    if (i >= j) return fmt::format("its contact {} joins the grains {} and {}, which must ascend", c, i, j);
+    if (c > 0 && std::pair(i, j) <= std::pair(file.contact_i[c - 1], file.contact_j[c - 1]))
+      return fmt::format("its contacts {} and {} are out of order", c - 1, c);
+  }
+  for (std::size_t k = 0; k < file.history.size(); ++k) {
+    if (!std::isfinite(file.history[k]))
+      return fmt::format("the history of its contact {} is not finite", k / history_names().size());
+  }
+  return "";
+}
+
 std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCase& soil) {
+  if (!fault_of_state(file).empty()) return {};
   const auto number = [&](const char* name) {
     const auto found = file.numbers.find(name);
     return found == file.numbers.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
@@ -70,13 +97,9 @@ std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCas
   PackedRve rve = grains_from(file, soil);
   rve.contact_history = file.history;
   for (std::size_t c = 0; c < file.contacts(); ++c) {
-    if (file.contact_i[c] >= file.contact_j[c]) return {};
     rve.contact_key.push_back(
         kernels::pair_key(static_cast<int>(file.contact_i[c]), static_cast<int>(file.contact_j[c])));
   }
-  const bool ascending = std::adjacent_find(rve.contact_key.begin(), rve.contact_key.end(), std::greater_equal<>()) ==
-                         rve.contact_key.end();
-  const bool finite = std::all_of(file.history.begin(), file.history.end(), [](double h) { return std::isfinite(h); });
   rve.void_ratio = number("void_ratio");
   rve.pressure = number("pressure");
   rve.coordination = number("coordination");
@@ -87,12 +110,7 @@ std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCas
   rve.consolidation_friction = number("consolidation_friction");
   // Files of older versions lack it: their grains resisted rolling.
   rve.consolidation_rolling = !(number("consolidation_rolling") == 0.0);
-  const double seed = number("seed");
-  if (!ascending || !finite || file.history_names != history_names() || !(rve.cell.det() > 0) ||
-      !std::isfinite(seed + rve.void_ratio + rve.pressure + rve.coordination + rve.unbalanced)) {
-    return {};
-  }
-  rve.seed = static_cast<std::int64_t>(seed);
+  rve.seed = static_cast<std::int64_t>(number("seed"));
   return rve;
 }
 

@@ -17,8 +17,11 @@ namespace voussoir::host {
 /// Grains and cell of a packing of any code, without contacts. The grains get the materials of `soil`.
 [[nodiscard]] PackedRve grains_from(const io::Packing& file, const SoilCase& soil);
 
-/// The RVE of a stored packing, whose grains get the materials of `soil`. Nothing where numbers are missing or
-/// impossible, or where the histories are those of another law.
+/// Says why the file is no complete packing of this program and its contact law, as the second half of a sentence: a
+/// number that is missing or impossible, contacts out of order, histories of another law. Empty where it is complete.
+[[nodiscard]] std::string fault_of_state(const io::Packing& file);
+
+/// The RVE of a stored packing, whose grains get the materials of `soil`. Nothing where fault_of_state finds a fault.
 [[nodiscard]] std::optional<PackedRve> restored_packing(const io::Packing& file, const SoilCase& soil);
 
 }  // namespace voussoir::host

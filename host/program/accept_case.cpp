@@ -9,6 +9,7 @@
 #include "host/case/load_case.hpp"
 #include "host/estimate/range.hpp"
 #include "host/estimate/report.hpp"
+#include "host/estimate/storage.hpp"
 #include "host/estimate/work.hpp"
 #include "host/packing/packing_check.hpp"
 #include "host/process/resources.hpp"
@@ -47,6 +48,22 @@ void check_packings(const Case& input) {
   }
 }
 
+/// Refuses a ground of so many elements that its mesh alone has no room, before the mesh is made, which would take
+/// minutes or hours. No mesh has fewer elements than half the squares of the size `mesh_size_far` that cover the ground;
+/// the study's meshes have seven times as many as these squares, since they are finer at the opening.
+void refuse_endless_mesh(const Case& input) {
+  if (input.kind != CaseKind::tunnel) return;
+  const GroundCase& ground = input.ground;
+  const double squares = ground.width * ground.height / (ground.mesh_size_far * ground.mesh_size_far);
+  const double needed = mesh_memory(4 * 0.5 * squares), there = memory_limit();
+  if (needed <= there) return;
+  throw io::InputError(place_of(input, "ground.mesh_size_far"), "ground.mesh_size_far",
+                       fmt::format("{:.4g} m on a ground of {:.4g} m x {:.4g} m make a mesh of over {:.2g} Gauss points "
+                                   "and {} of memory, but this machine allows {}",
+                                   ground.mesh_size_far, ground.width, ground.height, 2 * squares, bytes_text(needed),
+                                   bytes_text(there)));
+}
+
 /// The size of the case. What the mesh generator refuses is a fault of the ground's lengths.
 CaseSize checked_size(const Case& input) {
   try {
@@ -63,6 +80,7 @@ CaseSize checked_size(const Case& input) {
 AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   AcceptedCase accepted{load_case(file, overrides), {}};
   check_packings(accepted.input);
+  refuse_endless_mesh(accepted.input);
   accepted.size = checked_size(accepted.input);
   check_snapshot_points(accepted.input.output, accepted.size, place_of(accepted.input, "output.rves"));
   static_cast<void>(kernels::choose_lanes(accepted.input.engine.isa));

@@ -104,7 +104,10 @@ const LaneChoice& choose_lanes(std::optional<InstructionSet> wish) {
   return choice;
 }
 
-const LaneChoice& chosen_lanes() { return current() ? *current() : choose_lanes({}); }
+const LaneChoice& chosen_lanes() {
+  const std::optional<LaneChoice>& now = current();
+  return now ? *now : choose_lanes({});
+}
 
 std::string lanes_sentence(const LaneChoice& choice) {
   const bool slow = choice.lanes->isa == InstructionSet::scalar;

@@ -40,14 +40,14 @@ Work advance(RveBatch& batch, std::span<const typename Drive::Request> requests,
 #define VOUSSOIR_JOIN(a, b) a##b
 #define VOUSSOIR_NAME_OF_SET(set) VOUSSOIR_JOIN(voussoir_lanes_, set)
 
-using namespace voussoir::kernels;
+namespace kernels = voussoir::kernels;
 
-extern "C" const LaneSet VOUSSOIR_NAME_OF_SET(VOUSSOIR_LANES) = {
-    .isa = lanes::own_set,
-    .floats = lane_count<lanes::WideLane<float>>,
-    .doubles = lane_count<lanes::WideLane<double>>,
-    .begin = lanes::begin,
-    .advance_given = lanes::advance<StrainDrive>,
-    .advance_servo = lanes::advance<ServoDrive>,
-    .find_candidates = lanes::find_candidates,
+extern "C" const kernels::LaneSet VOUSSOIR_NAME_OF_SET(VOUSSOIR_LANES) = {
+    .isa = kernels::lanes::own_set,
+    .floats = kernels::lane_count<kernels::lanes::WideLane<float>>,
+    .doubles = kernels::lane_count<kernels::lanes::WideLane<double>>,
+    .begin = kernels::lanes::begin,
+    .advance_given = kernels::lanes::advance<kernels::StrainDrive>,
+    .advance_servo = kernels::lanes::advance<kernels::ServoDrive>,
+    .find_candidates = kernels::lanes::find_candidates,
 };

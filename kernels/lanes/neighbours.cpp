@@ -102,7 +102,11 @@ std::vector<std::vector<int>> sort_by_size(std::span<const double> radii, double
   std::vector<std::vector<int>> levels;
   for (std::size_t i = 0; i < radii.size(); ++i) {
     std::size_t level = 0;
-    for (double diameter = 2.0 * radii[i]; diameter <= largest; diameter *= 2.0) ++level;
+    double diameter = 2.0 * radii[i];
+    while (diameter <= largest) {
+      diameter *= 2.0;
+      ++level;
+    }
     if (level >= levels.size()) levels.resize(level + 1);
     levels[level].push_back(static_cast<int>(i));
   }

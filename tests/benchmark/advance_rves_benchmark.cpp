@@ -148,7 +148,7 @@ Scene& scene_of(const std::string& name, const std::function<Scene()>& make) {
 void measure(benchmark::State& state, Scene& scene) {
   std::vector<RveReport> reports(scene.batch.size());
   std::size_t particle_steps = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     forget_candidates(scene.batch);  // lists are part of what is timed
     particle_steps += advance(scene.batch, std::span<const StrainRequest>(scene.requests), scene.settings, reports)
                           .particle_steps;

@@ -17,6 +17,7 @@ from .settings import Settings
 FORMAT_VERSION = 1  # of io/FORMAT.md
 KINDS = "figures are drawn of runs of the kinds column, tunnel and biaxial_bvp"
 
+LENGTHS = ("surface_y", "diameter", "axis_depth", "width", "height")  # of the geometry, which must be positive
 MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1e3, "km": 1e6}
 
 Snapshot = dict[str, np.ndarray]  # arrays of one RVE, by the names of io/FORMAT.md
@@ -140,6 +141,8 @@ class Result:
         for name in names:
             if name not in self.geometry:
                 raise Missing(f"the run's ground has no {name} (run.h5:/mesh/geometry)")
+            if not np.isfinite(self.geometry[name]) or (name in LENGTHS and self.geometry[name] <= 0):
+                raise Missing(f"the run's ground has an impossible {name}, {self.geometry[name]} (run.h5:/mesh/geometry)")
         return [self.geometry[name] for name in names]
 
     def stage(self, *names: str) -> list[Increment]:
