@@ -157,7 +157,8 @@ std::string read_text(CaseNode& node, const std::optional<std::string>& fallback
 
 /// Reads an array entry by entry: read_one(entry, default of this entry) -> value. `info` is the node's own.
 template <class T, class Default, class ReadOne>
-std::vector<T> read_array(CaseNode& node, KeyInfo& info, const std::optional<std::vector<Default>>& fallback, ReadOne read_one) {
+std::vector<T> read_array(CaseNode& node, KeyInfo& info, const std::optional<std::vector<Default>>& fallback,
+                          ReadOne read_one) {
   if (node.written) {
     expect(node, Kind::array);
     if (node.children.size() > most_entries) {

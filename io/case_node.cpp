@@ -37,9 +37,9 @@ std::vector<std::pair<std::string, const toml::node*>> in_file_order(const toml:
   return entries;
 }
 
-/// Copies a TOML value into a node, in place of the value that the node had. A table is joined with the table that stood
-/// there before, of an extended file or, for `--set`, of the case: keys that stand there alone stay, because whoever
-/// sets one key of a table does not mean to lose the others.
+/// Copies a TOML value into a node, in place of the value that the node had. A table is joined with the table that
+/// stood there before, of an extended file or, for `--set`, of the case: keys that stand there alone stay, because
+/// whoever sets one key of a table does not mean to lose the others.
 void fill(CaseNode& node, const toml::node& from, const Origin& origin) {
   const bool joins = node.kind == CaseNode::Kind::table && from.is_table();
   node.written = true;

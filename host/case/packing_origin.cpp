@@ -90,11 +90,11 @@ void check_one_thickness(const io::Table& root, const Case& input) {
     if (input.packing.has_state()) continue;
     const double thickness = io::load_packing_csv(name).thickness;
     if (thickness == input.soil.thickness) continue;
-    throw root.table("packing").error(
-        "file", fmt::format("names packings of different thickness: {} in {} and {} in {}",
-                            io::format_quantity(thickness, io::Dimension::length), name.string(),
-                            io::format_quantity(input.soil.thickness, io::Dimension::length),
-                            input.packing.files.back().string()));
+    throw root.table("packing").error("file",
+                                      fmt::format("names packings of different thickness: {} in {} and {} in {}",
+                                                  io::format_quantity(thickness, io::Dimension::length), name.string(),
+                                                  io::format_quantity(input.soil.thickness, io::Dimension::length),
+                                                  input.packing.files.back().string()));
   }
 }
 

@@ -23,9 +23,10 @@ std::vector<std::string> describe(const CaseSize& size, MaterialKind material, c
                                   const OutputCase& output) {
   std::vector<std::string> lines;
   if (packing.files.size() > 1) {
-    lines.push_back(fmt::format("packing.file names {} packings of at most {} grains; packing.grains, seeds and "
-                                "density are not used",
-                                packing.files.size(), packing.grains));
+    lines.push_back(
+        fmt::format("packing.file names {} packings of at most {} grains; packing.grains, seeds and "
+                    "density are not used",
+                    packing.files.size(), packing.grains));
   } else if (!packing.files.empty()) {
     lines.push_back(
         fmt::format("packing.file holds {} grains; packing.grains, seeds and density are not used", packing.grains));

@@ -150,7 +150,8 @@ CaseSize case_size(const Case& input) {
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) size = ground_size(input);
   add_storage(size, input.material, input.packing, input.output);
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) add_curves(size, input.biaxial);
-  size.packings = count_of_packings(input.packing) * (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
+  size.packings = count_of_packings(input.packing) *
+                  (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
   return size;
 }
 

@@ -180,7 +180,8 @@ void check_packing_files(const SoilCase& soil, const PackingCase& recipe, double
     }
     if (!recipe.has_state()) continue;
     if (const std::string fault = fault_of_state(file); !fault.empty()) {
-      throw std::runtime_error(name.string() + " is not a complete packing of this program and its contact law: " + fault);
+      throw std::runtime_error(name.string() +
+                               " is not a complete packing of this program and its contact law: " + fault);
     }
   }
 }

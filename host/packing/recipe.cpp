@@ -76,8 +76,7 @@ std::vector<PackedRve> make_packings(const SoilCase& soil, const PackingCase& re
 
 std::vector<PackedRve> settle_foreign_packings(const SoilCase& soil, const PackingCase& recipe) {
   std::vector<PackedRve> rves;
-  for (const std::filesystem::path& file : recipe.files)
-    rves.push_back(grains_from(io::load_packing_csv(file), soil));
+  for (const std::filesystem::path& file : recipe.files) rves.push_back(grains_from(io::load_packing_csv(file), soil));
   rest_at(recipe.pressure, rves);
   return rves;
 }

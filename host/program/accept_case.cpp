@@ -49,19 +49,20 @@ void check_packings(const Case& input) {
 }
 
 /// Refuses a ground of so many elements that its mesh alone has no room, before the mesh is made, which would take
-/// minutes or hours. No mesh has fewer elements than half the squares of the size `mesh_size_far` that cover the ground;
-/// the study's meshes have seven times as many as these squares, since they are finer at the opening.
+/// minutes or hours. No mesh has fewer elements than half the squares of the size `mesh_size_far` that cover the
+/// ground; the study's meshes have seven times as many as these squares, since they are finer at the opening.
 void refuse_endless_mesh(const Case& input) {
   if (input.kind != CaseKind::tunnel) return;
   const GroundCase& ground = input.ground;
   const double squares = ground.width * ground.height / (ground.mesh_size_far * ground.mesh_size_far);
   const double needed = mesh_memory(4 * 0.5 * squares), there = memory_limit();
   if (needed <= there) return;
-  throw io::InputError(place_of(input, "ground.mesh_size_far"), "ground.mesh_size_far",
-                       fmt::format("{:.4g} m on a ground of {:.4g} m x {:.4g} m make a mesh of over {:.2g} Gauss points "
-                                   "and {} of memory, but this machine allows {}",
-                                   ground.mesh_size_far, ground.width, ground.height, 2 * squares, bytes_text(needed),
-                                   bytes_text(there)));
+  throw io::InputError(
+      place_of(input, "ground.mesh_size_far"), "ground.mesh_size_far",
+      fmt::format("{:.4g} m on a ground of {:.4g} m x {:.4g} m make a mesh of over {:.2g} Gauss points "
+                  "and {} of memory, but this machine allows {}",
+                  ground.mesh_size_far, ground.width, ground.height, 2 * squares, bytes_text(needed),
+                  bytes_text(there)));
 }
 
 /// The size of the case. What the mesh generator refuses is a fault of the ground's lengths.

@@ -45,9 +45,9 @@ class RankSession {
 /// @throws kernels::UnusableLanes where a rank cannot take the set
 void start_ranks(int threads, InstructionSetChoice isa);
 
-/// The RVEs of a mix of packings, spread over the ranks in proportion to their threads. They answer bit for bit as one pool on
-/// one rank does. To be called after start_ranks, and only where rank_count() > 1. `note` receives lines for the
-/// log: on which ranks the RVEs are and, at the end, how much time the spreading took.
+/// The RVEs of a mix of packings, spread over the ranks in proportion to their threads. They answer bit for bit as one
+/// pool on one rank does. To be called after start_ranks, and only where rank_count() > 1. `note` receives lines for
+/// the log: on which ranks the RVEs are and, at the end, how much time the spreading took.
 [[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_rank_pool(PackingMix mix, const PoolOptions& options,
                                                                  PackingNote note);
 

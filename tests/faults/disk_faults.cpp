@@ -44,9 +44,15 @@ const char* variable(const char* name) {
 
 /// Never destroyed, because the program writes until its very end.
 const Settings& settings() {
-  static const Settings* const all = new Settings{
-      variable("DISK_FAULTS_PATTERN"), variable("DISK_FAULTS_COUNT"), std::atol(variable("DISK_FAULTS_AT")),
-      std::atoi(variable("DISK_FAULTS_ERRNO")), std::string(variable("DISK_FAULTS_MODE")) == "on"};
+  static const Settings* const all = [] {
+    auto* read = new Settings;
+    read->pattern = variable("DISK_FAULTS_PATTERN");
+    read->count_file = variable("DISK_FAULTS_COUNT");
+    read->at = std::atol(variable("DISK_FAULTS_AT"));
+    read->reason = std::atoi(variable("DISK_FAULTS_ERRNO"));
+    read->on = std::string(variable("DISK_FAULTS_MODE")) == "on";
+    return read;
+  }();
   return *all;
 }
 

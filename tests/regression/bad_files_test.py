@@ -204,6 +204,8 @@ METAS: list[tuple[str | bytes | None, ...]] = [
     (cell(0.001), "fill", "unit of length"),
     (cell(0.2, 5), "too narrow"),
     (meta_with(N=151), "N says 151"),
+    (meta_with(N="150"), "N must be a finite number"),
+    (meta_with(E="3e9"), "E must be a finite number"),
     ("[" * 100_000, "is no JSON"),
     (None, "does not exist"),
 ]

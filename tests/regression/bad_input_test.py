@@ -33,8 +33,8 @@ def fresh_file(name):
     return name
 
 
-def run_with(setting):
-    return ["run", CASE, "-o", OUT, "--set", setting]
+def run_with(*settings):
+    return ["run", CASE, "-o", OUT, *(word for setting in settings for word in ("--set", setting))]
 
 
 lines = CASE.read_text().count("\n") + 3
@@ -73,6 +73,8 @@ for name in ("bad_particles.csv", "bad_packing.h5"):
     for words in (["check", CASE], ["run", CASE, "-o", OUT]):
         expect_complaint([*words, "--set", f"packing.file={Path(name).absolute()}"], "packing.file", name)
 expect_complaint(run_with("no_equals_sign"), "no_equals_sign")
+endless = ["ground.width=10 km", "ground.height=10 km", "ground.mesh_size_opening=1 m", "ground.mesh_size_far=1 m"]
+expect_complaint(run_with(*endless), "ground.mesh_size_far", "Gauss points", "this machine allows")
 expect_complaint(["run", CASE, "-o", CASE.parent], "no results of this program")
 expect_complaint(["run", CASE, "-o", OUT, "--threads", "0"], "--threads")
 expect_complaint(["run", CASE, "-o", OUT, "--resume", "--replace"], "--re")

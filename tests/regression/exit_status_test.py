@@ -48,6 +48,13 @@ for kind, words in commands.items():
 for kind in ("biaxial_bvp", "column", "tunnel"):
     check("packings of this recipe" in Path(f"out_{kind}/run.log").read_text(), f"{kind}: the log has no reason")
 
+# One pressure at which no packing can be used loses no test at the others: grains of 10 MPa lie in one another.
+some = ["packing.grains=60", "packing.seeds=[1]", "packing.folder=packings", "biaxial.strain=5 %",
+        "biaxial.pressures=['100 kPa', '10 MPa']", "biaxial.inertial_number=1e-3"]  # fmt: skip
+done = run(command("biaxial", fresh("out_some"), some), code=3)
+check("1 of 2 tests were left out" in done.stderr and "at 1e+04 kPa" in done.stdout, f"{done.stdout}{done.stderr}")
+check("100" in (run([PROGRAM, "info", "out_some/run.h5"]).stdout), "the test at 100 kPa is lost")
+
 # A store that cannot be written to is a failure of the machine, in a calibration too, where a packing without rest is
 # only a set that cannot be used.
 run([*commands["calibrate"], "--replace", "--set", "packing.folder=/proc/packings"], code=4)

@@ -21,7 +21,9 @@ sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 import compare_runs
 import compare_tunnels
 import figures
+import h5py
 import matplotlib.pyplot as plt
+import numpy as np
 from program import PROGRAM, check, run, start_and_signal
 from voussoir_plots import guard, style, trend_table
 from voussoir_plots.catalogue import FIGURES
@@ -139,6 +141,15 @@ class Runs(unittest.TestCase):
         self.assert_one_line(folder, 'is no "voussoir run" of this program')
         with mock.patch("h5py.File", side_effect=PermissionError(13, "Permission denied")):
             self.assert_one_line("runs/coarse", "run.h5 cannot be read: Permission denied")
+
+    def test_impossible_lengths(self):
+        folder = copy("lengths")
+        for length in (np.inf, 0.0):
+            with h5py.File(folder / "run.h5", "r+") as file:
+                file["mesh/geometry"].attrs["diameter"] = length
+            status, _, err = call(figures, folder, "--only", "stress_profiles", "convergence")
+            self.assertEqual(status, 2, err)
+            self.assertTrue(any("impossible diameter" in line for line in err), err)
 
     def test_damaged_increment_is_left_out(self):
         folder = copy("hole")

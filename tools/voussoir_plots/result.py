@@ -142,7 +142,7 @@ class Result:
             if name not in self.geometry:
                 raise Missing(f"the run's ground has no {name} (run.h5:/mesh/geometry)")
             if not np.isfinite(self.geometry[name]) or (name in LENGTHS and self.geometry[name] <= 0):
-                raise Missing(f"the run's ground has an impossible {name}, {self.geometry[name]} (run.h5:/mesh/geometry)")
+                raise Missing(f"the ground has an impossible {name}: {self.geometry[name]} (run.h5:/mesh/geometry)")
         return [self.geometry[name] for name in names]
 
     def stage(self, *names: str) -> list[Increment]:

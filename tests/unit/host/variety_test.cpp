@@ -80,8 +80,8 @@ TEST(Variety, AMixedPoolSaysWhichPackingAPointHoldsAndGoesThroughBytes) {
   const PackingMix mixed = mix(small_packings({1, 2, 3}), 8, 1);
   RvePool pool(mixed, {}), again(mixed, {});
   const std::vector<fem::PointField> fields = pool.fields();
-  const auto field =
-      std::find_if(fields.begin(), fields.end(), [](const fem::PointField& f) { return f.name == "packing"; });
+  const auto field = std::find_if(fields.begin(), fields.end(),
+                                  [](const fem::PointField& f) { return f.name == "packing"; });
   ASSERT_NE(field, fields.end());
   EXPECT_EQ(field->values, std::vector<double>(mixed.of_point.begin(), mixed.of_point.end()));
   std::vector<fem::Gradient> gradients(mixed.points(), fem::Gradient::Zero());

@@ -207,6 +207,32 @@ TEST(CaseFile, PathsBeginWhereTheyAreWritten) {
                                           here / "extended" / "data.csv"));
 }
 
+TEST(CaseFile, ATableOfTheCommandLineLeavesTheOtherKeysOfTheFile) {
+  for (const char* table : {"soil={}", "soil={radius = \"7 mm\"}"}) {
+    const CaseFile file = CaseFile::load(write(valid), {table});
+    read_all(file);
+    EXPECT_EQ(file.root().table("soil").quantity("weight", Dimension::unit_weight), 20e3) << table;
+  }
+  const CaseFile changed = CaseFile::load(write(valid), {"soil={radius = \"7 mm\", kept = false}"});
+  EXPECT_EQ(changed.root().table("soil").quantity("radius", Dimension::length), 7e-3);
+  EXPECT_FALSE(changed.root().table("soil").boolean("kept"));
+  EXPECT_EQ(message(valid, {"soil={radios = 1}"}), "--set soil.radios: unknown key; did you mean \"radius\"?");
+}
+
+TEST(CaseFile, OneNameOrAListOfNamesOfFiles) {
+  const auto here = std::filesystem::current_path();
+  for (const char* name : {"a.csv", "b.csv"}) std::ofstream(here / name) << "1\n";
+  using Paths = std::vector<std::filesystem::path>;
+  EXPECT_EQ(CaseFile::load(write("file = \"a.csv\"")).root().optional_paths("file"), Paths{here / "a.csv"});
+  const CaseFile both = CaseFile::load(write("file = [\"a.csv\", \"b.csv\"]"));
+  EXPECT_EQ(both.root().optional_paths("file"), (Paths{here / "a.csv", here / "b.csv"}));
+  EXPECT_NE(both.resolved().find("file = [\"a.csv\", \"b.csv\"]"), std::string::npos) << both.resolved();
+  EXPECT_TRUE(CaseFile::load(write("x = 1")).root().optional_paths("file").empty());
+  for (const char* wrong : {"file = []", "file = [\"a.csv\", \"none.csv\"]", "file = [1]", "file = [[\"a.csv\"]]"}) {
+    EXPECT_THROW(static_cast<void>(CaseFile::load(write(wrong)).root().optional_paths("file")), InputError) << wrong;
+  }
+}
+
 TEST(CaseFile, ResolvedCaseReadsBackAsTheSameCase) {
   const CaseFile file = CaseFile::load(write(valid), {"soil.radius=7 mm"});
   read_all(file);
