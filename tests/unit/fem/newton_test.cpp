@@ -136,7 +136,7 @@ TEST(Newton, RefactoringSeldomGivesTheSameAnswer) {
 }
 
 TEST(Newton, PredictorOfASteadyPathStartsCloser) {
-  double start[2];  // residual of the first iterate of a third increment
+  double start[2] = {};  // residual of the first iterate of a third increment
   for (const double ratio : {0.0, 0.5}) {
     Block block({.strain_scale = 0.02, .too_stiff = 1.5});
     NewtonSolver solver(block.mesh, block.material, Kinematics::fixed_mesh, {.tolerance = 1e-6});

@@ -1,0 +1,1 @@
+"""What decides the result of a tunnel, and by how much: runs, results and tables."""
