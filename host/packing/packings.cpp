@@ -145,7 +145,7 @@ PackedRve stored_state(const SoilCase& soil, const std::filesystem::path& file, 
                          "is not a complete packing of this program and its contact law: " + fault_of_state(read));
   }
   if (const std::string fault = interpenetration(*rve); !fault.empty() && note) {
-    note("warning: the state in " + file.string() + ": " + fault);
+    note(fmt::format("warning: the state in {}: {}", file.string(), fault));
   }
   if (note) note("packing read:  " + table_line(*rve));
   return std::move(*rve);
@@ -161,7 +161,7 @@ std::vector<PackedRve> packings_of_files(const SoilCase& soil, const PackingCase
       throw NoEquilibrium(fmt::format("{} does not come to rest: {}", name, kernels::name_of(rves[k].status)));
     }
     if (const std::string fault = interpenetration(rves[k]); !fault.empty()) {
-      throw std::runtime_error(name + ": " + fault);
+      throw std::runtime_error(fmt::format("{}: {}", name, fault));
     }
     if (note) {
       note(fmt::format("packing read:  {}{}  (packing.grains, seeds and density of the recipe are not used)",
