@@ -161,7 +161,10 @@ bool is_missing_feature(int reason) {
 
 std::string LockHolder::text() const { return fmt::format("process {} on host {} since {}", process, host, since); }
 
-bool LockHolder::on_this_host() const { return host == host_name() && machine == machine_hash(); }
+bool LockHolder::on_this_host() const {
+  const std::string ours = machine_hash();  // empty where the file of its name cannot be read
+  return host == host_name() && (machine.empty() || ours.empty() || machine == ours);
+}
 
 LockHolder this_process() {
   return {.host = host_name(),
@@ -179,8 +182,9 @@ int FileLock::ask_kernel(int file) {
 }
 
 FileLock::~FileLock() {
-  // Removed before it is given back: whoever opened the file before finds that it is not at its name any more.
-  if (!text_.empty() && text_at(path_) == text_) ::unlink(path_.c_str());
+  // Removed before it is given back: whoever opened the file before finds that it is not at its name any more. The file
+  // is not opened once more, because the process may have no descriptor left.
+  if (!text_.empty() && file_ >= 0 && is_at(file_, path_) && text_of(file_) == text_) ::unlink(path_.c_str());
   close_file();
 }
 

@@ -58,12 +58,14 @@ class Hdf5File {
   [[nodiscard]] std::vector<std::string> members(const std::string& group) const;
   [[nodiscard]] std::vector<std::string> attributes(const std::string& object) const;
 
+  /// Reads all arrays and texts below a group, whose checksums are thereby compared. Throws where one is damaged.
+  void read_through(const std::string& group) const;
+
   [[nodiscard]] std::vector<std::size_t> shape(const std::string& name) const;
   [[nodiscard]] Array<double> read_doubles(const std::string& name) const;
   [[nodiscard]] Array<std::int64_t> read_integers(const std::string& name) const;
   [[nodiscard]] std::string read_text(const std::string& name) const;
   [[nodiscard]] std::vector<std::string> read_texts(const std::string& name) const;
-  [[nodiscard]] bool attribute_is_text(const std::string& object, const std::string& name) const;
   [[nodiscard]] std::string text_attribute(const std::string& object, const std::string& name) const;
   [[nodiscard]] double number_attribute(const std::string& object, const std::string& name) const;
   [[nodiscard]] std::int64_t integer_attribute(const std::string& object, const std::string& name) const;

@@ -183,6 +183,7 @@ bool is_increment_file(const std::filesystem::path& path) {
 IncrementInfo read_increment_info(const std::filesystem::path& path, const Provenance& run) {
   const Hdf5File file = Hdf5File::open(path);
   file.require_format(format_name, format_version, "an increment of a result");
+  file.read_through("/");
   const std::vector<std::string> names = file.attributes("/");
   require_run(file, names, path, run);
   IncrementInfo info;

@@ -32,7 +32,8 @@ void write_increment_file(const std::filesystem::path& path, const Provenance& r
 /// True for a readable file of an increment, of whichever run.
 [[nodiscard]] bool is_increment_file(const std::filesystem::path& path);
 
-/// Throws std::runtime_error where the file is damaged, is the file of another run, or has the name of another index.
+/// Reads the numbers of an increment, and all of its file to see whether it is whole. Throws std::runtime_error where
+/// the file is damaged, is the file of another run, or has the name of another index.
 /// Files of older versions do not say their run.
 [[nodiscard]] IncrementInfo read_increment_info(const std::filesystem::path& path, const Provenance& run);
 

@@ -4,9 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
+#include "io/checksum.hpp"
 #include "io/hdf5.hpp"
 
 namespace voussoir::io {
@@ -57,12 +60,30 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
+/// A checksum of the grains, the cell and the contacts together. Each array has a checksum of its own against damage;
+/// this one tells a file that another program has changed.
+std::int64_t content_of(const Packing& packing) {
+  Checksum sum;
+  const auto add = [&sum](const auto& values) { sum.add(std::as_bytes(std::span(values))); };
+  add(packing.radius);
+  add(packing.x);
+  add(packing.y);
+  add(packing.rotation);
+  add(packing.cell);
+  add(std::array{packing.thickness});
+  add(packing.contact_i);
+  add(packing.contact_j);
+  add(packing.history);
+  return static_cast<std::int64_t>(sum.value());
+}
+
 void write_packing(Hdf5File& file, const Packing& packing) {
   const std::vector<std::size_t> grains{packing.grains()};
   const std::vector<std::size_t> contacts{packing.contacts()};
   file.set_attribute("/", "format", std::string(format_name));
   file.set_attribute("/", "format_version", format_version);
   file.set_attribute("/", "thickness", packing.thickness);
+  file.set_attribute("/", "content", content_of(packing));
   file.write("/radius", packing.radius, grains, "m");
   file.write("/x", packing.x, grains, "m");
   file.write("/y", packing.y, grains, "m");
@@ -124,6 +145,14 @@ Packing load_packing(const std::filesystem::path& path) {
   const std::string problem = disagreement(packing);
   if (!problem.empty()) {
     throw std::runtime_error(fmt::format("{}: {}", path.string(), problem));
+  }
+  const std::vector<std::string> known = file.attributes("/");
+  const bool tells = std::find(known.begin(), known.end(), "content") != known.end();  // older files do not
+  if (tells && file.integer_attribute("/", "content") != content_of(packing)) {
+    throw std::runtime_error(
+        fmt::format("{}: its grains were changed after this program had written them; a packing of your own has no "
+                    "attribute content",
+                    path.string()));
   }
   return packing;
 }

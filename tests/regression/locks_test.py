@@ -4,6 +4,7 @@ packings the second process waits for the first."""
 
 import contextlib
 import os
+import resource
 import shutil
 import signal
 import socket
@@ -227,3 +228,18 @@ wait_until(lambda: list(Path("packings").glob("*.lock")), first, "the lock of a 
 first.send_signal(signal.SIGTERM)
 first.communicate(timeout=60)
 check(first.returncode == 130, f"a packing that was stopped ended with {first.returncode}")
+
+# A process without a file descriptor to spare leaves no lock behind that would keep the next run out.
+for count in range(4, 12):
+    few = fresh("few")
+    done = subprocess.run(
+        command(CASE, few, QUICK),
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        preexec_fn=lambda n=count: resource.setrlimit(resource.RLIMIT_NOFILE, (n, n)),
+    )
+    check(done.returncode in (0, 4), f"{count} descriptors: {done.returncode}: {done.stderr}")
+    check(not (few / "run.lock").exists(), f"{count} descriptors: the lock file stays")
+    run(command(CASE, few, QUICK, "--resume"))

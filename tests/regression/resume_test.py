@@ -72,6 +72,15 @@ for attribute, value in (("fingerprint", "0123456789abcdef"), ("format_version",
         opened.attrs[attribute] = value
     refused = run(command(CASE, mixed, SETTINGS, "--resume"), code=4)
     check(attribute in refused.stderr and "0003.h5" in refused.stderr, f"{attribute}: {refused.stderr}")
+# A byte of a field that has changed, which no number of the increment's own tells.
+with h5py.File(straight / "increments/0003.h5") as opened:
+    dataset = opened["gauss/stress"]
+    at = dataset.id.get_offset() + dataset.nbytes // 2
+damaged = bytearray(kept)
+damaged[at] ^= 0x10
+(mixed / "increments/0003.h5").write_bytes(damaged)
+refused = run(command(CASE, mixed, SETTINGS, "--resume"), code=4)
+check("0003.h5" in refused.stderr and "checksum" in refused.stderr, f"a damaged field: {refused.stderr}")
 (mixed / "increments/0003.h5").write_bytes(kept)
 shutil.rmtree(mixed / "checkpoints")
 shutil.copytree(straight / "checkpoints", mixed / "checkpoints")

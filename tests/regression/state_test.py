@@ -8,7 +8,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from program import PROGRAM, ROOT, check, fresh, run
+from program import PROGRAM, ROOT, check, content, fresh, run
 
 FIRST = """kind = "probe"
 title = "first"
@@ -124,6 +124,22 @@ with h5py.File(old, "r+") as opened:
     opened["history"].attrs["names"] = np.bytes_("tangential_force,twist")
 one_line(run(words("check", "second.toml"), code=2), "law: this program's contact law keeps", "twist")
 shutil.copy("kept.h5", old)
+
+# Numbers that another program has changed, through which the file's own checksums go: a state is refused, a packing of
+# the store is made anew.
+with h5py.File(old, "r+") as opened:
+    opened.attrs["thickness"] = 0.3
+one_line(run(words("check", "second.toml"), code=2), "packing.file", "were changed after this program had written them")
+shutil.copy("kept.h5", old)
+Path("store.toml").write_text('kind = "pack"\n[packing]\ngrains = 60\nseeds = [1]\nfolder = "store"\n')
+shutil.rmtree("store", ignore_errors=True)
+run([PROGRAM, "run", "store.toml"])
+(stored,) = Path("store").glob("packing_*.h5")
+kept = content(stored)
+with h5py.File(stored, "r+") as opened:
+    opened["radius"][3] *= 1.01
+check("packing made" in run([PROGRAM, "run", "store.toml"]).stdout, "a changed packing was taken from the store")
+check(content(stored) == kept, "a packing that is made anew has other bits")
 
 # A file of another version, and one with a damaged byte anywhere, is refused in one line.
 for version in (0, 2, 99, 1.5, "one"):
