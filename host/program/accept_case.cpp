@@ -65,6 +65,15 @@ void refuse_endless_mesh(const Case& input) {
                   bytes_text(there)));
 }
 
+/// Refuses more packings than there are points to hold them.
+void refuse_idle_packings(const Case& input, const CaseSize& size) {
+  const auto variety = static_cast<std::size_t>(input.packing.variety);
+  if (size.points == 0 || !has_grains(input) || variety <= size.points) return;
+  throw io::InputError(
+      place_of(input, "packing.variety"), "packing.variety",
+      fmt::format("asks for {} packings, but the mesh has only {} points to hold them", variety, size.points));
+}
+
 /// The size of the case. What the mesh generator refuses is a fault of the ground's lengths.
 CaseSize checked_size(const Case& input) {
   try {
@@ -83,6 +92,7 @@ AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<st
   check_packings(accepted.input);
   refuse_endless_mesh(accepted.input);
   accepted.size = checked_size(accepted.input);
+  refuse_idle_packings(accepted.input, accepted.size);
   check_snapshot_points(accepted.input.output, accepted.size, place_of(accepted.input, "output.rves"));
   static_cast<void>(kernels::choose_lanes(accepted.input.engine.isa));
   if (has_grains(accepted.input) && accepted.input.packing.files.empty()) {

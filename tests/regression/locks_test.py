@@ -10,6 +10,7 @@ import signal
 import socket
 import subprocess
 import time
+from functools import partial
 from pathlib import Path
 
 from program import PROGRAM, ROOT, check, command, fresh, run
@@ -238,7 +239,7 @@ for count in range(4, 12):
         capture_output=True,
         text=True,
         timeout=120,
-        preexec_fn=lambda n=count: resource.setrlimit(resource.RLIMIT_NOFILE, (n, n)),
+        preexec_fn=partial(resource.setrlimit, resource.RLIMIT_NOFILE, (count, count)),
     )
     check(done.returncode in (0, 4), f"{count} descriptors: {done.returncode}: {done.stderr}")
     check(not (few / "run.lock").exists(), f"{count} descriptors: the lock file stays")

@@ -90,6 +90,7 @@ if '"Lz"' in meta:
 refuse(["packing.variety=3", "packing.candidates=2"], "packing.variety", "packing.candidates has only 2")
 refuse(["packing.variety=3", "packing.seeds=[1, 2]"], "packing.variety", "packing.seeds has only 2")
 refuse(["packing.variety=0"], "packing.variety", "at least 1")
+refuse(["packing.variety=33"], "packing.variety", "only 32 points", case="biaxial_bvp")
 loose = ["packing.grains=30", "packing.void_ratio=0.9", "packing.variety=2", "packing.folder=packings"]
 said = run(command("biaxial_bvp", fresh("loose"), [*SPECIMEN, *loose]), code=3)
 check("of this recipe" in (said.stdout + said.stderr), f"a mix without packings: {said.stdout}{said.stderr}")
