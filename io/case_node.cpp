@@ -77,24 +77,26 @@ void fill(CaseNode& node, const toml::node& from, const Origin& origin) {
   }
 }
 
-/// Refuses keys of very many parts, such as "a.a.a.a": tables in tables in tables would exhaust the stack. Tables in
-/// braces are limited by toml++ itself.
+/// Refuses keys of very many parts, such as "a.a.a.a", and very many open brackets: tables in tables in tables would
+/// exhaust the stack.
 void refuse_deep_keys(const std::string& text, const std::string& file) {
   constexpr int most_parts = 100;
   std::size_t line = 1;
-  int parts = 0;
+  int parts = 0, open = 0;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
     line += c == '\n' ? 1U : 0U;
+    open = std::max(0, open + (c == '[' || c == '{' ? 1 : 0) - (c == ']' || c == '}' ? 1 : 0));
     if (c == '.') {
       ++parts;
     } else if (std::isalnum(byte) == 0 && std::string_view("_-\"' \t").find(c) == std::string_view::npos &&
                byte < 0x80) {
       parts = 0;
     }
-    if (parts > most_parts) {
-      throw InputError(fmt::format("{}:{}", file, line), "",
-                       fmt::format("has a key of more than {} parts", most_parts));
+    if (parts > most_parts || open > most_parts) {
+      const std::string what = parts > most_parts ? fmt::format("a key of more than {} parts", most_parts)
+                                                  : fmt::format("more than {} open brackets", most_parts);
+      throw InputError(fmt::format("{}:{}", file, line), "", "has " + what);
     }
   }
 }
@@ -142,7 +144,14 @@ void fill_override(CaseNode& node, std::string_view value) {
   try {
     refuse_deep_keys(std::string(value), "--set");
     parsed = toml::parse(fmt::format("value = {}", value));
-  } catch (const toml::parse_error&) {
+  } catch (const toml::parse_error& error) {
+    // What begins like a table, an array or a whole number is meant as one.
+    const bool is_meant = value.starts_with('{') || value.starts_with('[') ||
+                          value.find_first_not_of("0123456789_") == std::string_view::npos;
+    if (is_meant && !value.empty()) {
+      throw InputError("--set", node.key,
+                       fmt::format("\"{}\" is no TOML: {}", in_one_line(value), in_one_line(error.description())));
+    }
     parsed = toml::table{{"value", std::string(value)}};
   }
   // A line break in the value would make further keys of the text behind it.

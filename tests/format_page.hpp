@@ -46,12 +46,12 @@ inline std::string disagreements(const Descriptions& page, const Descriptions& p
   std::string lines;
   for (const auto& [name, said] : page) {
     const auto found = program.find(name);
-    if (found == program.end()) lines += name + ": io/FORMAT.md alone has it\n";
+    if (found == program.end()) lines.append(name).append(": io/FORMAT.md alone has it\n");
     if (found != program.end() && found->second != said)
-      lines += name + ": \"" + said + "\" in io/FORMAT.md, \"" + found->second + "\" in the program\n";
+      lines.append(name).append(": io/FORMAT.md says ").append(said).append(", the program ").append(found->second) += '\n';
   }
   for (const auto& [name, said] : program) {
-    if (!page.contains(name)) lines += name + ": io/FORMAT.md lacks it, \"" + said + "\" in the program\n";
+    if (!page.contains(name)) lines.append(name).append(": io/FORMAT.md lacks it, the program says ").append(said) += '\n';
   }
   return lines;
 }

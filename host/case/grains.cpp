@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "host/case/keys.hpp"
@@ -77,10 +78,10 @@ void read_classes(const io::Table& table, SoilCase& soil) {
   if (soil.classes.size() > 255) throw table.error("class", "has more than 255 entries");
 }
 
-/// The number of grains in a packing's file. The whole file is read, so that a fault in it is found before a run.
-int grains_of_file(const io::Table& table, const std::filesystem::path& file) {
+/// The packing in a file. The whole file is read, so that a fault in it is found before a run.
+io::Packing packing_in(const io::Table& table, const std::filesystem::path& file) {
   try {
-    return static_cast<int>(io::load_any_packing(file).grains());
+    return io::load_any_packing(file);
   } catch (const std::runtime_error& error) {
     throw table.error("file", error.what());
   }
@@ -89,12 +90,15 @@ int grains_of_file(const io::Table& table, const std::filesystem::path& file) {
 /// Reads `file`, which names one file or several, and what depends on it.
 void read_files(const io::Table& table, PackingCase& packing) {
   packing.files = table.optional_paths("file");
-  const std::set<std::filesystem::path> different(packing.files.begin(), packing.files.end());
-  if (different.size() < packing.files.size()) throw table.error("file", "names a file twice");
-  if (packing.files.empty()) return;
-  packing.grains = 0;
+  if (!packing.files.empty()) packing.grains = 0;
+  std::set<std::vector<double>> places;  // two names may lead to one packing, and two files hold copies of it
   for (const std::filesystem::path& file : packing.files) {
-    packing.grains = std::max(packing.grains, grains_of_file(table, file));
+    const io::Packing there = packing_in(table, file);
+    packing.grains = std::max(packing.grains, static_cast<int>(there.grains()));
+    std::vector<double> x = there.x;
+    std::sort(x.begin(), x.end());  // other programs may have another order of the same grains
+    if (!places.insert(std::move(x)).second)
+      throw table.error("file", fmt::format("names a packing twice: {} holds the grains of another file", file.string()));
     if (packing.files.size() > 1 && file.extension() == ".h5")
       throw table.error("file", "names a stored state among others: a state is read alone");
   }
@@ -106,14 +110,6 @@ void read_variety(const io::Table& table, PackingCase& packing) {
   read_integer(table, "variety", packing.variety, {.at_least = 1, .at_most = most_variety});
   packing.candidates = packing.variety;
   read_integer(table, "candidates", packing.candidates, {.at_least = 1, .at_most = 1000});
-  std::size_t there = static_cast<std::size_t>(packing.candidates);
-  const char* key = "candidates";
-  if (!packing.seeds.empty()) there = packing.seeds.size(), key = "seeds";
-  if (!packing.files.empty()) there = packing.files.size(), key = "file";
-  if (there < static_cast<std::size_t>(packing.variety)) {
-    throw table.error("variety", fmt::format("asks for {} different packings, but packing.{} has only {}",
-                                             packing.variety, key, there));
-  }
 }
 
 }  // namespace
@@ -166,6 +162,17 @@ PackingCase read_packing(const io::Table& table) {
   read_files(table, packing);
   read_variety(table, packing);
   return packing;
+}
+
+void check_variety(const io::Table& table, const PackingCase& packing) {
+  std::size_t there = static_cast<std::size_t>(packing.candidates);
+  const char* key = "candidates";
+  if (!packing.seeds.empty()) there = packing.seeds.size(), key = "seeds";
+  if (!packing.files.empty()) there = packing.files.size(), key = "file";
+  if (there < static_cast<std::size_t>(packing.variety)) {
+    throw table.error("variety", fmt::format("asks for {} different packings, but packing.{} has only {}",
+                                             packing.variety, key, there));
+  }
 }
 
 }  // namespace voussoir::host

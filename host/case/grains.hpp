@@ -9,4 +9,7 @@ namespace voussoir::host {
 [[nodiscard]] SoilCase read_soil(const io::Table& table);
 [[nodiscard]] PackingCase read_packing(const io::Table& table);
 
+/// Throws where `variety` asks for more packings than the recipe's candidates, seeds or files are.
+void check_variety(const io::Table& table, const PackingCase& packing);
+
 }  // namespace voussoir::host

@@ -28,6 +28,10 @@ bool has_one_packing(const Case& c) { return has_file(c) && c.packing.variety ==
 bool has_one_of_seeds(const Case& c) { return has_seeds(c) && (c.packing.variety == 1 || !on_a_mesh(c)); }
 bool searches_void_ratio(const Case& c) { return c.packing.void_ratio > 0; }
 bool is_frictionless(const Case& c) { return !searches_void_ratio(c) && c.packing.consolidation_friction == 0; }
+bool rolls_freely(const Case& c) {
+  const auto free = [](const auto& grains) { return grains.rolling_stiffness * grains.rolling_limit == 0; };
+  return c.soil.classes.empty() ? free(c.soil) : std::all_of(c.soil.classes.begin(), c.soil.classes.end(), free);
+}
 bool is_pack(const Case& c) { return c.kind == CaseKind::pack; }
 bool runs_tests(const Case& c) { return c.kind == CaseKind::biaxial || c.kind == CaseKind::calibrate; }
 bool has_own_pressure(const Case& c) {
@@ -66,6 +70,7 @@ const std::vector<IdleRule>& rules() {
        {"consolidation_rolling"},
        is_frictionless,
        "packing.consolidation_friction is 0, without which grains feel no torque"},
+      {"packing", {"consolidation_rolling"}, rolls_freely, "the grains of [soil] do not resist rolling"},
       {"packing", {"pressure"}, has_own_pressure, "the kind's own table says the pressure of its packings"},
       {"packing", {"mirrored"}, has_no_mesh, "only kinds with a mesh have mirror images"},
       {"packing", {"variety"}, has_no_mesh, "only kinds with a mesh mix packings"},

@@ -42,6 +42,7 @@ void read_grain_tables(const io::Table& root, Case& input) {
     throw root.table("packing").error(
         "file", "is a stored state: only kind = \"probe\" can start from it, all other kinds need isotropic pressure");
   }
+  if (runs_on_a_mesh(input.kind)) check_variety(root.table("packing"), input.packing);
   if (!runs_on_a_mesh(input.kind) && input.packing.files.size() > 1) {
     throw root.table("packing").error("file", "names several files, but only kinds with a mesh mix packings");
   }

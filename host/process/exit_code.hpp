@@ -28,7 +28,7 @@ inline constexpr std::array<ExitStatus, 5> exit_table{{
      "the machine failed (disk, memory, a file that vanished), or the program has an error within; one line names file "
      "and reason, and --resume goes on when it is mended"},
     {Outcome::interrupted, 130, "interrupted",
-     "Ctrl-C, SIGTERM, SIGHUP or SIGUSR1 stopped the run after an increment; --resume goes on"},
+     "Ctrl-C, SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU stopped the run after an increment; --resume goes on"},
 }};
 
 [[nodiscard]] constexpr const ExitStatus& status_of(Outcome outcome) {

@@ -15,8 +15,8 @@ volatile std::sig_atomic_t code_at_once = 0;
 extern "C" void voussoir_on_signal(int signal) {
   stop_requested = 1;
   // A second signal has its usual effect: it ends the process. A second SIGHUP does not, because a closed terminal may
-  // send two, one from the kernel and one from the shell.
-  if (signal != SIGHUP) std::signal(signal, SIG_DFL);
+  // send two, one from the kernel and one from the shell; nor does SIGXCPU, which the kernel sends every second.
+  if (signal != SIGHUP && signal != SIGXCPU) std::signal(signal, SIG_DFL);
 }
 
 extern "C" void voussoir_end_on_signal(int /*signal*/) {
@@ -33,7 +33,7 @@ void handle_requests(void (*handler)(int)) {
   action.sa_handler = handler;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) sigaction(signal, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1, SIGXCPU}) sigaction(signal, &action, nullptr);
   struct sigaction hangup{};
   const bool under_nohup = sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler == SIG_IGN;
   if (!under_nohup) sigaction(SIGHUP, &action, nullptr);

@@ -1,5 +1,5 @@
 #pragma once
-/// A request to stop, from Ctrl-C (SIGINT), SIGTERM, SIGHUP or SIGUSR1: the run ends after the current increment, with
+/// A request to stop, from Ctrl-C (SIGINT), SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU: the run ends after the current increment, with
 /// a checkpoint.
 
 namespace voussoir::host {

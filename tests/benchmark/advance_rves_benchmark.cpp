@@ -186,8 +186,8 @@ void add(const std::string& name, int iterations, Scene (*make)(Precision)) {
        {std::pair{"float", Precision::float32}, std::pair{"double", Precision::float64}}) {
     const std::string full = name + "/" + text;
     benchmark::RegisterBenchmark(full.c_str(),
-                                 [=, precision = precision](benchmark::State& state) {
-                                   measure(state, scene_of(full, [=] { return make(precision); }));
+                                 [make, full, chosen = precision](benchmark::State& state) {
+                                   measure(state, scene_of(full, [=] { return make(chosen); }));
                                  })
         ->Iterations(iterations)
         ->Repetitions(5)

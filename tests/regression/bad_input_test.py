@@ -73,6 +73,9 @@ for name in ("bad_particles.csv", "bad_packing.h5"):
     for words in (["check", CASE], ["run", CASE, "-o", OUT]):
         expect_complaint([*words, "--set", f"packing.file={Path(name).absolute()}"], "packing.file", name)
 expect_complaint(run_with("no_equals_sign"), "no_equals_sign")
+expect_complaint(run_with("ground={width='40 m',width='50 m'}"), "--set ground", "is no TOML")
+expect_complaint(run_with("volume_loss.increments=9223372036854775808"), "volume_loss.increments", "is no TOML")
+expect_complaint(run_with("ground.height=" + "[" * 3000 + "]" * 3000), "--set", "open brackets")
 endless = ["ground.width=10 km", "ground.height=10 km", "ground.mesh_size_opening=1 m", "ground.mesh_size_far=1 m"]
 expect_complaint(run_with(*endless), "ground.mesh_size_far", "Gauss points", "this machine allows")
 expect_complaint(["run", CASE, "-o", CASE.parent], "no results of this program")

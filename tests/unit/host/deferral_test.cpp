@@ -155,7 +155,7 @@ TEST(Deferral, EndsInACheckAtTheLatestAfterSomeCommits) {
 
 class DeferringPool : public testing::Test {
  protected:
-  static void SetUpTestSuite() { rve_ = small_packing(); }
+  static void SetUpTestSuite() { rve = small_packing(); }
 
   static EngineCase engine(double defer) {
     EngineCase engine;
@@ -171,7 +171,7 @@ class DeferringPool : public testing::Test {
     return report;
   }
 
-  static inline PackedRve rve_;
+  static inline PackedRve rve;
   std::vector<fem::Stress> stress_ = std::vector<fem::Stress>(2);
   std::vector<fem::Tangent> tangent_ = std::vector<fem::Tangent>(2);
 };
@@ -180,7 +180,7 @@ const fem::Gradient tiny = gradient(1e-7, 2e-3, -2e-3, -2e-7);  // it mostly tur
 const fem::Gradient large = gradient(1e-3, 0, 1e-3, -2e-3);
 
 TEST_F(DeferringPool, GivesTheGrainsAllThatWasDeferred) {
-  RvePool deferring(rve_, {engine(1e-2)}, 2), plain(rve_, {engine(0)}, 2);
+  RvePool deferring(rve, {engine(1e-2)}, 2), plain(rve, {engine(0)}, 2);
   const fem::BatchReport first = step(deferring, {tiny, large});
   EXPECT_EQ(first.deferred, 1u);
   EXPECT_EQ(step(deferring, {tiny, large}).deferred, 1u);
@@ -198,7 +198,7 @@ TEST_F(DeferringPool, GivesTheGrainsAllThatWasDeferred) {
   }
   EXPECT_GT(lane_steps, work) << "two RVEs do not fill a group of lanes";
   EXPECT_EQ(answer[1], stress_[1]) << "an RVE beside a deferred one";
-  RvePool at_once(rve_, {engine(0)}, 2);
+  RvePool at_once(rve, {engine(0)}, 2);
   step(at_once, Gradients(2, compose(large, compose(tiny, tiny))));
   EXPECT_EQ(answer[0], stress_[0]);
   EXPECT_GT(work, first.work);
@@ -206,7 +206,7 @@ TEST_F(DeferringPool, GivesTheGrainsAllThatWasDeferred) {
 
 TEST_F(DeferringPool, KeepsToItsBound) {
   constexpr double bound = 1e-2;
-  RvePool deferring(rve_, {engine(bound)}, 2), plain(rve_, {engine(0)}, 2);
+  RvePool deferring(rve, {engine(bound)}, 2), plain(rve, {engine(0)}, 2);
   std::size_t deferred = 0;
   double error = 0;
   for (int k = 0; k < 20; ++k) {
@@ -229,7 +229,7 @@ TEST_F(DeferringPool, KeepsToItsBound) {
 TEST_F(DeferringPool, HasTheSameBitsInTeams) {
   EngineCase with_teams = engine(1e-2);
   with_teams.backend = kernels::Backend::teams;
-  RvePool lanes(rve_, {engine(1e-2)}, 2), teams(rve_, {with_teams}, 2);
+  RvePool lanes(rve, {engine(1e-2)}, 2), teams(rve, {with_teams}, 2);
   std::size_t deferred = 0;
   for (const auto& second : {tiny, large, large}) {
     const fem::BatchReport by_lanes = step(lanes, {large, second});
@@ -243,7 +243,7 @@ TEST_F(DeferringPool, HasTheSameBitsInTeams) {
 }
 
 TEST_F(DeferringPool, AVanishingBoundHasTheBitsOfNone) {
-  RvePool on(rve_, {engine(1e-300)}, 2), off(rve_, {engine(0)}, 2);
+  RvePool on(rve, {engine(1e-300)}, 2), off(rve, {engine(0)}, 2);
   for (const auto& h : {tiny, large}) {
     EXPECT_EQ(step(on, {h, h}).deferred, 0u);
     const auto answer = stress_;
@@ -254,7 +254,7 @@ TEST_F(DeferringPool, AVanishingBoundHasTheBitsOfNone) {
 }
 
 TEST_F(DeferringPool, ACheckpointKeepsWhatIsDeferred) {
-  RvePool straight(rve_, {engine(1e-2)}, 2), resumed(rve_, {engine(1e-2)}, 2), plain(rve_, {engine(0)}, 2);
+  RvePool straight(rve, {engine(1e-2)}, 2), resumed(rve, {engine(1e-2)}, 2), plain(rve, {engine(0)}, 2);
   step(straight, {tiny, large});
   resumed.set_state(straight.state());
   EXPECT_EQ(resumed.state(), straight.state());
@@ -273,7 +273,7 @@ TEST_F(DeferringPool, ACheckpointKeepsWhatIsDeferred) {
 TEST_F(DeferringPool, ACheckpointKeepsTheTrust) {
   constexpr double bound = 1e-10;
   const Gradients small(2, gradient(0, 0, 0, -2e-4 * bound));
-  RvePool straight(rve_, {engine(bound)}, 2), resumed(rve_, {engine(bound)}, 2);
+  RvePool straight(rve, {engine(bound)}, 2), resumed(rve, {engine(bound)}, 2);
   int deferred = 0;
   fem::BatchReport last = step(straight, small);
   for (; last.deferred == 2 && deferred < 100; ++deferred) last = step(straight, small);
@@ -286,7 +286,7 @@ TEST_F(DeferringPool, ACheckpointKeepsTheTrust) {
 
 /// An RVE that runs at one iterate and is deferred at none after; a failed increment leaves no trace.
 TEST_F(DeferringPool, StartsAnewFromTheCommittedState) {
-  RvePool pool(rve_, {engine(1e-2)}, 2), other(rve_, {engine(1e-2)}, 2);
+  RvePool pool(rve, {engine(1e-2)}, 2), other(rve, {engine(1e-2)}, 2);
   step(pool, {tiny, tiny});
   step(other, {tiny, tiny});
   pool.begin_increment();

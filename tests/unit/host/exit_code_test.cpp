@@ -21,8 +21,8 @@ namespace voussoir::host {
 namespace {
 
 template <class Exception>
-Outcome outcome_of_exception(Exception exception) {
-  return failure_of(std::make_exception_ptr(std::move(exception))).outcome;
+Outcome outcome_of_exception(const Exception& exception) {
+  return failure_of(std::make_exception_ptr(exception)).outcome;
 }
 
 TEST(ExitCodeTest, EachOutcomeHasItsCode) {

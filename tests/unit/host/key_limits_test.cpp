@@ -117,7 +117,7 @@ std::vector<std::string> wrong_forms(const KeyInfo& key) {
       if (key.type == KeyType::path) add({R"("")", R"("no_such_file")", R"(".")", R"("/dev/null")"});
       break;
   }
-  for (std::string& form : forms) form = key.list ? "[" + form + "]" : form;
+  for (std::string& form : forms) form = key.list ? std::string("[").append(form).append("]") : form;
   if (key.list) forms.insert(forms.end(), {"1", R"("x")", "true", "{}"});
   if (!key.list) forms.emplace_back("[1]");
   return forms;

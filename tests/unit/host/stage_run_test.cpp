@@ -53,19 +53,20 @@ class Steps : public testing::Test {
 /// Every number is another multiple of `n`, so that a sum over steps is the multiple of the sum of their n.
 fem::NewtonReport report_of(int n, fem::NewtonStatus status) {
   fem::NewtonReport report;
+  const auto count = static_cast<std::size_t>(n);
   report.status = status;
   report.iterations = 2 * n;
   report.evaluations = 3 * n;
-  report.work = static_cast<std::size_t>(5 * n);
-  report.lane_steps = static_cast<std::size_t>(7 * n);
+  report.work = 5 * count;
+  report.lane_steps = 7 * count;
   report.relaxations = 11 * n;
   report.viscous_work = 13 * n;
   report.times = {.material = 17.0 * n, .assembly = 19.0 * n, .solve = 23.0 * n};
-  report.material.open = static_cast<std::size_t>(29 * n);
-  report.material.step_limit = static_cast<std::size_t>(31 * n);
+  report.material.open = 29 * count;
+  report.material.step_limit = 31 * count;
   report.material.slowest_steps = 37 * n;
   report.material.deferral_error = 1.0 / n;
-  report.material.deferred = static_cast<std::size_t>(41 * n);
+  report.material.deferred = 41 * count;
   report.largest_nodal_ratio = 43 * n;
   return report;
 }

@@ -15,7 +15,7 @@ namespace {
 
 class StrainPath : public testing::Test {
  protected:
-  static void SetUpTestSuite() { rve_ = small_packing(); }
+  static void SetUpTestSuite() { rve = small_packing(); }
 
   std::vector<PathPoint> walk(RvePool& pool, const std::vector<PathSegment>& segments,
                               const std::vector<double>& scale) {
@@ -24,12 +24,12 @@ class StrainPath : public testing::Test {
     return points;
   }
 
-  static inline PackedRve rve_;
+  static inline PackedRve rve;
   PathEnd end_;
 };
 
 TEST_F(StrainPath, AGivenPathIsThatOfSingleEvaluations) {
-  RvePool pool(rve_, {EngineCase{}}, 1), by_hand(rve_, {EngineCase{}}, 1);
+  RvePool pool(rve, {EngineCase{}}, 1), by_hand(rve, {EngineCase{}}, 1);
   const auto points = walk(pool, {{.gradient = {1e-3, 2e-3, 0, -1e-3}, .increments = 3}}, {1.0});
   ASSERT_TRUE(end_.usable);
   ASSERT_EQ(points.size(), 4u);  // the start, and three increments
@@ -50,7 +50,7 @@ TEST_F(StrainPath, AGivenPathIsThatOfSingleEvaluations) {
 
 // A larger increment takes more steps: each begins anew.
 TEST_F(StrainPath, EachIncrementChoosesItsSteps) {
-  RvePool pool(rve_, PoolOptions{}, 1), by_hand(rve_, PoolOptions{}, 1);
+  RvePool pool(rve, PoolOptions{}, 1), by_hand(rve, PoolOptions{}, 1);
   const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}}, {.gradient = {0, 0, 0, -1.7e-3}}}, {1.0});
   ASSERT_TRUE(end_.usable);
   std::vector<fem::Stress> stress(1);
@@ -68,7 +68,7 @@ TEST_F(StrainPath, EachIncrementChoosesItsSteps) {
 TEST_F(StrainPath, ReplicasAreScaledAndEachFindsItsOwn) {
   const std::vector<double> scale{1.0, 1.3};
   for (const bool held : {false, true}) {
-    RvePool pool(rve_, PoolOptions{}, 2);
+    RvePool pool(rve, PoolOptions{}, 2);
     const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 4, .constant_xx = held}}, scale);
     ASSERT_TRUE(end_.usable);
     EXPECT_EQ(end_.missed, 0);
@@ -85,7 +85,7 @@ TEST_F(StrainPath, ReplicasAreScaledAndEachFindsItsOwn) {
 }
 
 TEST_F(StrainPath, LateralStressIsHeldWhereAsked) {
-  RvePool pool(rve_, {EngineCase{}}, 2);
+  RvePool pool(rve, {EngineCase{}}, 2);
   const auto points = walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 8, .constant_xx = true}}, {1.0, 1.0});
   ASSERT_TRUE(end_.usable);
   for (const PathPoint& at : points) {
@@ -100,7 +100,7 @@ TEST_F(StrainPath, LateralStressIsHeldWhereAsked) {
 }
 
 TEST_F(StrainPath, AStressThatIsMissedIsCounted) {
-  RvePool pool(rve_, {EngineCase{}}, 1), coarse(rve_, {EngineCase{}}, 1);
+  RvePool pool(rve, {EngineCase{}}, 1), coarse(rve, {EngineCase{}}, 1);
   (void)walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 8, .constant_xx = true}}, {1.0});
   EXPECT_EQ(end_.missed, 0);
   EXPECT_LE(end_.largest_miss, lateral_tolerance);
@@ -112,7 +112,7 @@ TEST_F(StrainPath, AStressThatIsMissedIsCounted) {
 }
 
 TEST_F(StrainPath, SegmentsFollowOneAnother) {
-  RvePool pool(rve_, {EngineCase{}}, 1);
+  RvePool pool(rve, {EngineCase{}}, 1);
   const auto points = walk(
       pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {0, 0, 0, 1e-3}, .increments = 1}}, {1.0});
   ASSERT_EQ(points.size(), 4u);
@@ -122,7 +122,7 @@ TEST_F(StrainPath, SegmentsFollowOneAnother) {
 }
 
 TEST_F(StrainPath, AnImpossibleIncrementEndsIt) {
-  RvePool pool(rve_, {EngineCase{}}, 1);
+  RvePool pool(rve, {EngineCase{}}, 1);
   const auto points = walk(
       pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 2}, {.gradient = {-0.5, 0, 0, -0.5}, .increments = 5}},
       {1.0});
@@ -132,7 +132,7 @@ TEST_F(StrainPath, AnImpossibleIncrementEndsIt) {
 }
 
 TEST_F(StrainPath, TheStoredEndIsTheSameState) {
-  RvePool pool(rve_, {EngineCase{}}, 1);
+  RvePool pool(rve, {EngineCase{}}, 1);
   (void)walk(pool, {{.gradient = {0, 0, 0, -1e-3}, .increments = 5, .constant_xx = true}}, {1.0});
   const auto stored = restored_packing(stored_packing(pool.packed(0), SoilCase{}, "test", "0"), SoilCase{});
   ASSERT_TRUE(stored.has_value());
