@@ -16,6 +16,6 @@ namespace voussoir::host {
 /// One line for each member: its seed, how it ended, and the results of its last increment, which are empty for a
 /// member that is not reduced. `reduced` are the reduced members in their order.
 [[nodiscard]] std::string members_csv(const std::vector<io::EnsembleMember>& members,
-                                      const std::vector<Member>& reduced);
+                                      const std::vector<MemberResults>& reduced);
 
 }  // namespace voussoir::host

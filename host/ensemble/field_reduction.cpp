@@ -31,18 +31,18 @@ struct FieldSums {
 };
 
 /// The file of the increment in a member.
-std::filesystem::path file_of(const Member& member, const io::EnsembleIncrement& row) {
+std::filesystem::path file_of(const MemberResults& member, const io::EnsembleIncrement& row) {
   const auto found = std::find_if(member.increments.begin(), member.increments.end(), [&](const auto& info) {
     return info.stage == row.stage && info.stage_index == row.stage_index;
   });
   return io::increment_path(member.folder, found->index);
 }
 
-std::vector<std::pair<io::FieldLocation, io::Bands>> bands_of_fields(std::span<const Member> members,
+std::vector<std::pair<io::FieldLocation, io::Bands>> bands_of_fields(std::span<const MemberResults> members,
                                                                      const BandRule& rule,
                                                                      const io::EnsembleIncrement& row) {
   std::vector<FieldSums> all;
-  for (const Member& member : members) {
+  for (const MemberResults& member : members) {
     for (io::Field& field : io::read_fields(file_of(member, row))) {
       if (!has_mean(field)) continue;
       const std::vector<std::size_t> shape = io::shape_of(field);
@@ -69,7 +69,7 @@ std::vector<std::pair<io::FieldLocation, io::Bands>> bands_of_fields(std::span<c
 
 }  // namespace
 
-bool reduce_fields(std::span<const Member> members, const BandRule& rule,
+bool reduce_fields(std::span<const MemberResults> members, const BandRule& rule,
                    const std::vector<io::EnsembleIncrement>& increments, const std::filesystem::path& folder,
                    const std::function<bool()>& before_each) {
   for (const io::EnsembleIncrement& row : increments) {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "host/ensemble/trough_fit.hpp"
+#include "host/stages/ground_loads.hpp"
 #include "io/increment_file.hpp"
 
 namespace voussoir::host {
@@ -64,7 +65,7 @@ double vertical_stress(const io::Field& stress, std::size_t element) {
   return sum / corners;
 }
 
-void add_trough(Member& member, std::size_t increment, double axis_depth) {
+void add_trough(MemberResults& member, std::size_t increment, double axis_depth) {
   const std::vector<double>& settlement = member.settlement[increment];
   const TroughFit fit = fit_trough(member.surface_x, settlement);
   const std::array<io::Quantity, trough_columns.size()> values{{{fit.largest, "m"},
@@ -77,7 +78,7 @@ void add_trough(Member& member, std::size_t increment, double axis_depth) {
 }
 
 /// Adds what the fields of the volume loss show: troughs, and the stress above the crown over its value at V_l = 0.
-void add_field_columns(Member& member) {
+void add_field_columns(MemberResults& member) {
   const std::vector<std::size_t> nodes = surface_nodes(member.mesh);
   const std::optional<std::size_t> crown = crown_element(member.mesh);
   const auto depth = member.mesh.geometry.find("axis_depth");
@@ -107,12 +108,27 @@ void add_field_columns(Member& member) {
 
 }  // namespace
 
-Member read_member(const std::filesystem::path& folder) {
+bool is_at_end(const Case& input, const std::vector<io::IncrementInfo>& increments) {
+  if (increments.empty()) return false;
+  const io::IncrementInfo& last = increments.back();
+  switch (input.kind) {
+    case CaseKind::tunnel:
+      return last.stage == "volume_loss" && last.stage_index == input.volume_loss.increments;
+    case CaseKind::column:
+      return last.stage_index == static_cast<int>(gravity_targets(input.ground, input.gravity).size());
+    case CaseKind::biaxial_bvp:
+      return last.stage_index == input.biaxial_bvp.increments();
+    default:
+      return false;
+  }
+}
+
+MemberResults read_member(const std::filesystem::path& folder) {
   const std::filesystem::path index = folder / "run.h5";
-  Member member{.folder = folder,
-                .mesh = io::read_mesh(index),
-                .increments = io::read_increments(index),
-                .tables = io::read_tables(index)};
+  MemberResults member{.folder = folder,
+                       .mesh = io::read_mesh(index),
+                       .increments = io::read_increments(index),
+                       .tables = io::read_tables(index)};
   if (member.increments.empty())
     throw std::runtime_error(fmt::format("{}: the finished run has no increments", folder.string()));
   member.settlement.resize(member.increments.size());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/case/case.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -18,7 +19,7 @@ inline constexpr std::array<const char*, 5> trough_columns{"trough_settlement", 
                                                            "trough_width", "trough_misfit"};
 inline constexpr std::array<const char*, 2> reaction_columns{"ground_reaction", "least_ground_reaction"};
 
-struct Member {
+struct MemberResults {
   std::filesystem::path folder = {};
   io::MeshData mesh = {};
   /// With the further columns among `extra`.
@@ -30,8 +31,12 @@ struct Member {
   std::vector<bool> good_trough = {};                ///< (increment) TroughFit::good
 };
 
+/// True where the last of a run's increments is the last that its case plans: the run has gone the whole way, even
+/// where some of its increments did not converge.
+[[nodiscard]] bool is_at_end(const Case& input, const std::vector<io::IncrementInfo>& increments);
+
 /// Reads a member's folder. Throws std::runtime_error where a file is missing or damaged.
-[[nodiscard]] Member read_member(const std::filesystem::path& folder);
+[[nodiscard]] MemberResults read_member(const std::filesystem::path& folder);
 
 /// The value of a column in an increment; nothing where the increment has no such column.
 [[nodiscard]] std::optional<double> value_of(const io::IncrementInfo& increment, const std::string& column);

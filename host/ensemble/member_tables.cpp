@@ -60,12 +60,13 @@ std::vector<io::Bands> reduce_rows(const std::vector<const std::vector<io::Table
 
 }  // namespace
 
-std::map<std::string, std::vector<io::Bands>> reduce_tables(std::span<const Member> members, const BandRule& rule) {
+std::map<std::string, std::vector<io::Bands>> reduce_tables(std::span<const MemberResults> members,
+                                                            const BandRule& rule) {
   std::map<std::string, std::vector<io::Bands>> found;
   for (const auto& [name, own] : members.front().tables) {
     if (name == "gauss_histories") continue;
     std::vector<const std::vector<io::TableColumn>*> tables;
-    for (const Member& member : members) {
+    for (const MemberResults& member : members) {
       const auto table = member.tables.find(name);
       if (table != member.tables.end()) tables.push_back(&table->second);
     }

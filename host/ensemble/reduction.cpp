@@ -19,7 +19,7 @@ namespace {
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 /// The place of an increment among those of a member; nothing where the member lacks it.
-std::optional<std::size_t> place_in(const Member& member, const io::IncrementInfo& wanted) {
+std::optional<std::size_t> place_in(const MemberResults& member, const io::IncrementInfo& wanted) {
   const auto found = std::find_if(member.increments.begin(), member.increments.end(), [&](const auto& info) {
     return info.stage == wanted.stage && info.stage_index == wanted.stage_index &&
            info.load_parameter == wanted.load_parameter;
@@ -29,7 +29,7 @@ std::optional<std::size_t> place_in(const Member& member, const io::IncrementInf
 }
 
 /// The places of the ensemble's increments in a member.
-std::vector<std::size_t> places_in(const Member& member, const std::vector<io::EnsembleIncrement>& rows) {
+std::vector<std::size_t> places_in(const MemberResults& member, const std::vector<io::EnsembleIncrement>& rows) {
   std::vector<std::size_t> places;
   for (const io::EnsembleIncrement& row : rows) {
     const auto place = place_in(
@@ -39,7 +39,7 @@ std::vector<std::size_t> places_in(const Member& member, const std::vector<io::E
   return places;
 }
 
-void reduce_columns(std::span<const Member> members, const std::vector<std::vector<std::size_t>>& places,
+void reduce_columns(std::span<const MemberResults> members, const std::vector<std::vector<std::size_t>>& places,
                     const BandRule& rule, io::EnsembleData& result) {
   const std::size_t rows = result.increments.size();
   std::map<std::string, std::string> units;
@@ -57,11 +57,11 @@ void reduce_columns(std::span<const Member> members, const std::vector<std::vect
   for (const auto& [name, column] : values) result.curves.push_back(bands_of(column, rule, name, units[name], {rows}));
 }
 
-void reduce_trough(std::span<const Member> members, const std::vector<std::vector<std::size_t>>& places,
+void reduce_trough(std::span<const MemberResults> members, const std::vector<std::vector<std::size_t>>& places,
                    const BandRule& rule, io::EnsembleData& result) {
   const std::vector<double>& x = members.front().surface_x;
   const bool all = !x.empty() && std::all_of(members.begin(), members.end(),
-                                             [&](const Member& member) { return member.surface_x == x; });
+                                             [&](const MemberResults& member) { return member.surface_x == x; });
   if (!all) return;
   const std::size_t rows = result.increments.size();
   std::vector<std::vector<double>> settlement(members.size());
@@ -78,7 +78,7 @@ void reduce_trough(std::span<const Member> members, const std::vector<std::vecto
 
 }  // namespace
 
-std::vector<io::EnsembleIncrement> common_increments(std::span<const Member> members) {
+std::vector<io::EnsembleIncrement> common_increments(std::span<const MemberResults> members) {
   std::vector<io::EnsembleIncrement> rows;
   for (const io::IncrementInfo& info : members.front().increments) {
     io::EnsembleIncrement row{.index = info.index,
@@ -86,7 +86,7 @@ std::vector<io::EnsembleIncrement> common_increments(std::span<const Member> mem
                               .stage_index = info.stage_index,
                               .load_parameter = info.load_parameter};
     bool in_all = true;
-    for (const Member& member : members) {
+    for (const MemberResults& member : members) {
       const auto place = place_in(member, info);
       in_all = in_all && place.has_value();
       if (!place) continue;
@@ -98,7 +98,7 @@ std::vector<io::EnsembleIncrement> common_increments(std::span<const Member> mem
   return rows;
 }
 
-void reduce_curves(std::span<const Member> members, const BandRule& rule, io::EnsembleData& result) {
+void reduce_curves(std::span<const MemberResults> members, const BandRule& rule, io::EnsembleData& result) {
   result.reduced = rule.members;
   result.confidence = rule.confidence;
   result.student_t = rule.student_t;
@@ -110,15 +110,15 @@ void reduce_curves(std::span<const Member> members, const BandRule& rule, io::En
     throw std::runtime_error(
         fmt::format("{}: its increments are those of no other member", members.front().folder.string()));
   std::vector<std::vector<std::size_t>> places;
-  for (const Member& member : members) places.push_back(places_in(member, result.increments));
+  for (const MemberResults& member : members) places.push_back(places_in(member, result.increments));
   reduce_columns(members, places, rule, result);
   reduce_trough(members, places, rule, result);
   result.tables = reduce_tables(members, rule);
 }
 
-double relative_error(std::span<const Member> members, const std::string& column) {
+double relative_error(std::span<const MemberResults> members, const std::string& column) {
   std::vector<std::vector<double>> last;
-  for (const Member& member : members) {
+  for (const MemberResults& member : members) {
     const auto value = value_of(member.increments.back(), column);
     if (!value || !std::isfinite(*value))
       throw std::runtime_error(

@@ -1,5 +1,6 @@
 // The command `voussoir ensemble`: one case with many draws of its packings. Each member is a process of its own.
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -39,8 +40,8 @@ struct Ensemble {
   std::optional<Goal> goal;
   int most = 0;  ///< members at the most
   std::vector<ProcessRun> runs;
-  std::vector<bool> reduced;     ///< (run) its results are among `finished`
-  std::vector<Member> finished;  ///< in the order of the runs
+  std::vector<bool> reduced;            ///< (run) its results are among `finished`
+  std::vector<MemberResults> finished;  ///< in the order of the runs
 };
 
 /// The seed of a member: members draw seeds that no other member draws.
@@ -106,6 +107,15 @@ Ensemble prepare(const fs::path& case_file, const EnsembleOptions& given) {
   return ensemble;
 }
 
+/// True where a run has results up to the planned end. A run that ends without equilibrium may have gone on beyond
+/// increments that did not converge: leaving it out would choose the members by their answers.
+bool has_all_increments(const ProcessRun& run, const Case& input) {
+  if (run.end.outcome == Outcome::done) return true;
+  const fs::path index = run.folder / "run.h5";
+  return run.end.outcome == Outcome::no_equilibrium && fs::exists(index) &&
+         is_at_end(input, io::read_increments(index));
+}
+
 /// Runs further members up to this number; returns how many of them came to their end.
 std::size_t run_members(Ensemble& ensemble, std::size_t up_to) {
   const std::size_t before = ensemble.runs.size();
@@ -114,9 +124,8 @@ std::size_t run_members(Ensemble& ensemble, std::size_t up_to) {
   run_processes(added, ensemble.case_file, ensemble.options.runs);
   const std::size_t finished_before = ensemble.finished.size();
   for (const ProcessRun& run : added) {
-    const bool done = run.end.outcome == Outcome::done;
-    ensemble.reduced.push_back(done);
-    if (done && !interrupted()) ensemble.finished.push_back(read_member(run.folder));
+    ensemble.reduced.push_back(!interrupted() && has_all_increments(run, ensemble.input));
+    if (ensemble.reduced.back()) ensemble.finished.push_back(read_member(run.folder));
   }
   return ensemble.finished.size() - finished_before;
 }
@@ -155,17 +164,22 @@ std::vector<io::EnsembleMember> members_of(const Ensemble& ensemble) {
   return members;
 }
 
-void name_failed(const Ensemble& ensemble) {
-  std::string names;
-  int count = 0;
-  for (const ProcessRun& run : ensemble.runs) {
-    if (run.end.outcome == Outcome::done) continue;
-    names += fmt::format("{}{} ({})", count > 0 ? ", " : "", run.name, name_of(run.end));
-    ++count;
+/// Names the members that did not end well: those with results up to the end, and those without.
+void name_failed(const Ensemble& ensemble, bool reduced) {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < ensemble.runs.size(); ++k) {
+    const ProcessRun& run = ensemble.runs[k];
+    if (run.end.outcome == Outcome::done || ensemble.reduced[k] != reduced) continue;
+    names.push_back(fmt::format("{} ({})", run.name, name_of(run.end)));
   }
-  if (count == 0) return;
-  std::fprintf(stderr, "voussoir: %d of %zu members %s not finished and %s no part of the means and bands: %s\n", count,
-               ensemble.runs.size(), count == 1 ? "has" : "have", count == 1 ? "is" : "are", names.c_str());
+  if (names.empty()) return;
+  const bool one = names.size() == 1;
+  const std::string what = reduced ? fmt::format("{} increments that did not converge and {} part of",
+                                                 one ? "has" : "have", one ? "is" : "are")
+                                   : fmt::format("{} no results up to the end and {} no part of", one ? "has" : "have",
+                                                 one ? "is" : "are");
+  std::fprintf(stderr, "voussoir: %zu of %zu members %s the means and bands: %s\n", names.size(), ensemble.runs.size(),
+               what.c_str(), fmt::format("{}", fmt::join(names, ", ")).c_str());
 }
 
 /// Says whether the folder still belongs to this process, as a run does before each write.
@@ -198,7 +212,7 @@ bool reduce(const Ensemble& ensemble, std::optional<double> error, const RunLock
   reduce_curves(ensemble.finished, rule, data);
   const auto most = std::max_element(
       ensemble.finished.begin(), ensemble.finished.end(),
-      [](const Member& a, const Member& b) { return a.increments.size() < b.increments.size(); });
+      [](const MemberResults& a, const MemberResults& b) { return a.increments.size() < b.increments.size(); });
   if (most->increments.size() > data.increments.size()) {
     std::fprintf(stderr, "voussoir: %zu increments of %s are left out, because another member lacks them\n",
                  most->increments.size() - data.increments.size(), most->folder.c_str());
@@ -246,7 +260,8 @@ Outcome command_ensemble(const fs::path& case_file, const EnsembleOptions& given
   const std::optional<double> error = run_all(ensemble);
   confirm(lock);
   write_summary(ensemble.runs, folder / "summary.csv");
-  name_failed(ensemble);
+  name_failed(ensemble, true);
+  name_failed(ensemble, false);
   std::vector<RunEnd> ends;
   for (const ProcessRun& run : ensemble.runs) ends.push_back(run.end);
   Outcome outcome = outcome_of(ends);
@@ -254,7 +269,7 @@ Outcome command_ensemble(const fs::path& case_file, const EnsembleOptions& given
   remove_earlier_reduction(folder);
   if (ensemble.finished.size() < 2) {
     io::write_text(folder / "members.csv", members_csv(members_of(ensemble), ensemble.finished));
-    std::fprintf(stderr, "voussoir: means and bands need two finished members, and there %s\n",
+    std::fprintf(stderr, "voussoir: means and bands need two members with results up to the end, and there %s\n",
                  ensemble.finished.empty() ? "is none" : "is one");
     return outcome;
   }
