@@ -5,6 +5,7 @@ named and counted; `--until` adds members; what has nothing to draw is refused; 
 import csv
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from program import PROGRAM, ROOT, SMALL_TUNNEL, check, content, fresh, run, table
+from program import PROGRAM, ROOT, SMALL_TUNNEL, check, content, fresh, run, start_and_signal, table
 
 sys.path.insert(0, str(ROOT / "tools"))
 from voussoir_plots import reaction, troughs
@@ -216,8 +217,25 @@ while (killed / "member_001/run.lock").exists():
     time.sleep(0.02)
 check(not (killed / "ensemble.h5").exists(), "a killed ensemble has means and bands")
 check(len(table(killed / "member_001")) < len(loads), "the member was not killed in its middle")
-run([*ensemble(CASE, killed, "-n", str(MEMBERS))], code=2)
-run([*ensemble(CASE, killed, "-n", str(MEMBERS), "--resume", "-j", "2")])
+refusal = run(ensemble(CASE, killed, "-n", str(MEMBERS)), code=2).stderr
+check("holds results already: add --resume" in refusal, refusal)
+
+# A request to stop is passed on to the members and ends the ensemble with 130, without means and bands.
+words = ensemble(CASE, killed, "-n", str(MEMBERS), "--resume")
+code = start_and_signal(words, killed / "member_002/increments/0001.h5", signal.SIGTERM)
+check(code == 130 and not (killed / "ensemble.h5").exists(), f"stopped with exit {code}")
+with (killed / "summary.csv").open() as opened:
+    ends = [line["status"] for line in csv.DictReader(opened)]
+check(ends[:2] == ["finished"] * 2 and ends[3] == "not run", f"the summary of a stopped ensemble says {ends}")
+run(ensemble(CASE, killed, "-n", str(MEMBERS), "--resume", "-j", "2"))
+check_same_ensemble(whole, killed)
+
+# A disk that takes no file of this size ends the reduction with 4 and leaves no half ensemble.
+limited = ["sh", "-c", 'ulimit -f 60; exec "$@"', "sh", *ensemble(CASE, killed, "-n", str(MEMBERS), "--resume")]
+done = run(limited, code=4)
+check(done.stderr.count("\n") == 1 and "fields/0001.h5" in done.stderr, f"ulimit -f: {done.stderr}")
+check(not (killed / "ensemble.h5").exists() and not list(killed.rglob("*.tmp")), "ulimit -f left files")
+run(ensemble(CASE, killed, "-n", str(MEMBERS), "--resume", "-j", "2"))
 check_same_ensemble(whole, killed)
 
 # A member whose folder cannot be made, since a link there leads nowhere: it is named and counted, the others reduced.
@@ -290,8 +308,8 @@ check(count in done.stderr and done.stderr.count(f"part of the means and bands: 
 with h5py.File(column / "ensemble.h5") as file:
     absent = {int(seed) for seed, there in zip(file["members/seed"], file["members/reduced"]) if not there}
     check(absent == restless and file["bands"].attrs["members"] == 5 - len(restless), f"left out: {absent}")
-    ends = [table(column / f"member_{k:03}")[-1]["k0_at_base"] for k in range(5) if k + 1 not in restless]
-    check(abs(file["curves/k0_at_base/mean"][-1] / np.mean(ends) - 1) < 1e-12, "K0 of the members that found rest")
+    at_base = [table(column / f"member_{k:03}")[-1]["k0_at_base"] for k in range(5) if k + 1 not in restless]
+    check(abs(file["curves/k0_at_base/mean"][-1] / np.mean(at_base) - 1) < 1e-12, "K0 of the members that found rest")
 
 # Where no member finds rest, --until does not go on trying.
 none = fresh("none")
