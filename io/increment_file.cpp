@@ -26,20 +26,6 @@ struct Location {
 constexpr std::array locations{Location{FieldLocation::node, "node"}, Location{FieldLocation::gauss, "gauss"},
                                Location{FieldLocation::element, "element"}, Location{FieldLocation::rve, "rve"}};
 
-const char* group_of(FieldLocation location) {
-  return std::find_if(locations.begin(), locations.end(), [&](const Location& l) { return l.location == location; })
-      ->group;
-}
-
-std::vector<std::size_t> shape_of(const Field& field) {
-  const auto components = static_cast<std::size_t>(field.components);
-  const std::size_t rows = field.values.size() / components;
-  if (field.location == FieldLocation::gauss) {
-    return {rows / gauss_points, gauss_points, components};
-  }
-  return {rows, components};
-}
-
 void write_info(Hdf5File& file, const Provenance& run, const IncrementInfo& info) {
   file.set_attribute("/", "format", std::string(format_name));
   file.set_attribute("/", "format_version", format_version);
@@ -134,7 +120,31 @@ RveSnapshot read_snapshot(const Hdf5File& file, const std::string& name) {
   return snapshot;
 }
 
+Field read_field(const Hdf5File& file, FieldLocation location, const std::string& name) {
+  const std::string object = fmt::format("/{}/{}", group_of(location), name);
+  auto array = file.read_doubles(object);
+  return {.name = name,
+          .unit = file.text_attribute(object, "unit"),
+          .location = location,
+          .components = static_cast<int>(array.shape.back()),
+          .values = std::move(array.values)};
+}
+
 }  // namespace
+
+const char* group_of(FieldLocation location) {
+  return std::find_if(locations.begin(), locations.end(), [&](const Location& l) { return l.location == location; })
+      ->group;
+}
+
+std::vector<std::size_t> shape_of(const Field& field) {
+  const auto components = static_cast<std::size_t>(field.components);
+  const std::size_t rows = field.values.size() / components;
+  if (field.location == FieldLocation::gauss) {
+    return {rows / gauss_points, gauss_points, components};
+  }
+  return {rows, components};
+}
 
 void write_increment_file(const std::filesystem::path& path, const Provenance& run, const MeshData& mesh,
                           const IncrementInfo& info, const std::vector<Field>& fields,
@@ -218,16 +228,17 @@ std::vector<Field> read_fields(const std::filesystem::path& increment_file) {
   std::vector<Field> fields;
   for (const auto& [location, group] : locations) {
     for (const auto& name : file.members(fmt::format("/{}", group))) {
-      const std::string object = fmt::format("/{}/{}", group, name);
-      auto array = file.read_doubles(object);
-      fields.push_back({.name = name,
-                        .unit = file.text_attribute(object, "unit"),
-                        .location = location,
-                        .components = static_cast<int>(array.shape.back()),
-                        .values = std::move(array.values)});
+      fields.push_back(read_field(file, location, name));
     }
   }
   return fields;
+}
+
+std::optional<Field> find_field(const std::filesystem::path& increment_file, FieldLocation location,
+                                const std::string& name) {
+  const Hdf5File file = Hdf5File::open(increment_file);
+  if (!file.has(fmt::format("/{}/{}", group_of(location), name))) return std::nullopt;
+  return read_field(file, location, name);
 }
 
 std::vector<RveSnapshot> read_snapshots(const std::filesystem::path& increment_file) {

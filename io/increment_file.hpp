@@ -37,6 +37,12 @@ void write_increment_file(const std::filesystem::path& path, const Provenance& r
 /// Files of older versions do not say their run.
 [[nodiscard]] IncrementInfo read_increment_info(const std::filesystem::path& path, const Provenance& run);
 
+/// The group of an increment's file in which fields of this location stand.
+[[nodiscard]] const char* group_of(FieldLocation location);
+
+/// The shape of a field's dataset.
+[[nodiscard]] std::vector<std::size_t> shape_of(const Field& field);
+
 /// The <Grid> element of one increment; `path` is the increment's file in its folder below the XDMF file.
 [[nodiscard]] std::string xdmf_grid(const std::filesystem::path& path, const MeshData& mesh, const IncrementInfo& info);
 

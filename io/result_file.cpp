@@ -11,6 +11,7 @@
 #include "io/atomic_file.hpp"
 #include "io/hdf5.hpp"
 #include "io/increment_file.hpp"
+#include "io/result_parts.hpp"
 
 namespace voussoir::io {
 
@@ -19,53 +20,6 @@ namespace {
 constexpr const char* format_name = "voussoir run";
 constexpr std::int64_t format_version = 1;
 namespace fs = std::filesystem;
-
-/// Calls visit(name, member) for the texts that every provenance has. These and the texts of for_each_later_text are
-/// its attributes.
-template <class Source, class Visit>
-void for_each_text(Source& source, Visit&& visit) {
-  visit("case_kind", source.case_kind);
-  visit("fingerprint", source.fingerprint);
-  visit("version", source.version);
-  visit("git_hash", source.git_hash);
-  visit("kokkos", source.kokkos);
-  visit("command", source.command);
-  visit("date", source.date);
-}
-
-/// The same for texts that files of the first versions lack.
-template <class Source, class Visit>
-void for_each_later_text(Source& source, Visit&& visit) {
-  visit("build_compiler", source.build_compiler);
-  visit("build_type", source.build_type);
-  visit("processor", source.processor);
-  visit("lanes", source.lanes);
-}
-
-void write_provenance(Hdf5File& file, const Provenance& provenance) {
-  file.set_attribute("/", "format", std::string(format_name));
-  file.set_attribute("/", "format_version", format_version);
-  file.write_text("/input", provenance.input);
-  file.make_group("/provenance");
-  const auto write = [&](const char* name, const std::string& text) { file.set_attribute("/provenance", name, text); };
-  for_each_text(provenance, write);
-  for_each_later_text(provenance, write);
-  file.set_attribute("/provenance", "threads", std::int64_t{provenance.threads});
-  file.set_attribute("/provenance", "ranks", std::int64_t{provenance.ranks});
-}
-
-void write_mesh(Hdf5File& file, const MeshData& mesh) {
-  file.write("/mesh/coordinates", mesh.coordinates, {mesh.nodes(), 2}, "m");
-  file.write("/mesh/connectivity", mesh.connectivity, {mesh.elements(), 8}, "-");
-  file.make_group("/mesh/boundaries");
-  for (const auto& [name, nodes] : mesh.boundaries) {
-    file.write("/mesh/boundaries/" + name, nodes, {nodes.size()}, "-");
-  }
-  file.make_group("/mesh/geometry");
-  for (const auto& [name, value] : mesh.geometry) {
-    file.set_attribute("/mesh/geometry", name, value);
-  }
-}
 
 void write_tables(Hdf5File& file, const Tables& tables) {
   file.make_group("/tables");
@@ -222,6 +176,8 @@ void ResultWriter::set_table(const std::string& name, std::vector<TableColumn> c
 
 void ResultWriter::write_index() const {
   Hdf5File file = Hdf5File::create(folder_ / "run.h5");
+  file.set_attribute("/", "format", std::string(format_name));
+  file.set_attribute("/", "format_version", format_version);
   write_provenance(file, provenance_);
   if (mesh_.nodes() > 0) {
     write_mesh(file, mesh_);
@@ -242,20 +198,7 @@ void ResultWriter::write_index() const {
 Provenance read_provenance(const std::filesystem::path& run_file) {
   const Hdf5File file = Hdf5File::open(run_file);
   file.require_format(format_name, format_version, "the result of a run");
-  Provenance provenance;
-  provenance.input = file.read_text("/input");
-  const auto read = [&](const char* name, std::string& text) { text = file.text_attribute("/provenance", name); };
-  for_each_text(provenance, read);
-  const std::vector<std::string> names = file.attributes("/provenance");
-  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
-  for_each_later_text(provenance, [&](const char* name, std::string& text) {
-    if (has(name)) read(name, text);
-  });
-  provenance.threads = static_cast<int>(file.integer_attribute("/provenance", "threads"));
-  if (has("ranks")) {  // files of the first versions lack this number too
-    provenance.ranks = static_cast<int>(file.integer_attribute("/provenance", "ranks"));
-  }
-  return provenance;
+  return read_provenance(file);
 }
 
 MeshData read_mesh(const std::filesystem::path& run_file) {

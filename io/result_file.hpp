@@ -4,6 +4,7 @@
 /// dataset. A kill at any moment leaves the last finished increment readable; readers never block the writer.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,9 @@ class ResultWriter {
 [[nodiscard]] std::vector<IncrementInfo> read_increments(const std::filesystem::path& run_file);
 [[nodiscard]] Tables read_tables(const std::filesystem::path& run_file);  ///< columns in alphabetical order
 [[nodiscard]] std::vector<Field> read_fields(const std::filesystem::path& increment_file);
+/// One field of an increment; nothing where the increment was written without it.
+[[nodiscard]] std::optional<Field> find_field(const std::filesystem::path& increment_file, FieldLocation location,
+                                              const std::string& name);
 [[nodiscard]] std::vector<RveSnapshot> read_snapshots(const std::filesystem::path& increment_file);
 
 }  // namespace voussoir::io

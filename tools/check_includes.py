@@ -42,7 +42,7 @@ ROOMS = {
         ("ranks",),
         ("record",),
         ("stages", "element_tests"),
-        ("estimate",),
+        ("estimate", "ensemble"),
         ("program",),
     ),
 }

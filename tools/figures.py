@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the figures of a run: tools/figures.py RESULT_DIR [-o DIR] [--only NAME ...] [further options: --help].
+"""Draws the figures of a run or an ensemble: tools/figures.py DIR [-o DIR] [--only NAME ...] [more options: --help].
 
 A figure whose data are missing is skipped, and a line says why. io/FORMAT.md describes the data sets,
 voussoir_plots/README.md the figures and the exit status.
@@ -11,10 +11,10 @@ from functools import partial
 from pathlib import Path
 
 try:
-    from voussoir_plots import guard, settings, trend_table
+    from voussoir_plots import ensemble, guard, settings, trend_table
     from voussoir_plots.catalogue import FIGURES
     from voussoir_plots.output import make_folder, say
-    from voussoir_plots.result import Result
+    from voussoir_plots.result import Missing, Result
     from voussoir_plots.style import use_style
 except ModuleNotFoundError as missing:
     print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
@@ -23,17 +23,19 @@ except ModuleNotFoundError as missing:
 TRENDS = {"trends.md": trend_table.write}
 
 
-def chosen(arguments):
+def chosen(arguments, of_an_ensemble):
     """The functions that write the wanted files, by the names of the files."""
     if arguments.trends:
+        if of_an_ensemble:
+            raise Missing("the study's trends are judged for single runs, such as the members of this ensemble")
         return TRENDS
-    everything = {**FIGURES, **TRENDS}
+    everything = ensemble.FIGURES if of_an_ensemble else {**FIGURES, **TRENDS}
     return {name: draw for name, draw in everything.items() if not arguments.only or Path(name).stem in arguments.only}
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("result", type=Path, help="folder of a run")
+    parser.add_argument("result", type=Path, help="folder of a run or of an ensemble")
     parser.add_argument("-o", "--output", type=Path, help="folder for the figures; default: the run's own")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="draw only these figures, named without .png")
     parser.add_argument(
@@ -43,17 +45,19 @@ def main():
     guard.add_option(parser)
     arguments = parser.parse_args()
     output = arguments.output or arguments.result
-    unknown = set(arguments.only or ()) - {Path(name).stem for name in (*FIGURES, *TRENDS)}
+    unknown = set(arguments.only or ()) - {Path(name).stem for name in (*FIGURES, *TRENDS, *ensemble.FIGURES)}
     if unknown:
         parser.error(f"there is no figure {', '.join(sorted(unknown))}")
     use_style()
     figures = guard.Guard(arguments.traceback)
-    result = Result(arguments.result, settings.parse(arguments))
+    of_an_ensemble = ensemble.is_ensemble(arguments.result)
+    result = (ensemble.Ensemble if of_an_ensemble else Result)(arguments.result, settings.parse(arguments))
     for reason in result.left_out:
         say(f"left out: {reason}", error=True)
         figures.unreadable()
+    wanted = chosen(arguments, of_an_ensemble)
     make_folder(output)
-    for name, draw in chosen(arguments).items():
+    for name, draw in wanted.items():
         figures.make(name, output / name, partial(draw, result))
     return figures.status
 

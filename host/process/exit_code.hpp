@@ -23,7 +23,7 @@ inline constexpr std::array<ExitStatus, 5> exit_table{{
      "are written"},
     {Outcome::no_equilibrium, 3, "no equilibrium",
      "the computation found no equilibrium: of an increment, of a packing, or a test that is not valid; the log says "
-     "what, where and when, and the last good checkpoint is kept"},
+     "what, where and when, and the last good checkpoint is kept; or an ensemble misses the accuracy of --until"},
     {Outcome::machine_failure, 4, "machine failure",
      "the machine failed (disk, memory, a file that vanished), or the program has an error within; one line names file "
      "and reason, and --resume goes on when it is mended"},

@@ -25,12 +25,6 @@ bool has_grains(const Case& input) { return !runs_on_a_mesh(input.kind) || input
 /// The skin of the neighbour lists with which this case runs; 0 where [engine] decides nothing.
 double skin_of(const Case& input) { return uses_engine(input.kind, input.material) ? input.engine.skin : 0.0; }
 
-/// The place of a key. A key that the user did not write stands where its table does, or is said with the title.
-std::string place_of(const Case& input, const std::string& key) {
-  const auto found = input.places.find(key);
-  return found != input.places.end() && !found->second.empty() ? found->second : input.name;
-}
-
 void check_packings(const Case& input) {
   try {
     check_packing_files(input.soil, input.packing, skin_of(input));
@@ -86,6 +80,11 @@ CaseSize checked_size(const Case& input) {
 }
 
 }  // namespace
+
+std::string place_of(const Case& input, const std::string& key) {
+  const auto found = input.places.find(key);
+  return found != input.places.end() && !found->second.empty() ? found->second : input.name;
+}
 
 AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   AcceptedCase accepted{load_case(file, overrides), {}};

@@ -1,6 +1,6 @@
 #pragma once
-/// The one way from a case file to a case that can be run, for `run`, `check` and `sweep` alike: what `run` would
-/// refuse, `check` refuses with the same line.
+/// The one way from a case file to a case that can be run, for `run`, `check`, `sweep` and `ensemble` alike: what `run`
+/// would refuse, `check` refuses with the same line.
 
 #include <filesystem>
 #include <string>
@@ -20,6 +20,9 @@ struct AcceptedCase {
 /// Loads a case, reads the packing's file whole, makes the mesh to count its points, and estimates the memory. Throws
 /// io::InputError where any of these shows that the case cannot be run.
 [[nodiscard]] AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+/// The place of a key. A key that the user did not write stands where its table does, or is said with the title.
+[[nodiscard]] std::string place_of(const Case& input, const std::string& key);
 
 /// Throws io::InputError where a run on so many ranks takes more memory than this machine allows.
 void refuse_too_large(const Case& input, const CaseSize& size, int ranks);

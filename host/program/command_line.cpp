@@ -33,6 +33,9 @@ struct Arguments {
   int threads = 0;
   int processes = 1;
   bool take_over = false;
+  int members = 0;
+  std::string until;
+  std::string result;
 };
 
 /// The table of exit codes, for the end of `--help`.
@@ -60,6 +63,42 @@ void add_overrides(CLI::App& command, Arguments& arguments) {
       .add_option("--set", arguments.overrides,
                   "table.key=value, which replaces the case file's value; may be repeated")
       ->allow_extra_args(false);
+}
+
+void add_processes(CLI::App& command, Arguments& a) {
+  command.add_option("-j", a.processes, "number of runs at a time")->check(CLI::Range(1, 1024));
+  add_threads(command, a, "threads of each run; default: the available cores, shared among the runs at a time");
+  add_take_over(command, a);
+}
+
+ProcessOptions process_options(const Arguments& a) {
+  return {std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads, a.resume, a.take_over};
+}
+
+void describe_ensemble(CLI::App& app, Arguments& a, const std::string& command_text, Outcome& outcome) {
+  CLI::App* ensemble = app.add_subcommand(
+      "ensemble", "run a case with several draws of its packings, and reduce the results to means and bands");
+  ensemble->add_option("case", a.file, "case file (TOML)")->required();
+  CLI::Option* number = ensemble->add_option("-n", a.members, "number of members; with --until the largest number");
+  number->check(CLI::Range(2, 1000));
+  ensemble->add_option("-o,--output", a.output, "folder of the results; default: out/TITLE_ensemble");
+  CLI::Option* until = ensemble->add_option("--until", a.until,
+                                            "begin with four members and add more, as many at a time as -j says, until "
+                                            "the standard error of the result is at "
+                                            "most this share of its mean, such as \"5 %\"; -n is 64 unless given");
+  ensemble
+      ->add_option("--result", a.result,
+                   "column of which --until speaks; default: the surface's settlement, K0 at the column's base, or the "
+                   "axial stress of a specimen, at the end")
+      ->needs(until);
+  add_processes(*ensemble, a);
+  ensemble->add_flag("--resume", a.resume, "skip finished members, go on with interrupted ones and add further ones");
+  add_overrides(*ensemble, a);
+  ensemble->callback([&a, &command_text, &outcome, number] {
+    outcome = command_ensemble(
+        a.file, {a.output, process_options(a), a.overrides,
+                 number->count() > 0 ? std::optional(a.members) : std::nullopt, a.until, a.result, command_text});
+  });
 }
 
 /// Describes the commands with their options; `outcome` receives that of the command that was run.
@@ -90,14 +129,11 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
   CLI::App* sweep = app.add_subcommand("sweep", "run a base case with lists of overrides");
   sweep->add_option("sweep", a.file, "sweep file (TOML)")->required();
   sweep->add_option("-o,--output", a.output, "folder of the results; default: out/STEM of the sweep file");
-  sweep->add_option("-j", a.processes, "number of runs at a time")->check(CLI::Range(1, 1024));
-  add_threads(*sweep, a, "threads of each run; default: the available cores, shared among the runs at a time");
-  add_take_over(*sweep, a);
+  add_processes(*sweep, a);
   sweep->add_flag("--resume", a.resume, "skip finished runs and go on with interrupted ones");
-  sweep->callback([&] {
-    outcome = command_sweep(a.file, {a.output, std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads,
-                                     a.resume, a.take_over});
-  });
+  sweep->callback([&] { outcome = command_sweep(a.file, {a.output, process_options(a)}); });
+
+  describe_ensemble(app, a, command_text, outcome);
 
   CLI::App* keys = app.add_subcommand("keys", "print all keys of a kind of case: type, default, limits");
   keys->add_option("kind", a.kind, "kind of the case")->required();

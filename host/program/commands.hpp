@@ -2,10 +2,12 @@
 /// The commands, called after the command line is parsed. They return outcomes and throw input errors.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "host/process/exit_code.hpp"
+#include "host/program/run_processes.hpp"
 #include "host/record/folder.hpp"
 
 namespace voussoir::host {
@@ -29,15 +31,25 @@ namespace voussoir::host {
 
 struct SweepOptions {
   std::filesystem::path folder;
-  std::filesystem::path program;  ///< this program, which is started once for each run
-  int processes = 1;
-  int threads = 0;
-  bool resume = false;
-  bool take_over = false;  ///< see RunOptions; for the sweep's folder and those of its runs
+  ProcessOptions runs;
 };
 
 /// `voussoir sweep`: runs one base case with different overrides, each run in a folder of its own, and writes
 /// summary.csv.
 [[nodiscard]] Outcome command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& options);
+
+struct EnsembleOptions {
+  std::filesystem::path folder;
+  ProcessOptions runs;
+  std::vector<std::string> overrides;
+  std::optional<int> members;  ///< their number, with `until` the largest number
+  std::string until;           ///< wanted share of the standard error, such as "5 %"; empty: a given number of members
+  std::string result;          ///< column of which `until` speaks; empty: the kind's default
+  std::string command;         ///< command line, which the provenance repeats
+};
+
+/// `voussoir ensemble`: runs one case several times with different draws of its packings, and reduces the results to
+/// means and bands.
+[[nodiscard]] Outcome command_ensemble(const std::filesystem::path& case_file, const EnsembleOptions& options);
 
 }  // namespace voussoir::host

@@ -50,7 +50,7 @@ def reading(path: Path) -> Iterator[h5py.File]:
 
 def check_format(file: h5py.File, path: Path, wanted: str) -> None:
     """Refuses a file that another program has written, or a later version of this one."""
-    found, version = _plain(file.attrs.get("format", "")), file.attrs.get("format_version", 0)
+    found, version = plain(file.attrs.get("format", "")), file.attrs.get("format_version", 0)
     if found != wanted:
         raise Unreadable(f'{path} is no "{wanted}" of this program')
     if version > FORMAT_VERSION:
@@ -64,7 +64,7 @@ class Increment:
         self.path = path
         with reading(path) as file:
             check_format(file, path, "voussoir increment")
-            self.attributes = {name: _plain(value) for name, value in file.attrs.items()}
+            self.attributes = {name: plain(value) for name, value in file.attrs.items()}
             self.names = {
                 f"{group}/{name}"
                 for group in ("node", "gauss", "element", "rve")
@@ -108,7 +108,7 @@ class Result:
         _check_folder(self.folder, index)
         with reading(index) as file:
             check_format(file, index, "voussoir run")
-            self.case = tomllib.loads(_plain(file["input"][()])) if "input" in file else {}
+            self.case = tomllib.loads(plain(file["input"][()])) if "input" in file else {}
             self.has_mesh = "mesh" in file
             if self.has_mesh:
                 mesh = file["mesh"]
@@ -265,5 +265,5 @@ def remembered(result: Result, what: str, make: Callable[[], T]) -> T:
     return kept[what]
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     return value.decode() if isinstance(value, bytes) else value

@@ -71,7 +71,7 @@ def _draw_ratio(axis: Axes, stress: np.ndarray, far: np.ndarray) -> None:
     axis.semilogx(
         vertical[good], horizontal[good] / vertical[good], ".", color="C0", markersize=4, label="Gauss points"
     )
-    _plain_ticks(axis, vertical[good])
+    plain_ticks(axis, vertical[good])
     low, high = axis.get_ylim()
     axis.set_ylim(min(0.2, low), max(1.1, high))
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
@@ -79,7 +79,7 @@ def _draw_ratio(axis: Axes, stress: np.ndarray, far: np.ndarray) -> None:
     axis.set_title("away from the opening")
 
 
-def _plain_ticks(axis: Axes, values: np.ndarray) -> None:
+def plain_ticks(axis: Axes, values: np.ndarray) -> None:
     """1, 2, 5, ... on a logarithmic axis of stresses [kPa]."""
     ticks = np.array([1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000])
     shown = ticks[(ticks >= 0.45 * values.min()) & (ticks <= 2.2 * values.max())]
@@ -137,7 +137,7 @@ def _draw_deflection(axis: Axes, vertical: np.ndarray, angle: np.ndarray, far: n
             linewidth=1,
             label="1° from 100 kPa on" if limit > 0 else None,
         )
-    _plain_ticks(axis, vertical[good])
+    plain_ticks(axis, vertical[good])
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
     axis.set_ylabel("principal axis from the vertical  [deg]")
     axis.set_title("away from the opening")

@@ -1,0 +1,120 @@
+#include "host/program/run_processes.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string_view>
+#include <system_error>
+#include <thread>
+
+#include "host/process/cores.hpp"
+#include "host/process/interrupt.hpp"
+#include "host/process/standard_streams.hpp"
+
+namespace voussoir::host {
+namespace {
+
+/// The forked child's way to its program; it calls only what is allowed between fork and exec. If the parent dies, the
+/// child gets SIGTERM, so that no run goes on that nobody waits for: a run on a mesh then ends after its increment, and
+/// `--resume` goes on with it.
+[[noreturn]] void become(const std::vector<char*>& arguments, pid_t parent, const sigset_t& signals) {
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) ::signal(signal, SIG_DFL);
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
+  if (::getppid() != parent)
+    ::_exit(exit_code(Outcome::interrupted));         // the parent died before the child could ask to be told
+  const int nowhere = ::open("/dev/null", O_WRONLY);  // the same lines are in run.log
+  if (nowhere >= 0) ::dup2(nowhere, STDOUT_FILENO);
+  ::execv(arguments.front(), arguments.data());
+  constexpr std::string_view complaint = "voussoir: the program of a run cannot be started\n";
+  static_cast<void>(!::write(STDERR_FILENO, complaint.data(), complaint.size()));
+  ::_exit(exit_code(Outcome::machine_failure));
+}
+
+pid_t start(const ProcessRun& run, const std::filesystem::path& case_file, const ProcessOptions& options) {
+  std::vector<std::string> words{options.program.string(), "run", case_file.string(), "-o", run.folder.string()};
+  for (const std::string& value : run.overrides) words.insert(words.end(), {"--set", value});
+  if (options.threads > 0) words.insert(words.end(), {"--threads", std::to_string(options.threads)});
+  if (options.resume) words.emplace_back("--resume");
+  if (options.take_over) words.emplace_back("--take-over");
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  // A signal that came between fork and exec would be lost in a copy of this process.
+  sigset_t all, before;
+  sigfillset(&all);
+  ::sigprocmask(SIG_SETMASK, &all, &before);
+  const pid_t parent = ::getpid();
+  const pid_t process = ::fork();
+  const int failure = errno;
+  if (process == 0) become(arguments, parent, before);
+  ::sigprocmask(SIG_SETMASK, &before, nullptr);
+  if (process < 0) throw std::system_error(failure, std::generic_category(), "cannot start " + words.front());
+  return process;
+}
+
+/// Waits until one of the processes has ended and stores its exit code. A request to stop is passed on once, as
+/// SIGUSR1: a terminal sends Ctrl-C to all processes, and a second SIGINT or SIGTERM would end a run at once.
+void wait_for_one(std::map<pid_t, ProcessRun*>& running, bool& passed_on) {
+  int status = 0;
+  pid_t process = 0;
+  while ((process = waitpid(-1, &status, WNOHANG)) == 0) {
+    if (interrupted() && !passed_on) {
+      for (const auto& [child, run] : running) kill(child, SIGUSR1);
+      passed_on = true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  if (process < 0 && errno == EINTR) return;
+  if (process < 0) throw std::system_error(errno, std::generic_category(), "cannot wait for a run");
+  const auto found = running.find(process);
+  if (found == running.end()) return;
+  ProcessRun& run = *found->second;
+  run.end = end_of(status, passed_on);
+  std::printf("%s: %s\n", run.name.c_str(), name_of(run.end).c_str());
+  static_cast<void>(lost_output());       // the summary says the same
+  if (WIFSIGNALED(status) && !passed_on)  // a run that ends by itself has said why
+    std::fprintf(stderr, "voussoir: the run %s was %s; --resume goes on with it\n", run.folder.c_str(),
+                 name_of(run.end).c_str());
+  running.erase(found);
+}
+
+}  // namespace
+
+void run_processes(std::span<ProcessRun> runs, const std::filesystem::path& case_file, const ProcessOptions& options) {
+  std::map<pid_t, ProcessRun*> running;
+  bool passed_on = false;
+  try {
+    for (ProcessRun& run : runs) {
+      while (static_cast<int>(running.size()) >= options.processes) wait_for_one(running, passed_on);
+      if (interrupted()) break;
+      running.emplace(start(run, case_file, options), &run);
+    }
+  } catch (...) {  // for example no process is left: the runs that have begun are stopped and waited for
+    for (const auto& [child, run] : running) kill(child, SIGUSR1);
+    passed_on = true;
+    while (!running.empty()) wait_for_one(running, passed_on);
+    throw;
+  }
+  while (!running.empty()) wait_for_one(running, passed_on);
+}
+
+int threads_of_a_run(const ProcessOptions& options) {
+  const bool said = options.threads > 0 || getenv("OMP_NUM_THREADS") != nullptr ||
+                    getenv("KOKKOS_NUM_THREADS") != nullptr;
+  if (said || options.processes == 1) return options.threads;
+  return std::max(1, cores_of_this_process().usable() / options.processes);
+}
+
+}  // namespace voussoir::host

@@ -1,0 +1,243 @@
+"""The figures of an ensemble: means over its members with both bands, and the members as thin lines."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .resolution import percent
+from .result import Missing, Unreadable, check_format, plain, reading
+from .settings import Settings
+from .stresses import plain_ticks
+from .style import save
+
+INDEX = "ensemble.h5"
+NAMES = ("mean", "deviation", "mean_half_width", "prediction_half_width", "members")
+MEAN, FURTHER, MEMBER = "C0", "C1", "0.45"
+
+
+@dataclass
+class Bands:
+    """Values over the members; the bands are mean ± half width. `members` has one axis more, the first one."""
+
+    mean: np.ndarray
+    deviation: np.ndarray
+    mean_half_width: np.ndarray
+    prediction_half_width: np.ndarray
+    members: np.ndarray
+
+    def part(self, chosen: np.ndarray | int) -> "Bands":
+        """The bands of chosen rows."""
+        return Bands(
+            self.mean[chosen],
+            self.deviation[chosen],
+            self.mean_half_width[chosen],
+            self.prediction_half_width[chosen],
+            self.members[:, chosen],
+        )
+
+
+class Ensemble:
+    """An ensemble's means and bands; `settings` hold the volume losses that figures show."""
+
+    def __init__(self, folder: Path | str, settings: Settings | None = None) -> None:
+        self.folder = Path(folder)
+        self.settings = settings or Settings()
+        self.left_out: list[Missing] = []  # as of a run: an ensemble's index is read whole or not at all
+        path = self.folder / INDEX
+        with reading(path) as file:
+            check_format(file, path, "voussoir ensemble")
+            self.count = int(file["bands"].attrs["members"])
+            self.confidence = float(file["bands"].attrs["confidence"])
+            self.begun = len(file["members/name"])
+            self.stage = np.array([plain(value) for value in file["table/stage"][()]])
+            self.load = file["table/load_parameter"][()]
+            self.curves = {name: _bands(group) for name, group in file["curves"].items()}
+            self.tables = {
+                name: {column: _bands(group) for column, group in table.items()}
+                for name, table in file["tables"].items()
+            }
+            self.good_troughs = file["table/good_troughs"][()] if "table/good_troughs" in file else None
+            self.trough_x = file["trough/x"][()] if "trough" in file else None
+            self.trough = _bands(file["trough/settlement"]) if "trough" in file else None
+
+    def curve(self, name: str) -> Bands:
+        if name not in self.curves:
+            raise Missing(f"{self.folder / INDEX} has no curve {name}")
+        return self.curves[name]
+
+    def losing(self) -> np.ndarray:
+        """Rows of the volume loss."""
+        rows = np.flatnonzero(self.stage == "volume_loss")
+        if len(rows) == 0:
+            raise Missing("there is no stage volume_loss")
+        return rows
+
+    def title(self) -> str:
+        left_out = self.begun - self.count
+        further = f", {left_out} left out" if left_out else ""
+        return f"{self.count} members{further}"
+
+
+def _bands(group: h5py.Group) -> Bands:
+    return Bands(*(group[name][()] for name in NAMES))
+
+
+def _draw(axis: Axes, x: np.ndarray, bands: Bands, ensemble: Ensemble, scale: float = 1.0) -> None:
+    """Both bands, the members and the mean. Places without a value in each member are left out."""
+    there = np.isfinite(bands.mean)
+    if not there.any():
+        raise Missing("no place has a value in each member")
+    x, share = x[there], f"{100 * ensemble.confidence:g} %"
+    mean = scale * bands.mean[there]
+    for half_width, colour, alpha, label in (
+        (bands.prediction_half_width, FURTHER, 0.22, f"{share} band of one further member"),
+        (bands.mean_half_width, MEAN, 0.35, f"{share} band of the mean"),
+    ):
+        half = scale * half_width[there]
+        axis.fill_between(x, mean - half, mean + half, color=colour, alpha=alpha, linewidth=0, label=label)
+    for k, member in enumerate(bands.members):
+        label = f"the {ensemble.count} members" if k == 0 else "_"  # one entry of the legend for all of them
+        axis.plot(x, scale * member[there], color=MEMBER, linewidth=0.6, label=label)
+    axis.plot(x, mean, color=MEAN, linewidth=2.0, label=f"mean of {ensemble.count}")
+
+
+def _over_the_loss(ensemble: Ensemble, name: str, label: str, title: str, scale: float = 1.0) -> tuple[Figure, Axes]:
+    rows = ensemble.losing()
+    figure, axis = plt.subplots(figsize=(7.2, 4.8))
+    _draw(axis, 100 * ensemble.load[rows], ensemble.curve(name).part(rows), ensemble, scale)
+    axis.set_xlabel("volume loss  $V_l$  [%]")
+    axis.set_ylabel(label)
+    axis.set_xlim(0, 100 * ensemble.load[rows].max())
+    axis.set_ylim(bottom=min(0, axis.get_ylim()[0]))
+    axis.set_title(f"{title}, {ensemble.title()}")
+    return figure, axis
+
+
+def draw_settlement(ensemble: Ensemble, path: Path) -> None:
+    figure, axis = _over_the_loss(
+        ensemble, "surface_settlement", "largest settlement of the surface  [mm]", "Surface settlement", 1e3
+    )
+    axis.legend(loc="upper left")
+    save(figure, path)
+
+
+def draw_reaction(ensemble: Ensemble, path: Path) -> None:
+    figure, axis = _over_the_loss(
+        ensemble,
+        "ground_reaction",
+        r"vertical stress above the crown  $\sigma_v / \sigma_{v,0}$  [-]",
+        "Ground reaction curve",
+    )
+    axis.set_ylim(top=max(1.05, axis.get_ylim()[1]))
+    axis.legend()
+    save(figure, path)
+
+
+def draw_width(ensemble: Ensemble, path: Path) -> None:
+    figure, axis = _over_the_loss(
+        ensemble, "trough_width", "width parameter of the surface  $K_s$  [-]", "Width of the surface trough"
+    )
+    rows = ensemble.losing()
+    assert ensemble.good_troughs is not None  # the curve exists only with the troughs
+    good = rows[(ensemble.good_troughs[rows] == ensemble.count) & (ensemble.load[rows] > 0)]
+    fits = r"$\alpha$ within its bounds, misfit below 3 %"
+    axis.plot(
+        100 * ensemble.load[good],
+        ensemble.curve("trough_width").mean[good],
+        "o" if len(good) else " ",
+        color=MEAN,
+        markersize=4,
+        label=f"in all members {fits}" if len(good) else f"at no $V_l$ have all members\n{fits}",
+    )
+    low, high = ensemble.settings.range_of_k
+    axis.axhspan(low, high, color="0.9", zorder=0, label=f"Mair and Taylor, {low:g} to {high:g}")
+    axis.legend(fontsize=8.5)
+    save(figure, path)
+
+
+def draw_trough(ensemble: Ensemble, path: Path) -> None:
+    if ensemble.trough is None or ensemble.trough_x is None:
+        raise Missing(f"{ensemble.folder / INDEX} has no surface trough")
+    rows = ensemble.losing()
+    rows = rows[ensemble.load[rows] > 0]
+    if len(rows) == 0:
+        raise Missing("no increment has a volume loss")
+    load = ensemble.load[rows]
+    wanted = ensemble.settings.losses or tuple(load[-1] * np.array([0.25, 0.5, 0.75, 1]))
+    chosen = sorted({int(np.argmin(np.abs(load - v))) for v in wanted})
+    columns = min(2, len(chosen))
+    height = -(-len(chosen) // columns)
+    figure, axes = plt.subplots(height, columns, figsize=(6.2 * columns, 4.0 * height + 0.4), squeeze=False)
+    for axis, k in zip(axes.flat, chosen):
+        _draw(axis, ensemble.trough_x, ensemble.trough.part(int(rows[k])), ensemble, 1e3)
+        axis.invert_yaxis()
+        axis.set_xlim(0, ensemble.trough_x.max())
+        axis.set_title(f"$V_l$ = {percent(load[k])}")
+        axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
+        axis.set_ylabel("settlement  $S$  [mm]")
+    for axis in axes.flat[len(chosen) :]:
+        axis.set_axis_off()
+    axes.flat[0].legend(loc="lower right", fontsize=8.5)
+    figure.suptitle(f"Settlement trough of the surface, {ensemble.title()}", fontsize=12)
+    figure.tight_layout()
+    save(figure, path)
+
+
+def draw_k0(ensemble: Ensemble, path: Path) -> None:
+    if "k0" not in ensemble.tables:
+        raise Missing(f"{ensemble.folder / INDEX} has no table k0")
+    k0 = ensemble.tables["k0"]
+    figure, axis = plt.subplots(figsize=(7.2, 4.8))
+    _draw(axis, k0["vertical_stress"].mean / 1e3, k0["ratio"], ensemble)
+    axis.set_xscale("log")
+    plain_ticks(axis, k0["vertical_stress"].mean / 1e3)
+    axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
+    axis.set_ylabel(r"$K_0 = \sigma_{xx} / \sigma_{yy}$  [-]")
+    axis.set_ylim(0, max(1.05, axis.get_ylim()[1]))
+    axis.set_title(f"$K_0$ of the column, {ensemble.title()}")
+    axis.legend()
+    save(figure, path)
+
+
+def draw_specimen(ensemble: Ensemble, path: Path) -> None:
+    ratio = ensemble.curve("q_over_p")
+    figure, axis = plt.subplots(figsize=(7.2, 4.8))
+    _draw(axis, 100 * ensemble.load, ratio, ensemble)
+    axis.set_xlabel("displacement of the top over the height  [%]")
+    axis.set_ylabel("$q / p$  [-]")
+    axis.set_xlim(left=0)
+    axis.set_title(f"Biaxial specimen, {ensemble.title()}")
+    axis.legend()
+    save(figure, path)
+
+
+FIGURES: dict[str, Callable[[Ensemble, Path], None]] = {
+    "ensemble_settlement.png": draw_settlement,
+    "ensemble_ground_reaction.png": draw_reaction,
+    "ensemble_trough.png": draw_trough,
+    "ensemble_trough_width.png": draw_width,
+    "ensemble_k0.png": draw_k0,
+    "ensemble_specimen.png": draw_specimen,
+}
+
+
+def is_ensemble(folder: Path) -> bool:
+    """True for the folder of a reduced ensemble. An ensemble without means and bands is told in one line."""
+    try:
+        if (folder / INDEX).exists():
+            return True
+        begun = (folder / "member_000").exists() and not (folder / "run.h5").exists()
+    except OSError as error:
+        raise Unreadable(f"{folder} cannot be read: {error.strerror}") from error
+    if begun:
+        raise Unreadable(
+            f"{folder} is an ensemble without {INDEX}: it is not finished, or fewer than two members are; each member "
+            "is a run of its own"
+        )
+    return False
