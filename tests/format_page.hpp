@@ -48,10 +48,15 @@ inline std::string disagreements(const Descriptions& page, const Descriptions& p
     const auto found = program.find(name);
     if (found == program.end()) lines.append(name).append(": io/FORMAT.md alone has it\n");
     if (found != program.end() && found->second != said)
-      lines.append(name).append(": io/FORMAT.md says ").append(said).append(", the program ").append(found->second) += '\n';
+      lines.append(name)
+          .append(": io/FORMAT.md says ")
+          .append(said)
+          .append(", the program ")
+          .append(found->second) += '\n';
   }
   for (const auto& [name, said] : program) {
-    if (!page.contains(name)) lines.append(name).append(": io/FORMAT.md lacks it, the program says ").append(said) += '\n';
+    if (!page.contains(name))
+      lines.append(name).append(": io/FORMAT.md lacks it, the program says ").append(said) += '\n';
   }
   return lines;
 }

@@ -98,7 +98,8 @@ void read_files(const io::Table& table, PackingCase& packing) {
     std::vector<double> x = there.x;
     std::sort(x.begin(), x.end());  // other programs may have another order of the same grains
     if (!places.insert(std::move(x)).second)
-      throw table.error("file", fmt::format("names a packing twice: {} holds the grains of another file", file.string()));
+      throw table.error("file",
+                        fmt::format("names a packing twice: {} holds the grains of another file", file.string()));
     if (packing.files.size() > 1 && file.extension() == ".h5")
       throw table.error("file", "names a stored state among others: a state is read alone");
   }

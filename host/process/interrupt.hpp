@@ -1,6 +1,6 @@
 #pragma once
-/// A request to stop, from Ctrl-C (SIGINT), SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU: the run ends after the current increment, with
-/// a checkpoint.
+/// A request to stop, from Ctrl-C (SIGINT), SIGTERM, SIGHUP, SIGUSR1 or SIGXCPU: the run ends after the current
+/// increment, with a checkpoint.
 
 namespace voussoir::host {
 

@@ -58,6 +58,9 @@ void add_take_over(CLI::App& command, Arguments& a) {
                    "ended, as where a scheduler has moved the job");
 }
 
+/// `-o "$DIR"` with a variable that is not set must not write to the default folder.
+std::string not_empty(const std::string& name) { return name.empty() ? "must name a folder, is empty" : ""; }
+
 void add_overrides(CLI::App& command, Arguments& arguments) {
   command
       .add_option("--set", arguments.overrides,
@@ -81,7 +84,7 @@ void describe_ensemble(CLI::App& app, Arguments& a, const std::string& command_t
   ensemble->add_option("case", a.file, "case file (TOML)")->required();
   CLI::Option* number = ensemble->add_option("-n", a.members, "number of members; with --until the largest number");
   number->check(CLI::Range(2, 1000));
-  ensemble->add_option("-o,--output", a.output, "folder of the results; default: out/TITLE_ensemble");
+  ensemble->add_option("-o,--output", a.output, "folder of the results; default: out/TITLE_ensemble")->check(not_empty);
   CLI::Option* until = ensemble->add_option("--until", a.until,
                                             "begin with four members and add more, as many at a time as -j says, until "
                                             "the standard error of the result is at "
@@ -110,7 +113,7 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
 
   CLI::App* run = app.add_subcommand("run", "run a case");
   run->add_option("case", a.file, "case file (TOML)")->required();
-  run->add_option("-o,--output", a.output, "folder of the results; default: out/TITLE of the case");
+  run->add_option("-o,--output", a.output, "folder of the results; default: out/TITLE of the case")->check(not_empty);
   run->add_flag("--resume", a.resume, "go on behind the last checkpoint in the folder");
   run->add_flag("--replace", a.replace, "remove the results of an earlier run in the folder")->excludes("--resume");
   add_threads(*run, a, "number of threads; default: OMP_NUM_THREADS, or one for each core that is available");
@@ -128,7 +131,8 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
 
   CLI::App* sweep = app.add_subcommand("sweep", "run a base case with lists of overrides");
   sweep->add_option("sweep", a.file, "sweep file (TOML)")->required();
-  sweep->add_option("-o,--output", a.output, "folder of the results; default: out/STEM of the sweep file");
+  sweep->add_option("-o,--output", a.output, "folder of the results; default: out/STEM of the sweep file")
+      ->check(not_empty);
   add_processes(*sweep, a);
   sweep->add_flag("--resume", a.resume, "skip finished runs and go on with interrupted ones");
   sweep->callback([&] { outcome = command_sweep(a.file, {a.output, process_options(a)}); });

@@ -51,7 +51,8 @@ TEST(Patch, ConstantTractionsOnTheOutline) {
   const Stress stress(-4e3, -9e3, 2e3);
   IncrementLoad load{Eigen::VectorXd::Zero(mesh.n_dofs()), {}, 0, 0};
   for (const auto& [name, chain] : mesh.edges)
-    load.external_force += traction_force(mesh.coordinates, chain, [&](const Point&) { return stress; });
+    load.external_force += traction_force(mesh.coordinates, chain,
+                                          [&](const Point&) -> Stress { return Stress(stress); });
   const int corner = mesh.node_set("base").front();  // no more supports than a rigid body needs
   constrain(load.prescribed, {corner}, 0, 0);
   constrain(load.prescribed, {corner}, 1, 0);

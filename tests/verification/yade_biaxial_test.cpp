@@ -50,9 +50,9 @@ Row at(const BiaxialCurve& curve, double strain) {
 TEST(YadeBiaxial, CurveUpToThePeakAndPeakAngle) {
   SoilCase soil;  // the defaults are the reference's: E 3 GPa, k_t/k_n 0.5, 25 deg, beta 1, eta 0.6
   PackingCase recipe;
-  recipe.file = data / "CPS_D_particles.csv";
+  recipe.files = {data / "CPS_D_particles.csv"};
   recipe.pressure = 1.0e5;
-  const PackedRve rve = settle_foreign_packing(soil, recipe);
+  const PackedRve rve = settle_foreign_packings(soil, recipe).front();
   ASSERT_EQ(rve.status, kernels::RveStatus::converged);
   EXPECT_NEAR(rve.void_ratio, 0.17549275, 1e-7);
   const kernels::EngineSettings settings{.precision = kernels::Precision::float64};

@@ -55,9 +55,9 @@ TEST(IncrementColumns, AreThoseOfFormatMd) {
 template <class Report, std::size_t n>
 void expect_named(const std::string& table, const std::array<Column<Report>, n>& columns) {
   for (const auto& row : rows_below("| table | columns |")) {
-    if (row.at(0) != "`" + table + "`") continue;
+    if (row.at(0) != std::string("`") + table + "`") continue;
     for (const Column<Report>& column : columns) {
-      EXPECT_NE(row.at(1).find("`" + std::string(column.name) + "`"), std::string::npos) << table << ' ' << column.name;
+      EXPECT_NE(row.at(1).find(std::string("`") + column.name + "`"), std::string::npos) << table << ' ' << column.name;
     }
     return;
   }

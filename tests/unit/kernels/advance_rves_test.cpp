@@ -13,8 +13,8 @@ namespace {
 
 class Engine : public testing::Test {
  protected:
-  static void SetUpTestSuite() { dense_ = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{}); }
-  static inline reference::Rve dense_;
+  static void SetUpTestSuite() { dense = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{}); }
+  static inline reference::Rve dense;
 };
 
 /// Runs both on the same motion for the same steps and compares everything that the engine answers.
@@ -61,31 +61,31 @@ const StrainRequest general{.f_rel = {1.0004, 0.0012, -0.0005, 0.9994}, .strain_
 // Rounding differs, and grows with the path: 1e-15 becomes some 4e-10 of a contact's force in these few hundred steps.
 constexpr double rounding = 5e-9;
 
-TEST_F(Engine, FollowsTheOracle) { compare(dense_, general, in_double(), 2, rounding); }
-TEST_F(Engine, FollowsTheOracleAlone) { compare(dense_, general, in_double(), 1, rounding); }
+TEST_F(Engine, FollowsTheOracle) { compare(dense, general, in_double(), 2, rounding); }
+TEST_F(Engine, FollowsTheOracleAlone) { compare(dense, general, in_double(), 1, rounding); }
 
 TEST_F(Engine, FollowsTheOracleThroughManyRebases) {
   EngineSettings settings = in_double();
   settings.skin = 0.0005;
   settings.list_interval = 1;
-  compare(dense_, general, settings, 2, rounding);
+  compare(dense, general, settings, 2, rounding);
 }
 
 TEST_F(Engine, FollowsTheOracleThroughARotation) {
   const double c = std::cos(0.1), s = std::sin(0.1);
-  compare(dense_, {.f_rel = Mat2{c, -s, s, c} * Mat2{1, 0.001, 0, 0.999}, .strain_steps = 450, .hold_cap = 20},
+  compare(dense, {.f_rel = Mat2{c, -s, s, c} * Mat2{1, 0.001, 0, 0.999}, .strain_steps = 450, .hold_cap = 20},
           in_double(), 2, rounding);
 }
 
 TEST_F(Engine, FollowsTheOracleWithoutRolling) {
-  reference::Rve rve = dense_;
+  reference::Rve rve = dense;
   rve.material.rolling_stiffness = 0;
   for (auto& [pair, history] : rve.histories) history.moment = 0;
   compare(rve, general, in_double(), 2, rounding);
 }
 
 TEST_F(Engine, FloatFollowsTheOracle) {
-  compare(dense_, {.f_rel = {1.0001, 0.0002, 0, 0.9999}, .strain_steps = 200, .hold_cap = 20}, EngineSettings{}, 2,
+  compare(dense, {.f_rel = {1.0001, 0.0002, 0, 0.9999}, .strain_steps = 200, .hold_cap = 20}, EngineSettings{}, 2,
           2e-3);
 }
 
@@ -98,12 +98,12 @@ bool same_bits(const RveReport& a, const RveReport& b) {
 TEST_F(Engine, SameBitsAloneInAnyGroupAndBesideANaN) {
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     const EngineSettings settings{.precision = precision};
-    RveBatch alone = clones(dense_, 1);
+    RveBatch alone = clones(dense, 1);
     const RveReport expected = run(alone, {general}, settings).front();
     EXPECT_TRUE(same_bits(run(alone, {general}, settings).front(), expected)) << "again";
     const std::size_t n = 19;
     for (const std::size_t place : {std::size_t{0}, std::size_t{7}, std::size_t{18}}) {
-      RveBatch batch = clones(dense_, n);
+      RveBatch batch = clones(dense, n);
       std::vector<StrainRequest> requests(n);
       for (std::size_t k = 0; k < n; ++k) {
         const double e = 1e-3 * std::cos(1.0 * static_cast<double>(k));
@@ -117,7 +117,7 @@ TEST_F(Engine, SameBitsAloneInAnyGroupAndBesideANaN) {
       EXPECT_TRUE(same_bits(reports[place], expected))
           << "place " << place << " precision " << static_cast<int>(precision);
       EXPECT_EQ(reports[broken].status, RveStatus::not_finite);
-      for (std::size_t i = 0; i < dense_.radii.size(); ++i) {
+      for (std::size_t i = 0; i < dense.radii.size(); ++i) {
         ASSERT_EQ(batch.trial.position(place, i, 0), alone.trial.position(0, i, 0)) << i;
         ASSERT_EQ(batch.trial.rotation(place, i), alone.trial.rotation(0, i)) << i;
       }
@@ -126,7 +126,7 @@ TEST_F(Engine, SameBitsAloneInAnyGroupAndBesideANaN) {
 }
 
 TEST_F(Engine, RigidRotationRotatesStressAndNothingElse) {
-  RveBatch batch = clones(dense_, 2);
+  RveBatch batch = clones(dense, 2);
   const auto reports = run(batch,
                            {{.f_rel = {0, -1, 1, 0}, .strain_steps = 400, .hold_cap = 16},
                             {.f_rel = identity2, .strain_steps = 400, .hold_cap = 16}},
@@ -139,7 +139,7 @@ TEST_F(Engine, RigidRotationRotatesStressAndNothingElse) {
 }
 
 TEST_F(Engine, NoContactIsOpenAndNoFailure) {
-  RveBatch batch = clones(dense_, 2);
+  RveBatch batch = clones(dense, 2);
   const auto reports = run(
       batch, std::vector(2, StrainRequest{.f_rel = {1.2, 0, 0, 1.2}, .strain_steps = 400, .hold_cap = 32}),
       in_double());
@@ -149,7 +149,7 @@ TEST_F(Engine, NoContactIsOpenAndNoFailure) {
 }
 
 TEST_F(Engine, ImpossibleMotionsAreReported) {
-  RveBatch batch = clones(dense_, 4);
+  RveBatch batch = clones(dense, 4);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto reports = run(batch,
                            {{.f_rel = {nan, 0, 0, 1}, .strain_steps = 10, .hold_cap = 1},

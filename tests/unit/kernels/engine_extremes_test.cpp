@@ -14,17 +14,17 @@ namespace {
 
 class EngineExtremes : public testing::Test {
  protected:
-  static void SetUpTestSuite() { dense_ = reference::consolidated_packing(60, 3, 1e5, 0.0, reference::Material{}); }
-  static inline reference::Rve dense_;
+  static void SetUpTestSuite() { dense = reference::consolidated_packing(60, 3, 1e5, 0.0, reference::Material{}); }
+  static inline reference::Rve dense;
 };
 
 constexpr StrainRequest still{.f_rel = identity2, .strain_steps = 0, .hold_cap = 1};
 
 TEST_F(EngineExtremes, CellVectorsOfTheSameLatticeGiveTheSameStress) {
-  RveBatch plain_cell = clones(dense_, 1);
+  RveBatch plain_cell = clones(dense, 1);
   const RveReport expected = run(plain_cell, {still}, in_double()).front();
   for (const int k : {1, 2, 3, 5, 10, -7}) {
-    reference::Rve sheared = dense_;
+    reference::Rve sheared = dense;
     sheared.cell.xy += k * sheared.cell.xx;
     sheared.cell.yy += k * sheared.cell.yx;
     RveBatch batch = clones(sheared, 1);
@@ -44,7 +44,7 @@ TEST(ReducedLattice, HasTheSameAreaAndShortVectors) {
 }
 
 TEST_F(EngineExtremes, ShearIsUnlimitedAndTheFlipOfTheCellShowsInNothing) {
-  RveBatch batch = clones(dense_, 1);
+  RveBatch batch = clones(dense, 1);
   // Room to dilate first: at constant volume a dense packing's pressure would crush it.
   run(batch, {{.f_rel = {1.03, 0, 0, 1.03}, .strain_steps = 400, .hold_cap = 400}}, in_double());
   commit(batch);
@@ -64,7 +64,7 @@ TEST_F(EngineExtremes, ShearIsUnlimitedAndTheFlipOfTheCellShowsInNothing) {
 }
 
 TEST_F(EngineExtremes, ExplodingAndCrushingMotionsEndWithAStatus) {
-  RveBatch batch = clones(dense_, 5);
+  RveBatch batch = clones(dense, 5);
   const auto reports = run(batch,
                            {{.f_rel = {1e4, 0, 0, 1e4}, .strain_steps = 1, .hold_cap = 16},
                             {.f_rel = {0.3, 0, 0, 0.3}, .strain_steps = 20000, .hold_cap = 16},
@@ -79,14 +79,14 @@ TEST_F(EngineExtremes, ExplodingAndCrushingMotionsEndWithAStatus) {
   EXPECT_GT(reports[1].largest_overlap, 0.3);
   for (const std::size_t k : {std::size_t{3}, std::size_t{4}}) EXPECT_FALSE(is_failure(reports[k].status)) << k;
   commit(batch);  // failed RVEs keep the state they had
-  RveBatch fresh = clones(dense_, 1);
-  for (std::size_t i = 0; i < dense_.radii.size(); ++i) {
+  RveBatch fresh = clones(dense, 1);
+  for (std::size_t i = 0; i < dense.radii.size(); ++i) {
     EXPECT_EQ(batch.committed.position(1, i, 0), fresh.committed.position(0, i, 0));
   }
 }
 
 TEST_F(EngineExtremes, OpenedContactsCloseAgain) {
-  RveBatch batch = clones(dense_, 1);
+  RveBatch batch = clones(dense, 1);
   RveReport report = run(batch, {{.f_rel = {1.02, 0, 0, 1.02}, .strain_steps = 400, .hold_cap = 16}}, in_double())
                          .front();
   EXPECT_EQ(report.status, RveStatus::open);
@@ -99,7 +99,7 @@ TEST_F(EngineExtremes, OpenedContactsCloseAgain) {
 
 TEST_F(EngineExtremes, ResultsDoNotDependOnWhenListsAreMade) {
   const StrainRequest fast{.f_rel = {1.1, 0, 0, 0.9}, .strain_steps = 10, .hold_cap = 200};
-  RveBatch often = clones(dense_, 1), seldom = clones(dense_, 1);
+  RveBatch often = clones(dense, 1), seldom = clones(dense, 1);
   EngineSettings settings = in_double();
   settings.hold_tolerance = 0;
   const RveReport coarse = run(seldom, {fast}, settings).front();
@@ -113,7 +113,7 @@ TEST_F(EngineExtremes, ResultsDoNotDependOnWhenListsAreMade) {
 }
 
 TEST_F(EngineExtremes, ACellTooNarrowForItsGrainsIsRefused) {
-  reference::Rve rve = dense_;
+  reference::Rve rve = dense;
   rve.radii[0] = 0.26 * rve.cell.xx;
   RveBatch batch = clones(rve, 1);
   EXPECT_EQ(run(batch, {still}, in_double()).front().status, RveStatus::neighbour_overflow);
@@ -121,7 +121,7 @@ TEST_F(EngineExtremes, ACellTooNarrowForItsGrainsIsRefused) {
 
 TEST_F(EngineExtremes, OneOfFourThousandIsGivenNaNAndNoOtherBitChanges) {
   constexpr std::size_t n = 4096, broken = 1234;
-  RveBatch healthy = clones(dense_, n), with_nan = clones(dense_, n);
+  RveBatch healthy = clones(dense, n), with_nan = clones(dense, n);
   std::vector<StrainRequest> requests(n);
   for (std::size_t k = 0; k < n; ++k) {
     const double e = 1e-4 * std::cos(1.0 * static_cast<double>(k));

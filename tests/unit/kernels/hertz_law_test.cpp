@@ -126,7 +126,7 @@ struct Hexagons {
 
   static RveBatch at(double overlap) {
     Packing packing;
-    packing.radii.assign(static_cast<std::size_t>(side * side), radius);
+    packing.radii.assign(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), radius);
     RveBatch batch = batch_of(std::move(packing));
     const double a = 2 * radius - overlap, row = a * std::sqrt(0.75);
     set_cell(batch, side * a, side * row);

@@ -52,8 +52,8 @@ struct Answers {
 
 class InstructionSets : public testing::TestWithParam<Precision> {
  protected:
-  static void SetUpTestSuite() { dense_ = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{}); }
-  static inline reference::Rve dense_;
+  static void SetUpTestSuite() { dense = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{}); }
+  static inline reference::Rve dense;
 
   /// Runs the same with each set and compares what it answers with the first set's answer.
   static void expect_same_bits(const std::function<Answers()>& answer) {
@@ -111,7 +111,7 @@ TEST_P(InstructionSets, GiveTheSameBitsForGivenMotions) {
   for (const TangentKind tangent : tangents) {
     SCOPED_TRACE(name_of(tangent));
     expect_same_bits([&] {
-      Answers a{clones(dense_, 19), std::vector<RveReport>(19), {}};
+      Answers a{clones(dense, 19), std::vector<RveReport>(19), {}};
       EngineSettings settings{.precision = GetParam(), .tangent = tangent};
       settings.skin = 0.01;  // lists are renewed on the way
       advance(a.batch, std::span<const StrainRequest>(motions(19)), settings, a.reports);
@@ -122,7 +122,7 @@ TEST_P(InstructionSets, GiveTheSameBitsForGivenMotions) {
 
 TEST_P(InstructionSets, GiveTheSameBitsForControlledStresses) {
   expect_same_bits([&] {
-    Answers a{clones(dense_, 5), std::vector<RveReport>(5), std::vector<std::vector<ServoSample>>(5)};
+    Answers a{clones(dense, 5), std::vector<RveReport>(5), std::vector<std::vector<ServoSample>>(5)};
     std::vector<ServoRequest> requests(5);
     for (std::size_t k = 0; k < 5; ++k) {
       requests[k].x.target = -1e5 - 1e4 * static_cast<double>(k);
@@ -140,8 +140,8 @@ TEST_P(InstructionSets, GiveTheSameBitsForControlledStresses) {
 /// Each RVE with a packing of its own runs in a group of one lane.
 TEST_P(InstructionSets, GiveTheSameBitsForUnlikePackings) {
   expect_same_bits([&] {
-    Answers a{make_batch({packing_of(dense_), packing_of(dense_)}, {0, 1}), std::vector<RveReport>(2), {}};
-    for (std::size_t k = 0; k < 2; ++k) fill(a.batch.committed, k, dense_);
+    Answers a{make_batch({packing_of(dense), packing_of(dense)}, {0, 1}), std::vector<RveReport>(2), {}};
+    for (std::size_t k = 0; k < 2; ++k) fill(a.batch.committed, k, dense);
     advance(a.batch, std::span<const StrainRequest>(motions(5)).subspan(0, 2), {.precision = GetParam()}, a.reports);
     return a;
   });

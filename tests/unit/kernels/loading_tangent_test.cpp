@@ -56,19 +56,19 @@ Matrix probe(RveBatch& batch, double size) {
 class LoadingTangent : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    dense_ = reference::consolidated_packing(80, 2, 1e5, 0.0, reference::Material{});
-    sheared_ = compressed(dense_, 0.01, 4);
+    dense = reference::consolidated_packing(80, 2, 1e5, 0.0, reference::Material{});
+    sheared = compressed(dense, 0.01, 4);
   }
-  static void TearDownTestSuite() { sheared_ = {}; }
-  static inline reference::Rve dense_;
-  static inline RveBatch sheared_;
+  static void TearDownTestSuite() { sheared = {}; }
+  static inline reference::Rve dense;
+  static inline RveBatch sheared;
 };
 
 // The columns are those of the signed sizes that the motion to the trial state gives.
 TEST_F(LoadingTangent, GoesOnAsTheLastMotionDid) {
-  RveBatch batch = sheared_;
+  RveBatch batch = sheared;
   batch.committed = RveStates("copy", batch.size(), batch.packing(0).size(), history_size<PlainEngineLaw>);
-  for (std::size_t k = 0; k < batch.size(); ++k) copy_state(sheared_.committed, batch.committed, k, 80);
+  for (std::size_t k = 0; k < batch.size(); ++k) copy_state(sheared.committed, batch.committed, k, 80);
   forget_candidates(batch);
   StrainRequest on = still;
   on.f_rel = {1 + 3e-6, 2e-6, 1e-6, 1 - 1e-5};
@@ -108,7 +108,7 @@ TEST_F(LoadingTangent, OfALatticeIsTheElasticOneAndTheStressOfItsOwn) {
 TEST_F(LoadingTangent, SameBitsAloneAndInAGroup) {
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     const EngineSettings settings = asking(TangentKind::loading, 1e-5, precision);
-    const auto [expected, reports] = run_alone_and_in_a_group(dense_, settings);
+    const auto [expected, reports] = run_alone_and_in_a_group(dense, settings);
     EXPECT_EQ(expected.tangent_kind, TangentKind::loading);
     EXPECT_TRUE(std::equal(expected.tangent, expected.tangent + 6, reports[7].tangent));
     EXPECT_TRUE(std::equal(expected.tangent_skew, expected.tangent_skew + 3, reports[7].tangent_skew));
@@ -128,7 +128,7 @@ TEST_F(LoadingTangent, FallsBackToTheElasticOneAndSaysSo) {
     for (const EngineSettings& settings : {asking(TangentKind::loading, 1e-2, precision), few}) {
       EngineSettings instead = settings;
       instead.tangent = TangentKind::elastic;
-      const RveReport r = at_rest(sheared_, settings), elastic = at_rest(sheared_, instead);
+      const RveReport r = at_rest(sheared, settings), elastic = at_rest(sheared, instead);
       EXPECT_EQ(r.tangent_kind, TangentKind::elastic);
       EXPECT_TRUE(r.tangent_capped);
       EXPECT_TRUE(std::equal(r.tangent, r.tangent + 6, elastic.tangent));

@@ -193,15 +193,15 @@ class StaticStep : public testing::Test {
   }
   static void add(const reference::Rve& rve, StrainRequest to) {
     to.hold_cap = 200000;
-    states_.push_back(clones(rve, 2));
-    run(states_.back(), std::vector<StrainRequest>(2, to), to_the_end());
-    commit(states_.back());
+    states.push_back(clones(rve, 2));
+    run(states.back(), std::vector<StrainRequest>(2, to), to_the_end());
+    commit(states.back());
   }
-  static void TearDownTestSuite() { states_.clear(); }
+  static void TearDownTestSuite() { states.clear(); }
 
   /// Change of stress under `strain`, in the engine; the batch is not committed.
   static Voigt probe(int state, const Voigt& strain) {
-    RveBatch& batch = states_[static_cast<std::size_t>(state)];
+    RveBatch& batch = states[static_cast<std::size_t>(state)];
     const Mat2 f{1 + strain[0], 0.5 * strain[2], 0.5 * strain[2], 1 + strain[1]};
     const auto r = run(
         batch, {{.strain_steps = 400, .hold_cap = 100000}, {.f_rel = f, .strain_steps = 400, .hold_cap = 100000}},
@@ -216,7 +216,7 @@ class StaticStep : public testing::Test {
     EngineSettings settings = like;
     settings.tangent = TangentKind::loading;
     settings.tangent_strain = size;
-    const RveReport r = run(states_[static_cast<std::size_t>(state)], std::vector<StrainRequest>(2), settings).front();
+    const RveReport r = run(states[static_cast<std::size_t>(state)], std::vector<StrainRequest>(2), settings).front();
     EXPECT_EQ(r.tangent_kind, TangentKind::loading);
     EXPECT_FALSE(r.tangent_capped);
     return host::whole_tangent_of(r);
@@ -225,7 +225,7 @@ class StaticStep : public testing::Test {
   /// Elastic tangent times `strain`, and what the stress itself changes by: sigma e + e sigma (half of it: the
   /// branches), - tr e sigma.
   static Voigt elastic(int state, const Voigt& strain) {
-    RveBatch& batch = states_[static_cast<std::size_t>(state)];
+    RveBatch& batch = states[static_cast<std::size_t>(state)];
     const RveReport r = run(batch, std::vector<StrainRequest>(2), to_the_end(TangentKind::elastic)).front();
     const double xx = r.stress[0], yy = r.stress[3], xy = 0.5 * (r.stress[1] + r.stress[2]), tr = strain[0] + strain[1];
     const Voigt carried(xx * strain[0] + xy * 0.5 * strain[2], yy * strain[1] + xy * 0.5 * strain[2],
@@ -233,7 +233,7 @@ class StaticStep : public testing::Test {
     return host::tangent_of(r) * strain + carried - tr * Voigt(xx, yy, xy);
   }
 
-  static inline std::vector<RveBatch> states_;  ///< isotropic, sheared to 1 % and to 5 %
+  static inline std::vector<RveBatch> states;  ///< isotropic, sheared to 1 % and to 5 %
 };
 
 const Voigt directions[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -242,7 +242,7 @@ TEST_F(StaticStep, SmallProbesMeasureTheElasticTangent) {
   for (const int state : {0, 1}) {
     for (const Voigt& e : directions) {
       const Voigt measured = probe(state, 1e-7 * e), expected = elastic(state, 1e-7 * e),
-                  exact = Step(states_[static_cast<std::size_t>(state)], 1e-7 * e).stress_change();
+                  exact = Step(states[static_cast<std::size_t>(state)], 1e-7 * e).stress_change();
       const bool shear = e[2] != 0;
       for (const int k : shear ? std::vector<int>{2} : std::vector<int>{0, 1}) {
         EXPECT_NEAR(expected[k] / measured[k], 1.0, 0.02) << state << ": " << e.transpose() << " " << k;
@@ -277,7 +277,7 @@ TEST_F(StaticStep, LoadingTangentFollowsTheDenseStep) {
     for (const double size : {1e-6, 1e-5, -1e-5}) {
       const Eigen::Matrix3d d = loading(state, size, exact);
       for (int a = 0; a < 3; ++a) {
-        const Step step(states_[static_cast<std::size_t>(state)], size * Voigt::Unit(a));
+        const Step step(states[static_cast<std::size_t>(state)], size * Voigt::Unit(a));
         const double off = (d.col(a) - step.stress_change() / size).cwiseAbs().maxCoeff();
         EXPECT_LT(off, 2e-7 * d.cwiseAbs().maxCoeff()) << state << ", " << size << ": " << a << ", " << step.at_caps();
       }
@@ -289,7 +289,7 @@ TEST_F(StaticStep, LoadingTangentFollowsTheDenseStep) {
 
 TEST_F(StaticStep, NoContactAtRestIsAtItsCapButManyAreNear) {
   int near = 0;
-  for (const Spring& s : springs_of(states_[1])) {
+  for (const Spring& s : springs_of(states[1])) {
     const double share = std::abs(s.at.tangential_force) / (s.k.friction * s.at.normal_force);
     EXPECT_LT(share, 1.0 - 1e-6);
     near += share > 1.0 - 1e-3 ? 1 : 0;
@@ -303,7 +303,7 @@ TEST_F(StaticStep, LargerProbesMeasureTheStepWithItsCaps) {
     EXPECT_NEAR(elastic(0, {size, 0, 0})[0] / probe(0, {size, 0, 0})[0], 1.0, 0.01);
     for (const Voigt& e : {Voigt(size, 0, 0), Voigt(0, -size, 0)}) {
       const Voigt measured = probe(1, e);
-      const Step step(states_[1], e);
+      const Step step(states[1], e);
       const int main = e[0] != 0 ? 0 : 1;
       std::printf("strain %.0e along %d: measured %.3f MPa, step %.3f, elastic %.3f; %d contacts at caps\n", size, main,
                   measured[main] / size * 1e-6, step.stress_change()[main] / size * 1e-6,

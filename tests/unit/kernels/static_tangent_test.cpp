@@ -103,15 +103,15 @@ Matrix probe(const reference::Rve& rve, double strain) {
 class StaticTangent : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    dense_ = reference::consolidated_packing(80, 2, 1e5, 0.0, reference::Material{});
-    sheared_ = dense_;
-    strain(sheared_, {1.003, 0, 0, 0.99}, {.steps = 12000, .hold_steps = 1500});
+    dense = reference::consolidated_packing(80, 2, 1e5, 0.0, reference::Material{});
+    sheared = dense;
+    strain(sheared, {1.003, 0, 0, 0.99}, {.steps = 12000, .hold_steps = 1500});
   }
-  static inline reference::Rve dense_, sheared_;
+  static inline reference::Rve dense, sheared;
 };
 
 TEST_F(StaticTangent, IsOffUnlessAsked) {
-  RveBatch batch = clones(dense_, 1);
+  RveBatch batch = clones(dense, 1);
   const RveReport r = at_rest(batch, in_double());
   EXPECT_EQ(r.tangent_kind, TangentKind::contact);
   EXPECT_EQ(r.tangent_iterations, 0);
@@ -170,7 +170,7 @@ TEST_F(StaticTangent, MechanismHasNone) {
 }
 
 TEST_F(StaticTangent, FollowsTheDenseSolve) {
-  for (const reference::Rve* rve : {&dense_, &sheared_}) {
+  for (const reference::Rve* rve : {&dense, &sheared}) {
     RveBatch batch = clones(*rve, 1);
     const Matrix told_apart = dense_tangent(*rve, 1.0 - 1e-4), stuck = dense_tangent(*rve, 2.0);
     expect_near(host::tangent_of(at_rest(batch, asking(TangentKind::static_))), told_apart, 1e-9);
@@ -180,13 +180,13 @@ TEST_F(StaticTangent, FollowsTheDenseSolve) {
     EngineSettings single = asking(TangentKind::static_, by_default);
     single.precision = Precision::float32;
     expect_near(host::tangent_of(at_rest(batch, single)), told_apart, 1e-5);
-    if (rve == &dense_) continue;
+    if (rve == &dense) continue;
     EXPECT_LT(told_apart(1, 1), 0.98 * stuck(1, 1)) << "no contact slides: the test shows nothing";
   }
 }
 
 TEST_F(StaticTangent, IsPositiveAndSofterThanTheContactTangent) {
-  for (const reference::Rve* rve : {&dense_, &sheared_}) {
+  for (const reference::Rve* rve : {&dense, &sheared}) {
     RveBatch batch = clones(*rve, 1);
     const Matrix contact = host::tangent_of(at_rest(batch, in_double()));
     for (const TangentKind kind : {TangentKind::elastic, TangentKind::static_}) {
@@ -202,15 +202,15 @@ TEST_F(StaticTangent, IsPositiveAndSofterThanTheContactTangent) {
 // share.
 TEST_F(StaticTangent, ElasticOneIsWhatSmallProbesMeasure) {
   for (const double sign : {1.0, -1.0}) {
-    RveBatch batch = clones(dense_, 1);
+    RveBatch batch = clones(dense, 1);
     const Matrix d = host::tangent_of(at_rest(batch, asking(TangentKind::elastic))),
-                 measured = probe(dense_, sign * 1e-6);
+                 measured = probe(dense, sign * 1e-6);
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(d(k, k), measured(k, k), 0.02 * measured(k, k)) << k;
   }
-  RveBatch batch = clones(sheared_, 1);
+  RveBatch batch = clones(sheared, 1);
   const Matrix d = host::tangent_of(at_rest(batch, asking(TangentKind::elastic)));
-  EXPECT_NEAR(d(0, 0) / probe(sheared_, -1e-6)(0, 0), 1.0, 0.02);
-  EXPECT_NEAR(d(1, 1) / probe(sheared_, 1e-6)(1, 1), 1.0, 0.02);
+  EXPECT_NEAR(d(0, 0) / probe(sheared, -1e-6)(0, 0), 1.0, 0.02);
+  EXPECT_NEAR(d(1, 1) / probe(sheared, 1e-6)(1, 1), 1.0, 0.02);
 }
 
 // Without friction every contact slides, and the probe has nothing else to follow.
@@ -228,7 +228,7 @@ TEST_F(StaticTangent, SameBitsAloneAndInAGroup) {
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     EngineSettings settings = asking(TangentKind::static_, 2e-3);
     settings.precision = precision;
-    const auto [expected, reports] = run_alone_and_in_a_group(dense_, settings);
+    const auto [expected, reports] = run_alone_and_in_a_group(dense, settings);
     EXPECT_TRUE(std::equal(expected.tangent, expected.tangent + 6, reports[7].tangent));
     EXPECT_EQ(expected.tangent_iterations, reports[7].tangent_iterations);
     EXPECT_EQ(reports[7].tangent_kind, TangentKind::static_);
@@ -241,7 +241,7 @@ TEST_F(StaticTangent, SameBitsAloneAndInAGroup) {
 TEST_F(StaticTangent, StopsAtItsLimitAndSaysSo) {
   EngineSettings settings = asking(TangentKind::elastic);
   settings.tangent_iterations = 3;
-  RveBatch batch = clones(dense_, 1);
+  RveBatch batch = clones(dense, 1);
   const RveReport capped = at_rest(batch, settings), whole = at_rest(batch, asking(TangentKind::elastic));
   EXPECT_TRUE(capped.tangent_capped);
   EXPECT_EQ(capped.tangent_iterations, 3);

@@ -24,8 +24,8 @@ const std::vector<int> one_thread{0, 1};
 
 class TeamKernel : public testing::Test {
  protected:
-  static void SetUpTestSuite() { dense_ = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{}); }
-  static inline reference::Rve dense_;
+  static void SetUpTestSuite() { dense = reference::consolidated_packing(40, 2, 1e5, 0.0, reference::Material{}); }
+  static inline reference::Rve dense;
 };
 
 reference::Rve gas(int grains, double smallest, double largest) {
@@ -76,7 +76,7 @@ std::vector<StrainRequest> motions(std::size_t n) {
 TEST_F(TeamKernel, HasTheLanesBits) {
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     SCOPED_TRACE(static_cast<int>(precision));
-    const auto reports = expect_lanes_bits([&] { return clones(dense_, 6); }, motions(6), {.precision = precision});
+    const auto reports = expect_lanes_bits([&] { return clones(dense, 6); }, motions(6), {.precision = precision});
     for (const RveReport& r : reports) EXPECT_FALSE(is_failure(r.status));
   }
 }
@@ -89,20 +89,20 @@ TEST_F(TeamKernel, HasTheLanesBitsWithSeveralThreadsToATeam) {
   settings.skin = 0.0005;
   settings.list_interval = 1;
   const StrainRequest short_one{.f_rel = {1.001, 0.003, -0.001, 0.998}, .strain_steps = 16, .hold_cap = 4};
-  expect_lanes_bits([&] { return clones(dense_, 1); }, std::vector{short_one}, settings, sizes);
+  expect_lanes_bits([&] { return clones(dense, 1); }, std::vector{short_one}, settings, sizes);
 }
 
 TEST_F(TeamKernel, HasTheLanesBitsThroughManyRebases) {
   EngineSettings settings = in_double();
   settings.skin = 0.0005;
   settings.list_interval = 1;
-  expect_lanes_bits([&] { return clones(dense_, 3); }, motions(3), settings);
+  expect_lanes_bits([&] { return clones(dense, 3); }, motions(3), settings);
 }
 
 TEST_F(TeamKernel, HasTheLanesBitsInTheNextIncrementToo) {
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     const auto make = [&] {
-      RveBatch batch = clones(dense_, 3);
+      RveBatch batch = clones(dense, 3);
       run(batch, motions(3), {.precision = precision, .backend = Backend::teams});
       commit(batch);
       return batch;
@@ -112,7 +112,7 @@ TEST_F(TeamKernel, HasTheLanesBitsInTheNextIncrementToo) {
 }
 
 TEST_F(TeamKernel, HasTheLanesBitsWithoutRolling) {
-  reference::Rve rve = dense_;
+  reference::Rve rve = dense;
   rve.material.rolling_stiffness = 0;
   for (auto& [pair, history] : rve.histories) history.moment = 0;
   expect_lanes_bits([&] { return clones(rve, 2); }, motions(2), EngineSettings{});
@@ -121,12 +121,12 @@ TEST_F(TeamKernel, HasTheLanesBitsWithoutRolling) {
 TEST_F(TeamKernel, HasTheLanesBitsWithClassesAndUnlikePackings) {
   const reference::Rve other = reference::consolidated_packing(30, 5, 1e5, 0.0, reference::Material{});
   const auto make = [&] {
-    Packing mixed = packing_of(dense_);
+    Packing mixed = packing_of(dense);
     mixed.materials.push_back(
         {.modulus = 5e9, .stiffness_ratio = 0.8, .friction = 1.2, .rolling_stiffness = 0.7, .rolling_limit = 0.8});
     for (std::size_t i = 0; i < mixed.radii.size(); ++i) mixed.class_of.push_back(i % 3 == 0 ? 1 : 0);
     RveBatch batch = make_batch({mixed, packing_of(other)}, {0, 1, 0, 1});
-    for (std::size_t k = 0; k < 4; ++k) fill(batch.committed, k, k % 2 == 0 ? dense_ : other);
+    for (std::size_t k = 0; k < 4; ++k) fill(batch.committed, k, k % 2 == 0 ? dense : other);
     return batch;
   };
   expect_lanes_bits(make, motions(4), EngineSettings{});
@@ -150,7 +150,7 @@ TEST_F(TeamKernel, HasTheLanesBitsWithWideGrading) {
 TEST_F(TeamKernel, EndsWithTheLanesStatuses) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto make = [&] {
-    RveBatch batch = clones(dense_, 7);
+    RveBatch batch = clones(dense, 7);
     batch.committed.position(6, 3, 0) = nan;
     return batch;
   };
@@ -185,13 +185,13 @@ TEST_F(TeamKernel, HasTheLanesBitsAndTraceUnderAServo) {
   const ServoRequest biaxial{
       .x = {true, -1e5}, .y = {false, -1e-6}, .max_rate = 1e-5, .max_steps = 3000, .end_strain_y = 2e-4};
   for (const Precision precision : {Precision::float32, Precision::float64}) {
-    const auto reports = expect_lanes_bits([&] { return clones(dense_, 2); }, std::vector{squeeze, biaxial},
+    const auto reports = expect_lanes_bits([&] { return clones(dense, 2); }, std::vector{squeeze, biaxial},
                                            {.precision = precision});
     EXPECT_EQ(reports[0].status, RveStatus::step_limit);
     EXPECT_EQ(reports[1].status, RveStatus::converged);
   }
   const auto trace = [&](Backend backend) {
-    RveBatch batch = clones(dense_, 2);
+    RveBatch batch = clones(dense, 2);
     std::vector<ServoSample> samples;
     std::vector<ServoRequest> requests{squeeze, biaxial};
     requests[1].trace = &samples;
@@ -225,7 +225,7 @@ TEST(TeamScratch, GrainsOfAnRveFitTheFastMemoryOfAGpu) {
 }
 
 TEST_F(TeamKernel, RefusesWhatItCannotDo) {
-  RveBatch batch = clones(dense_, 1);
+  RveBatch batch = clones(dense, 1);
   EngineSettings settings{.backend = Backend::teams, .tangent = TangentKind::elastic};
   expect_throws<std::invalid_argument>([&] { run(batch, {general}, settings); }, "the only tangent is eq. (4)");
   settings = {.backend = Backend::teams, .team_size = 100000};

@@ -12,8 +12,6 @@
 namespace voussoir::reference {
 namespace {
 
-using std::numbers::pi;
-
 // Hand values of the pair used below: r = 2 and 3 mm, E = 3 GPa.
 constexpr double ri = 2e-3, rj = 3e-3, overlap = 1e-6;
 constexpr double kn = 7.2e6;  // 2 E ri rj/(ri + rj)

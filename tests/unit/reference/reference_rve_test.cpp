@@ -130,16 +130,16 @@ TEST(ReferenceHexagonal, LocalDampingLosesAFixedShareOfEveryHalfCycle) {
 
 class ReferencePacking : public testing::Test {
  protected:
-  static void SetUpTestSuite() { packing_ = new Rve(consolidated_packing(40, 2, 1e5, 0.0, Material{})); }
-  static void TearDownTestSuite() { delete packing_; }
-  static inline Rve* packing_ = nullptr;
+  static void SetUpTestSuite() { packed = new Rve(consolidated_packing(40, 2, 1e5, 0.0, Material{})); }
+  static void TearDownTestSuite() { delete packed; }
+  static inline Rve* packed = nullptr;
 };
 
 TEST_F(ReferencePacking, IsDenseAndAtRest) {
-  const Voigt s = stress(*packing_);
+  const Voigt s = stress(*packed);
   EXPECT_NEAR(pressure(s), 1e5, 2e3);
-  EXPECT_GT(coordination_number(*packing_), 3.0);
-  Rve copy = *packing_;
+  EXPECT_GT(coordination_number(*packed), 3.0);
+  Rve copy = *packed;
   const StrainReport report = strain(copy, identity, {.steps = 1, .hold_steps = 5000, .tolerance = 1e-6});
   EXPECT_TRUE(report.met_tolerance);
   EXPECT_LT(report.steps, 5001);
@@ -148,9 +148,9 @@ TEST_F(ReferencePacking, IsDenseAndAtRest) {
 
 TEST_F(ReferencePacking, RigidRotationRotatesStressAndNothingElse) {
   const StrainOptions options{.steps = 500, .hold_steps = 200};
-  Rve turned = *packing_;
+  Rve turned = *packed;
   strain(turned, Mat2{0, -1, 1, 0}, options);
-  Rve still = *packing_;
+  Rve still = *packed;
   strain(still, identity, options);
   // F = a quarter turn: (xx, yy, xy) -> (yy, xx, -xy).
   const Voigt a = stress(still), b = stress(turned);
@@ -168,7 +168,7 @@ TEST_F(ReferencePacking, RigidRotationRotatesStressAndNothingElse) {
 }
 
 TEST_F(ReferencePacking, StrainEndsExactlyAtF) {
-  Rve rve = *packing_;
+  Rve rve = *packed;
   const Mat2 f{1.002, 0.003, -0.001, 0.997};
   const Mat2 expected = f * rve.cell;
   const StrainReport report = strain(rve, f, {.steps = 200, .hold_steps = 64, .tolerance = 0, .keep_trace = true});
@@ -182,7 +182,7 @@ TEST_F(ReferencePacking, StrainEndsExactlyAtF) {
 }
 
 TEST_F(ReferencePacking, MomentumIsConservedWithoutDamping) {
-  Rve rve = *packing_;
+  Rve rve = *packed;
   rve.material.damping = 0;
   rve.velocities.assign(rve.positions.size(), {});
   rve.spins.assign(rve.positions.size(), 0);
@@ -202,7 +202,7 @@ TEST_F(ReferencePacking, MomentumIsConservedWithoutDamping) {
 }
 
 TEST_F(ReferencePacking, EnergyDecaysAfterAKick) {
-  Rve rve = *packing_;
+  Rve rve = *packed;
   const double rest = energy(rve);
   rve.velocities.assign(rve.positions.size(), {});
   rve.spins.assign(rve.positions.size(), 1e-3);
@@ -219,7 +219,7 @@ TEST_F(ReferencePacking, EnergyDecaysAfterAKick) {
 }
 
 TEST_F(ReferencePacking, FrictionSwitchHoldsTheNewCap) {
-  Rve rve = *packing_;
+  Rve rve = *packed;
   strain(rve, {1, 0.01, 0, 1}, {.steps = 1000, .hold_steps = 200});
   switch_friction(rve, 0.1);
   for (const Contact& c : contacts(rve)) {

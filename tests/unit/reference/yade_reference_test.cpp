@@ -65,18 +65,18 @@ class YadeReference : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     const auto h = read_meta("hSize", 9);
-    rve_.cell = {h.at(0), h.at(1), h.at(3), h.at(4)};
-    rve_.material = {.modulus = read_meta("E", 1).at(0),
-                     .stiffness_ratio = read_meta("kt_over_kn", 1).at(0),
-                     .friction = std::tan(read_meta("phi_deg", 1).at(0) * std::numbers::pi / 180),
-                     .rolling_stiffness = read_meta("alphaKr", 1).at(0),
-                     .rolling_limit = read_meta("etaRoll", 1).at(0),
-                     .damping = read_meta("damping", 1).at(0),
-                     .thickness = read_meta("Lz", 1).at(0)};
+    rve.cell = {h.at(0), h.at(1), h.at(3), h.at(4)};
+    rve.material = {.modulus = read_meta("E", 1).at(0),
+                    .stiffness_ratio = read_meta("kt_over_kn", 1).at(0),
+                    .friction = std::tan(read_meta("phi_deg", 1).at(0) * std::numbers::pi / 180),
+                    .rolling_stiffness = read_meta("alphaKr", 1).at(0),
+                    .rolling_limit = read_meta("etaRoll", 1).at(0),
+                    .damping = read_meta("damping", 1).at(0),
+                    .thickness = read_meta("Lz", 1).at(0)};
     for (auto& row : read_table("CPS_D_particles.csv")) {
-      rve_.positions.push_back({row["x_m"], row["y_m"]});
-      rve_.radii.push_back(row["r_m"]);
-      rve_.rotations.push_back(row["theta_z_rad"]);
+      rve.positions.push_back({row["x_m"], row["y_m"]});
+      rve.radii.push_back(row["r_m"]);
+      rve.rotations.push_back(row["theta_z_rad"]);
     }
     for (auto& row : read_table("CPS_D_contacts.csv")) {
       const Vec2 n{row["nx"], row["ny"]};
@@ -90,28 +90,28 @@ class YadeReference : public testing::Test {
                           -row["Mz"],
                           row["maxRollPl"]};
       const std::pair key{static_cast<int>(row["id1"]), static_cast<int>(row["id2"])};
-      records_[key] = record;
-      rve_.histories[key] = {.tangential = record.ft, .moment = record.moment};
+      records[key] = record;
+      rve.histories[key] = {.tangential = record.ft, .moment = record.moment};
     }
-    contacts_ = contacts(rve_);
+    touching = contacts(rve);
   }
 
-  static inline Rve rve_;
-  static inline std::map<std::pair<int, int>, Record> records_;
-  static inline std::vector<Contact> contacts_;
+  static inline Rve rve;
+  static inline std::map<std::pair<int, int>, Record> records;
+  static inline std::vector<Contact> touching;
 };
 
 TEST_F(YadeReference, FindsExactlyItsContacts) {
-  ASSERT_EQ(rve_.positions.size(), 700u);
-  ASSERT_EQ(records_.size(), static_cast<std::size_t>(read_meta("n_contacts", 1).at(0)));
-  ASSERT_EQ(contacts_.size(), records_.size());
-  for (const Contact& c : contacts_) EXPECT_TRUE(records_.contains({c.i, c.j})) << c.i << ' ' << c.j;
+  ASSERT_EQ(rve.positions.size(), 700u);
+  ASSERT_EQ(records.size(), static_cast<std::size_t>(read_meta("n_contacts", 1).at(0)));
+  ASSERT_EQ(touching.size(), records.size());
+  for (const Contact& c : touching) EXPECT_TRUE(records.contains({c.i, c.j})) << c.i << ' ' << c.j;
 }
 
 TEST_F(YadeReference, GeometryAndConstants) {
-  for (const Contact& c : contacts_) {
-    const Record& yade = records_.at({c.i, c.j});
-    const PairStiffness k = pair_stiffness(rve_.material, rve_.radii[c.i], rve_.radii[c.j]);
+  for (const Contact& c : touching) {
+    const Record& yade = records.at({c.i, c.j});
+    const PairStiffness k = pair_stiffness(rve.material, rve.radii[c.i], rve.radii[c.j]);
     // The positions were written one step after the overlaps; that step moved a pair by up to 4.7e-10 m. Typical
     // overlap: 4e-6 m.
     EXPECT_NEAR(c.overlap, yade.overlap, 5e-10);
@@ -120,19 +120,19 @@ TEST_F(YadeReference, GeometryAndConstants) {
     EXPECT_NEAR(k.normal, yade.kn, 1e-13 * yade.kn);
     EXPECT_NEAR(k.tangential, yade.kt, 1e-13 * yade.kt);
     EXPECT_NEAR(k.rolling, yade.kr, 1e-13 * yade.kr);
-    EXPECT_NEAR(rve_.material.rolling_limit * std::min(rve_.radii[c.i], rve_.radii[c.j]), yade.rolling_arm, 1e-16);
+    EXPECT_NEAR(rve.material.rolling_limit * std::min(rve.radii[c.i], rve.radii[c.j]), yade.rolling_arm, 1e-16);
     EXPECT_NEAR(yade.fn, k.normal * yade.overlap, 1e-13 * yade.fn);
   }
 }
 
 TEST_F(YadeReference, LoveWeberStressFromItsForces) {
-  std::vector<Contact> with_its_forces = contacts_;
+  std::vector<Contact> with_its_forces = touching;
   for (Contact& c : with_its_forces) {
-    const Record& yade = records_.at({c.i, c.j});
+    const Record& yade = records.at({c.i, c.j});
     c.normal_force = yade.fn;
     c.tangential_force = yade.ft;
   }
-  const Mat2 sigma = love_weber(rve_, with_its_forces);
+  const Mat2 sigma = love_weber(rve, with_its_forces);
   const auto expected = read_meta("stress", 9);
   const double tolerance = 1e-8 * read_meta("P0", 1).at(0);
   EXPECT_NEAR(sigma.xx, expected.at(0), tolerance);
@@ -142,7 +142,7 @@ TEST_F(YadeReference, LoveWeberStressFromItsForces) {
 }
 
 TEST_F(YadeReference, LoveWeberStressFromItsPositions) {
-  const Voigt sigma = stress(rve_);
+  const Voigt sigma = stress(rve);
   const auto expected = read_meta("stress", 9);
   const double tolerance = 1e-5 * read_meta("P0", 1).at(0);  // positions are one step younger, see above
   EXPECT_NEAR(sigma[0], expected.at(0), tolerance);
@@ -154,7 +154,7 @@ TEST_F(YadeReference, Tangent) {
   // The file holds the upper triangle, Voigt order (xx, yy, zz, yz, zx, xy), minor symmetries imposed: xyxy is
   // sum k_t |b|^2 ((n t + t n)/2)_xy^2 + ..., to be multiplied by the engineering shear strain, as ours.
   const auto d6 = read_meta("tangent6x6", 36);
-  const VoigtMatrix d = tangent(rve_);
+  const VoigtMatrix d = tangent(rve);
   const double tolerance = 1e-8 * d6.at(0);
   const std::array<std::size_t, 3> place{0, 1, 5};
   for (std::size_t p = 0; p < 3; ++p) {
@@ -166,12 +166,12 @@ TEST_F(YadeReference, Tangent) {
 }
 
 TEST_F(YadeReference, EngineRebuildsStressAndTangent) {
-  kernels::RveBatch batch = kernels::clones(rve_, 1);
+  kernels::RveBatch batch = kernels::clones(rve, 1);
   std::vector<kernels::CommittedContact> rebuilt;
   kernels::committed_contacts(batch, 0, rebuilt);
-  ASSERT_EQ(rebuilt.size(), records_.size());
+  ASSERT_EQ(rebuilt.size(), records.size());
   Mat2 with_its_forces, from_positions;
-  const double volume = det(rve_.cell) * rve_.material.thickness;
+  const double volume = det(rve.cell) * rve.material.thickness;
   for (kernels::CommittedContact& c : rebuilt) {
     const auto add = [&](Mat2& sigma) {
       sigma.xx += c.force_x() * c.branch_x / volume;
@@ -180,7 +180,7 @@ TEST_F(YadeReference, EngineRebuildsStressAndTangent) {
       sigma.yy += c.force_y() * c.branch_y / volume;
     };
     add(from_positions);
-    const Record& yade = records_.at({c.i, c.j});
+    const Record& yade = records.at({c.i, c.j});
     c.normal_force = yade.fn;
     c.tangential_force = yade.ft;
     add(with_its_forces);
@@ -200,7 +200,7 @@ TEST_F(YadeReference, EngineRebuildsStressAndTangent) {
 
 TEST_F(YadeReference, IsAtRestForTheOracle) {
   // Yade reports 3.5e-6 by its own measure (largest resultant over mean contact force).
-  Rve copy = rve_;
+  Rve copy = rve;
   EXPECT_LT(step(copy, Mat2{}, Mat2{}).unbalanced_ratio, 1e-4);
 }
 
