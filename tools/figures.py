@@ -15,7 +15,7 @@ try:
     from voussoir_plots.catalogue import FIGURES
     from voussoir_plots.output import make_folder, say
     from voussoir_plots.result import Missing, Result
-    from voussoir_plots.style import use_style
+    from voussoir_plots.style import set_note, use_style
 except ModuleNotFoundError as missing:
     print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
     sys.exit(2)
@@ -57,6 +57,7 @@ def main():
         figures.unreadable()
     wanted = chosen(arguments, of_an_ensemble)
     make_folder(output)
+    set_note(result.draw_note() if isinstance(result, Result) else "")
     for name, draw in wanted.items():
         figures.make(name, output / name, partial(draw, result))
     return figures.status

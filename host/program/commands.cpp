@@ -10,6 +10,7 @@
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
 #include "host/estimate/report.hpp"
+#include "host/packing/draw_scatter.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
 #include "host/process/threads.hpp"
@@ -89,6 +90,8 @@ Outcome command_check(const std::filesystem::path& case_file, const std::vector<
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";
   if (!range.empty()) answer += "# " + range + "\n";
+  if (input.kind == CaseKind::tunnel && input.material == MaterialKind::grains)
+    answer += "# " + draw_sentence(input.packing, input.volume_loss.total) + "\n";
   for (const std::string& remark : input.remarks) answer += "# warning: " + remark + "\n";
   return print_answer(answer);
 }

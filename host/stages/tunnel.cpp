@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <span>
 #include <stdexcept>
 
 #include "fem/mesh_tunnel.hpp"
@@ -29,6 +30,10 @@ ColumnResult run_own_column(const Case& input, const RunOptions& options, RunLog
 /// Runs gravity and, where it succeeds, the volume loss.
 RunStatus run_stages(const Case& input, const K0Table& k0, GroundRun& run) {
   run.recorder().set_table("k0", k0_columns(k0));
+  if (input.material == MaterialKind::grains) {
+    const DrawScatter scatter = draw_scatter(input.packing.variety, input.packing.grains, input.volume_loss.total);
+    run.recorder().set_table("draw_scatter", table_of(std::span(&scatter, 1), draw_scatter_columns));
+  }
   // The lines about the packing go to the file only, since the column has written them to the terminal already.
   run.open_ground(material_case(input), [&run](const std::string& text) { run.log().detail(text); });
   const bool losing = run.recorder().resumed_stage() == "volume_loss";
@@ -73,6 +78,7 @@ RunStatus run_tunnel(const Case& input, const RunOptions& options) {
                        mesh.n_points(), to_string(input.material)));
   log_engine(input, log);
   say_remarks(input, log);
+  if (input.material == MaterialKind::grains) log.line(draw_sentence(input.packing, input.volume_loss.total));
 
   const ColumnResult column = run_own_column(input, options, log);
   RunStatus status = column.status;

@@ -1,12 +1,23 @@
 #pragma once
 /// The case kind "tunnel": a tunnel that loses volume, in the stages column, gravity and volume loss.
 
+#include <array>
+
 #include "fem/mesh.hpp"
 #include "host/case/case.hpp"
+#include "host/packing/draw_scatter.hpp"
+#include "host/record/columns.hpp"
 #include "host/record/folder.hpp"
 #include "host/stages/stage.hpp"
 
 namespace voussoir::host {
+
+/// Table `draw_scatter` of io/FORMAT.md.
+inline constexpr auto draw_scatter_columns = std::to_array<Column<DrawScatter>>({
+    {"settlement", "-", &DrawScatter::settlement},
+    {"reaction", "-", &DrawScatter::reaction},
+    {"k0", "-", &DrawScatter::k0},
+});
 
 /// The half domain of the case. Throws std::invalid_argument where its sizes make no mesh.
 [[nodiscard]] fem::Mesh tunnel_mesh(const GroundCase& soil);

@@ -134,6 +134,18 @@ class Result:
             raise Missing(f"{self.folder}: the run has no increments that can be drawn{first}{further}")
         self._histories: dict[str, np.ndarray] = {}
 
+    def draw_note(self) -> str:
+        """What a single run leaves open, for the foot of its figures; empty where nothing was measured."""
+        scatter = self.tables.get("draw_scatter", {})
+        names = {"settlement": "the settlement", "reaction": "the ground reaction", "k0": "K0"}
+        if not all(len(scatter.get(name, ())) == 1 for name in names):
+            return ""
+        parts = [f"{said} by {100 * scatter[name][0]:.0f} %" for name, said in names.items()]
+        return (
+            f"One draw of the packings: another one moves {', '.join(parts)} (standard deviations, docs/trust.md); "
+            "`voussoir ensemble` gives bands."
+        )
+
     def need(self, *names: str) -> list[float]:
         """Numbers of the mesh's geometry."""
         if not self.has_mesh:

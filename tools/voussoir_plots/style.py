@@ -38,7 +38,17 @@ def colours(name: str, count: int) -> np.ndarray:
     return plt.get_cmap(name)(np.linspace(0.0, 0.87, max(count, 2)))[:count]
 
 
+_notes: list[str] = []
+
+
+def set_note(text: str) -> None:
+    """A line below each of the figures that follow; empty: none."""
+    _notes[:] = [text] if text else []
+
+
 def save(figure: Figure, path: Path) -> None:
+    for note in _notes:
+        figure.text(0.5, -0.01, note, ha="center", va="top", fontsize=8, color="0.35")
     picture = io.BytesIO()  # so that a full disk is met by `write` alone
     figure.savefig(picture, format="png")
     plt.close(figure)

@@ -10,6 +10,7 @@
 #include "host/stages/column.hpp"
 #include "host/stages/geostatic_check.hpp"
 #include "host/stages/opening_check.hpp"
+#include "host/stages/tunnel.hpp"
 #include "host/stages/volume_loss.hpp"
 #include "io/increment_file.hpp"
 #include "tests/format_page.hpp"
@@ -68,6 +69,7 @@ TEST(TableColumns, AreNamedInFormatMd) {
   expect_named("geostatic_check", geostatic_columns);
   expect_named("geostatic_rows", geostatic_row_columns);
   expect_named("opening_check", opening_columns);
+  expect_named("draw_scatter", draw_scatter_columns);
   expect_named("column_rows", column_row_columns);
 }
 
