@@ -319,7 +319,7 @@ for setting, fragment in (
     ("packing.grains={a=1}", "must be an integer, is a table"),
     ("title=a/b", "title"),
     ("kind=probe\x1b", "kind"),
-    ("soil.sizes=[]]", "soil.sizes: must be an array"),
+    ("soil.sizes=[]]", 'soil.sizes: "[]]" is no TOML'),
     ("packing.grains=" + "9" * 400, "packing.grains"),
     ("x" * 100_000 + "=1", "unknown key"),
 ):

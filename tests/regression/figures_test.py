@@ -147,7 +147,7 @@ class Runs(unittest.TestCase):
         for length in (np.inf, 0.0):
             with h5py.File(folder / "run.h5", "r+") as file:
                 file["mesh/geometry"].attrs["diameter"] = length
-            status, _, err = call(figures, folder, "--only", "stress_profiles", "convergence")
+            status, _, err = call(figures, folder, "--only", "settlement_troughs", "convergence")
             self.assertEqual(status, 2, err)
             self.assertTrue(any("impossible diameter" in line for line in err), err)
 
