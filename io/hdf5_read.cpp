@@ -72,7 +72,7 @@ std::vector<std::string> Hdf5File::attributes(const std::string& object) const {
 
 void Hdf5File::read_through(const std::string& group) const {
   for (const std::string& member : members(group)) {
-    const std::string name = (group == "/" ? "/" : group + "/") + member;
+    const std::string name = fmt::format("{}/{}", group == "/" ? "" : group, member);
     const Handle object(checked(H5Oopen(file_, name.c_str(), H5P_DEFAULT), "read " + name), H5Oclose);
     if (H5Iget_type(object) == H5I_GROUP) {
       read_through(name);

@@ -34,7 +34,8 @@ std::vector<std::size_t> places_in(const MemberResults& member, const std::vecto
   for (const io::EnsembleIncrement& row : rows) {
     const auto place = place_in(
         member, {.stage = row.stage, .stage_index = row.stage_index, .load_parameter = row.load_parameter});
-    places.push_back(place.value());
+    if (!place) throw std::logic_error("a member lacks an increment of the ensemble, which are those that all have");
+    places.push_back(*place);
   }
   return places;
 }
