@@ -1,6 +1,7 @@
 """One look for all figures."""
 
 import io
+import textwrap
 from pathlib import Path
 
 import matplotlib
@@ -38,6 +39,8 @@ def colours(name: str, count: int) -> np.ndarray:
     return plt.get_cmap(name)(np.linspace(0.0, 0.87, max(count, 2)))[:count]
 
 
+LETTERS_AN_INCH = 15  # of the note, which is set in 8 points
+
 _notes: list[str] = []
 
 
@@ -48,7 +51,10 @@ def set_note(text: str) -> None:
 
 def save(figure: Figure, path: Path) -> None:
     for note in _notes:
-        figure.text(0.5, -0.01, note, ha="center", va="top", fontsize=8, color="0.35")
+        width, height = figure.get_size_inches()
+        lines = textwrap.fill(note, int(width * LETTERS_AN_INCH))
+        below = figure.get_tightbbox().y0 / height - 0.1 / height  # under all that is drawn, legends too
+        figure.text(0.5, below, lines, ha="center", va="top", fontsize=8, color="0.35")
     picture = io.BytesIO()  # so that a full disk is met by `write` alone
     figure.savefig(picture, format="png")
     plt.close(figure)
