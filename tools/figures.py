@@ -30,6 +30,8 @@ def chosen(arguments, of_an_ensemble):
             raise Missing("the study's trends are judged for single runs, such as the members of this ensemble")
         return TRENDS
     everything = ensemble.FIGURES if of_an_ensemble else {**FIGURES, **TRENDS}
+    for name in sorted(set(arguments.only or ()) - {Path(known).stem for known in everything}):
+        say(f"skipped {name}: it is no figure of {'an ensemble' if of_an_ensemble else 'a single run'}")
     return {name: draw for name, draw in everything.items() if not arguments.only or Path(name).stem in arguments.only}
 
 

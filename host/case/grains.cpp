@@ -106,10 +106,10 @@ void read_files(const io::Table& table, PackingCase& packing) {
 }
 
 /// Reads `candidates` and `variety`. Without these keys all files are used, and one packing of those of the seeds.
-void read_variety(const io::Table& table, PackingCase& packing) {
+void read_variety(const io::Table& table, bool on_a_mesh, PackingCase& packing) {
   packing.variety = packing.files.empty() ? 1 : static_cast<int>(packing.files.size());
   read_integer(table, "variety", packing.variety, {.at_least = 1, .at_most = most_variety});
-  packing.candidates = packing.variety;
+  packing.candidates = on_a_mesh ? packing.variety : 1;
   read_integer(table, "candidates", packing.candidates, {.at_least = 1, .at_most = 1000});
 }
 
@@ -139,7 +139,7 @@ SoilCase read_soil(const io::Table& table) {
   return soil;
 }
 
-PackingCase read_packing(const io::Table& table) {
+PackingCase read_packing(const io::Table& table, bool on_a_mesh) {
   PackingCase packing;
   read_integer(table, "grains", packing.grains, {.at_least = 30, .at_most = 20000});
   packing.seed = table.integer("seed", {.fallback = packing.seed, .at_least = 0, .at_most = largest_seed});
@@ -161,7 +161,7 @@ PackingCase read_packing(const io::Table& table) {
                       folder == std::filesystem::file_type::not_found;
   if (packing.folder.empty() || !usable) throw table.error("folder", "must name a folder, which may be a new one");
   read_files(table, packing);
-  read_variety(table, packing);
+  read_variety(table, on_a_mesh, packing);
   return packing;
 }
 

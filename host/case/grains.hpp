@@ -7,7 +7,8 @@
 namespace voussoir::host {
 
 [[nodiscard]] SoilCase read_soil(const io::Table& table);
-[[nodiscard]] PackingCase read_packing(const io::Table& table);
+/// @param on_a_mesh true for kinds with a mesh, where `variety` counts
+[[nodiscard]] PackingCase read_packing(const io::Table& table, bool on_a_mesh);
 
 /// Throws where `variety` asks for more packings than the recipe's candidates, seeds or files are.
 void check_variety(const io::Table& table, const PackingCase& packing);

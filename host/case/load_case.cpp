@@ -35,7 +35,7 @@ CaseKind read_kind(const io::Table& root) {
 /// Reads the tables of the grains. They are allowed with any material, so that one `--set` can change the material.
 void read_grain_tables(const io::Table& root, Case& input) {
   input.soil = read_soil(root.table("soil"));
-  input.packing = read_packing(root.table("packing"));
+  input.packing = read_packing(root.table("packing"), runs_on_a_mesh(input.kind));
   input.engine = read_engine(root.table("engine"), runs_on_a_mesh(input.kind));
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
   if (input.kind != CaseKind::probe && input.packing.has_state()) {

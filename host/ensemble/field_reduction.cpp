@@ -32,10 +32,7 @@ struct FieldSums {
 
 /// The file of the increment in a member.
 std::filesystem::path file_of(const MemberResults& member, const io::EnsembleIncrement& row) {
-  const auto found = std::find_if(member.increments.begin(), member.increments.end(), [&](const auto& info) {
-    return info.stage == row.stage && info.stage_index == row.stage_index;
-  });
-  return io::increment_path(member.folder, found->index);
+  return io::increment_path(member.folder, member.increments[place_of(member, row)].index);
 }
 
 std::vector<std::pair<io::FieldLocation, io::Bands>> bands_of_fields(std::span<const MemberResults> members,

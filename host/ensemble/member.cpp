@@ -131,6 +131,7 @@ MemberResults read_member(const std::filesystem::path& folder) {
                        .tables = io::read_tables(index)};
   if (member.increments.empty())
     throw std::runtime_error(fmt::format("{}: the finished run has no increments", folder.string()));
+  member.tables.erase("gauss_histories");  // as long as all points of all increments, which the fields hold
   member.settlement.resize(member.increments.size());
   member.good_trough.resize(member.increments.size(), false);
   add_field_columns(member);

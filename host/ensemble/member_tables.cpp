@@ -64,7 +64,6 @@ std::map<std::string, std::vector<io::Bands>> reduce_tables(std::span<const Memb
                                                             const BandRule& rule) {
   std::map<std::string, std::vector<io::Bands>> found;
   for (const auto& [name, own] : members.front().tables) {
-    if (name == "gauss_histories") continue;
     std::vector<const std::vector<io::TableColumn>*> tables;
     for (const MemberResults& member : members) {
       const auto table = member.tables.find(name);

@@ -31,12 +31,7 @@ std::optional<std::size_t> place_in(const MemberResults& member, const io::Incre
 /// The places of the ensemble's increments in a member.
 std::vector<std::size_t> places_in(const MemberResults& member, const std::vector<io::EnsembleIncrement>& rows) {
   std::vector<std::size_t> places;
-  for (const io::EnsembleIncrement& row : rows) {
-    const auto place = place_in(
-        member, {.stage = row.stage, .stage_index = row.stage_index, .load_parameter = row.load_parameter});
-    if (!place) throw std::logic_error("a member lacks an increment of the ensemble, which are those that all have");
-    places.push_back(*place);
-  }
+  for (const io::EnsembleIncrement& row : rows) places.push_back(place_of(member, row));
   return places;
 }
 
@@ -99,6 +94,14 @@ std::vector<io::EnsembleIncrement> common_increments(std::span<const MemberResul
   return rows;
 }
 
+std::size_t place_of(const MemberResults& member, const io::EnsembleIncrement& row) {
+  const auto place = place_in(
+      member, {.stage = row.stage, .stage_index = row.stage_index, .load_parameter = row.load_parameter});
+  if (!place)
+    throw std::logic_error(fmt::format("{} lacks an increment that all members have", member.folder.string()));
+  return *place;
+}
+
 void reduce_curves(std::span<const MemberResults> members, const BandRule& rule, io::EnsembleData& result) {
   result.reduced = rule.members;
   result.confidence = rule.confidence;
@@ -118,12 +121,14 @@ void reduce_curves(std::span<const MemberResults> members, const BandRule& rule,
 }
 
 double relative_error(std::span<const MemberResults> members, const std::string& column) {
+  const std::vector<io::EnsembleIncrement> rows = common_increments(members);
+  if (rows.empty()) throw std::runtime_error("the members have no increment in common");
   std::vector<std::vector<double>> last;
   for (const MemberResults& member : members) {
-    const auto value = value_of(member.increments.back(), column);
+    const auto value = value_of(member.increments[place_of(member, rows.back())], column);
     if (!value || !std::isfinite(*value))
       throw std::runtime_error(
-          fmt::format("{}: its last increment has no value of {}", member.folder.string(), column));
+          fmt::format("{}: the last increment of all members has no value of {}", member.folder.string(), column));
     last.push_back({*value});
   }
   const BandRule rule = band_rule(static_cast<int>(members.size()));

@@ -23,12 +23,12 @@ constexpr std::array rows{Row{1, {0.10, 0.15, 0.19}, 0.10, 0.05}, Row{8, {0.05, 
 
 double between(double a, double b, double share) { return a + share * (b - a); }
 
-/// Linear between the volume losses of the table; from nothing at V_l = 0.
+/// Linear between the volume losses of the table, constant beyond its ends.
 double at_loss(const std::array<double, 3>& values, double loss) {
   if (loss >= losses.back()) return values.back();
   std::size_t k = 0;
   while (loss > losses[k]) ++k;
-  if (k == 0) return values.front();  // a smaller settlement has no smaller share of scatter
+  if (k == 0) return values.front();
   return between(values[k - 1], values[k], (loss - losses[k - 1]) / (losses[k] - losses[k - 1]));
 }
 
@@ -48,12 +48,12 @@ DrawScatter draw_scatter(int variety, int grains, double volume_loss) {
 
 std::string draw_sentence(const PackingCase& packing, double volume_loss) {
   const DrawScatter scatter = draw_scatter(packing.variety, packing.grains, volume_loss);
+  const bool draws = packing.files.empty() && packing.seeds.empty();  // an ensemble has nothing to draw otherwise
   return fmt::format(
-      "which packings the seeds draw moves the surface's settlement at V_l = {:.3g} % by about {:.0f} %, the least "
-      "ground reaction by {:.0f} % and K0 by {:.0f} % (standard deviations at variety {} and {} grains, "
-      "docs/trust.md); `voussoir ensemble` measures them for this case",
+      "which packings are drawn moves the surface's settlement at V_l = {:.3g} % by about {:.0f} %, the least ground "
+      "reaction by {:.0f} % and K0 by {:.0f} % (standard deviations at variety {} and {} grains, docs/trust.md){}",
       100 * volume_loss, 100 * scatter.settlement, 100 * scatter.reaction, 100 * scatter.k0, packing.variety,
-      packing.grains);
+      packing.grains, draws ? "; `voussoir ensemble` measures them for this case" : "");
 }
 
 }  // namespace voussoir::host

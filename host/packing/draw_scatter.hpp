@@ -16,7 +16,8 @@ struct DrawScatter {
 };
 
 /// Interpolated in the table, which holds for RVEs of 300 grains and volume losses up to 10 %. For other grains the
-/// scatter is taken to go as their number to the power -1/2; a larger volume loss counts as 10 %.
+/// scatter is taken to go as their number to the power -1/2; volume losses below 1 % count as 1 %, those above 10 % as
+/// 10 %.
 /// @param variety packings at the points of the mesh (PackingCase::variety)
 /// @param grains of one RVE
 /// @param volume_loss [-]

@@ -122,6 +122,7 @@ std::size_t run_members(Ensemble& ensemble, std::size_t up_to) {
   while (ensemble.runs.size() < up_to) ensemble.runs.push_back(member_run(ensemble, ensemble.runs.size()));
   const auto added = std::span(ensemble.runs).subspan(before);
   run_processes(added, ensemble.case_file, ensemble.options.runs);
+  write_summary(ensemble.runs, ensemble.options.folder / "summary.csv");  // before anything can fail
   const std::size_t finished_before = ensemble.finished.size();
   for (const ProcessRun& run : added) {
     ensemble.reduced.push_back(!interrupted() && has_all_increments(run, ensemble.input));
@@ -144,7 +145,7 @@ std::optional<double> run_all(Ensemble& ensemble) {
     if (interrupted()) return error;
     if (ensemble.finished.size() >= 2) {
       error = relative_error(ensemble.finished, ensemble.goal->result);
-      std::printf("%zu members: the standard error of %s is %.2f %% of its mean, wanted %.2f %%\n",
+      std::printf("%zu members: the standard error of %s is %.3g %% of its mean, wanted %.3g %%\n",
                   ensemble.finished.size(), ensemble.goal->result.c_str(), 100 * *error, 100 * ensemble.goal->share);
     }
     static_cast<void>(lost_output());
@@ -233,13 +234,13 @@ bool reduce(const Ensemble& ensemble, std::optional<double> error, const RunLock
 /// The outcome of an ensemble whose members are all done but for the goal of --until.
 Outcome judge(const Goal& goal, const Ensemble& ensemble, double error) {
   if (error <= goal.share) {
-    std::printf("it took %zu members: the standard error of %s is %.2f %% of its mean\n", ensemble.finished.size(),
+    std::printf("it took %zu members: the standard error of %s is %.3g %% of its mean\n", ensemble.finished.size(),
                 goal.result.c_str(), 100 * error);
     return Outcome::done;
   }
   std::fprintf(stderr,
-               "voussoir: %zu members were not enough: the standard error of %s is %.2f %% of its mean, and --until "
-               "asks for %.2f %%; a larger -n with --resume goes on\n",
+               "voussoir: %zu members were not enough: the standard error of %s is %.3g %% of its mean, and --until "
+               "asks for %.3g %%; a larger -n with --resume goes on\n",
                ensemble.finished.size(), goal.result.c_str(), 100 * error, 100 * goal.share);
   return Outcome::no_equilibrium;
 }
@@ -259,13 +260,12 @@ Outcome command_ensemble(const fs::path& case_file, const EnsembleOptions& given
   ensemble.options.runs.threads = threads_of_a_run(ensemble.options.runs);
   const std::optional<double> error = run_all(ensemble);
   confirm(lock);
-  write_summary(ensemble.runs, folder / "summary.csv");
-  name_failed(ensemble, true);
-  name_failed(ensemble, false);
   std::vector<RunEnd> ends;
   for (const ProcessRun& run : ensemble.runs) ends.push_back(run.end);
   Outcome outcome = outcome_of(ends);
   if (interrupted() || outcome == Outcome::interrupted) return Outcome::interrupted;
+  name_failed(ensemble, true);
+  name_failed(ensemble, false);
   remove_earlier_reduction(folder);
   if (ensemble.finished.size() < 2) {
     io::write_text(folder / "members.csv", members_csv(members_of(ensemble), ensemble.finished));

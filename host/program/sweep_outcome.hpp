@@ -31,9 +31,7 @@ struct RunEnd {
 /// The rule of outcome_of for `--help`.
 inline constexpr const char* sweep_rule =
     "Sweeps and ensembles tell in summary.csv how each run ended. Their own exit status is the first of these that "
-    "holds "
-    "for a run: "
-    "130 (a run was stopped, or not started because of a request to stop), 4, 2, 3; 0 where all runs are done. A run "
-    "that a signal killed counts as 4.";
+    "holds for a run: 130 (a run was stopped, or not started because of a request to stop), 4, 2, 3; 0 where all runs "
+    "are done. A run that a signal killed counts as 4.";
 
 }  // namespace voussoir::host

@@ -100,4 +100,5 @@ said = run(command("biaxial_bvp", fresh("loose"), [*SPECIMEN, *loose]), code=3)
 check("of this recipe" in (said.stdout + said.stderr), f"a mix without packings: {said.stdout}{said.stderr}")
 said = run([PROGRAM, "check", str(ROOT / "cases/biaxial/case.toml"), "--set", "packing.variety=2"]).stdout
 check("packing.variety" in said and "only kinds with a mesh mix packings" in said, f"the idle key is not said: {said}")
+check("candidates = 1 " in said, f"a key that is not used makes more packings: {said}")
 print("ok")

@@ -20,7 +20,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="tools/budget", description=__doc__)
     parser.add_argument("parts", nargs="*", default=["draws", "knobs"], choices=list(PARTS), metavar="PART",
                         help=f"{', '.join(PARTS)} (draws knobs)")  # fmt: skip
-    parser.add_argument("-n", "--draws", type=int, help="number of draws of a part (24 of draws, 3 of the others)")
+    parser.add_argument(
+        "-n", "--draws", type=int, help="number of draws (default: draws 24, draws_full and knobs 3, knobs_full 1)"
+    )
     parser.add_argument("-j", "--processes", type=int, default=2)
     parser.add_argument("-o", "--output", type=Path, default=Path("out/budget"))
     parser.add_argument("--program", type=Path, default=Path("build/openmp/host/voussoir"))
@@ -35,7 +37,9 @@ def main() -> int:
             sweep = given.output / f"{part}.toml"
             sweep.write_text(plan.sweep_text(runs))
             words = [given.program, "sweep", sweep, "-o", folder, "-j", str(given.processes), "--resume"]
-            subprocess.run(words, check=False)  # a run that fails is counted in the table
+            status = subprocess.run(words, check=False).returncode  # a run that fails is counted in the table
+            if status in (2, 130):  # refused, or stopped on request
+                return status
         table = given.output / f"{part}.md"
         table.write_text(write(runs, folder))
         print(f"wrote {table}")

@@ -93,7 +93,7 @@ KNOBS: dict[str, dict[str, object]] = {
     "700 grains": {"packing.grains": 700},
 }
 MOST_DRAWS = {"preset reference": 1}  # twenty times the work of the base
-# At full size only what differs there: the size of grains over elements, and the finer mesh.
+# At full size only a few knobs, because a run takes 9 min.
 KNOBS_OF_FULL_SIZE = ("base", "20 increments", "preset fast", "variety 1")
 
 

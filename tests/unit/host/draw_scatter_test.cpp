@@ -2,6 +2,7 @@
 #include "host/packing/draw_scatter.hpp"
 
 #include <gtest/gtest.h>
+#include <spdlog/fmt/fmt.h>
 
 namespace voussoir::host {
 namespace {
@@ -16,6 +17,15 @@ TEST(DrawScatter, FallsWithVarietyAndGrainsAndGrowsWithVolumeLoss) {
   }
   EXPECT_DOUBLE_EQ(draw_scatter(1, 1200, 0.1).settlement, 0.5 * draw_scatter(1, 300, 0.1).settlement);
   EXPECT_LT(draw_scatter(1, 300, 0.01).settlement, draw_scatter(1, 300, 0.1).settlement);
+}
+
+TEST(DrawScatter, EachResultScattersLessWithEightPackings) {
+  const DrawScatter one = draw_scatter(1, 300, 0.1), eight = draw_scatter(8, 300, 0.1);
+  EXPECT_LT(eight.settlement, 0.8 * one.settlement);
+  EXPECT_LT(eight.reaction, 0.8 * one.reaction);
+  EXPECT_LT(eight.k0, 0.8 * one.k0);
+  EXPECT_LT(one.k0, one.settlement);
+  EXPECT_LT(one.k0, one.reaction);
 }
 
 TEST(DrawScatter, IsTheTablesBeyondItsEnds) {
@@ -37,6 +47,13 @@ TEST(DrawScatter, IsSaidWithTheNumbersItHoldsFor) {
   EXPECT_NE(sentence.find("V_l = 10 %"), std::string::npos) << sentence;
   EXPECT_NE(sentence.find("variety 4 and 300 grains"), std::string::npos) << sentence;
   EXPECT_NE(sentence.find("voussoir ensemble"), std::string::npos) << sentence;
+  const DrawScatter scatter = draw_scatter(4, 300, 0.1);
+  EXPECT_NE(sentence.find(fmt::format("by about {:.0f} %, the least ground reaction by {:.0f} % and K0 by {:.0f} %",
+                                      100 * scatter.settlement, 100 * scatter.reaction, 100 * scatter.k0)),
+            std::string::npos)
+      << sentence;
+  packing.seeds = {1, 2};
+  EXPECT_EQ(draw_sentence(packing, 0.1).find("voussoir ensemble"), std::string::npos);
 }
 
 }  // namespace
