@@ -315,7 +315,7 @@ class Trial:
             return None
         folder = Path("out_" + self.file.stem)
         shutil.rmtree(folder, ignore_errors=True)
-        done = self.do("run", str(self.file), "-o", str(folder), "--threads", "1", timeout=120)
+        done = self.do("run", str(self.file), "-o", str(folder), "--threads", "1", timeout=600)
         if done is None:
             return f"{self.name}: `run` hangs"
         try:
