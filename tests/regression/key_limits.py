@@ -310,7 +310,7 @@ class Trial:
         checked = self.check()
         if checked is None:
             return f"{self.name}: `check` hangs"
-        if checked.returncode == 0 and self.too_long(checked.stdout):
+        if checked.returncode == 0 and (self.too_long(checked.stdout) or self.name in LONG_BY_NATURE):
             print(f"foretold to be long: {self.name}")
             return None
         folder = Path("out_" + self.file.stem)
@@ -332,6 +332,10 @@ class Trial:
         if done.returncode != 0:
             print(f"{done.returncode}: {self.name}: {done.stderr.strip()[-150:]}")
         return f"{self.name}: {wrong[0]} holds a number that is none" if wrong else None
+
+
+# Packings of so many grains take longer to make than all else, which `check` does not foretell.
+LONG_BY_NATURE = {"calibrate: calibrate.confirm_grains = 20000"}
 
 
 def all_finite(file):
