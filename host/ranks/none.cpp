@@ -15,7 +15,7 @@ int rank_count() { return 1; }
 std::string rank_library() { return "no MPI"; }
 void start_ranks(int, InstructionSetChoice) {}
 
-std::unique_ptr<fem::MaterialBatch> make_rank_pool(PackedRve, const PoolOptions&, std::size_t, PackingNote) {
+std::unique_ptr<fem::MaterialBatch> make_rank_pool(PackingMix, const PoolOptions&, PackingNote) {
   throw std::logic_error("a build without MPI has no pool of ranks");
 }
 
