@@ -66,6 +66,12 @@ void check_foreign_packing(const io::Table& root, const std::filesystem::path& n
           "thickness", fmt::format("this case has {}, {} was made with {}", length(input.soil.thickness), maker,
                                    length(file.thickness)));
     }
+    const std::string first = input.packing.files.front().string();
+    if (name != first) {  // the RVEs of a mesh share one thickness, since their stresses are forces over it
+      throw root.table("packing").error(
+          "file", fmt::format("names packings of different thickness: {} in {} and {} in {}",
+                              length(input.soil.thickness), first, length(file.thickness), name.string()));
+    }
     input.remarks.push_back(fmt::format("soil.thickness: {} has {}, which the run takes; the case gives none", maker,
                                         length(file.thickness)));
     input.soil.thickness = file.thickness;
@@ -84,20 +90,6 @@ void check_foreign_packing(const io::Table& root, const std::filesystem::path& n
   }
 }
 
-/// The RVEs of a mesh share one thickness, since their stresses are forces over it.
-void check_one_thickness(const io::Table& root, const Case& input) {
-  for (const std::filesystem::path& name : input.packing.files) {
-    if (input.packing.has_state()) continue;
-    const double thickness = io::load_packing_csv(name).thickness;
-    if (thickness == input.soil.thickness) continue;
-    throw root.table("packing").error("file",
-                                      fmt::format("names packings of different thickness: {} in {} and {} in {}",
-                                                  io::format_quantity(thickness, io::Dimension::length), name.string(),
-                                                  io::format_quantity(input.soil.thickness, io::Dimension::length),
-                                                  input.packing.files.back().string()));
-  }
-}
-
 }  // namespace
 
 void check_packing_origin(const io::Table& root, Case& input) {
@@ -109,7 +101,6 @@ void check_packing_origin(const io::Table& root, Case& input) {
       check_foreign_packing(root, name, input);
     }
   }
-  check_one_thickness(root, input);
 }
 
 }  // namespace voussoir::host

@@ -244,9 +244,7 @@ PackedRve choose_packing(const SoilCase& soil, const PackingCase& recipe, const 
 }
 
 PackingMix choose_packings(const SoilCase& soil, const PackingCase& recipe, std::size_t n, const PackingNote& note) {
-  const auto variety = static_cast<std::size_t>(recipe.variety);
-  std::vector<PackedRve> packings = least_biased(soil, recipe, variety, note);
-  return variety == 1 ? clones_of(std::move(packings.front()), n) : mix(std::move(packings), n, recipe.seed);
+  return mix(least_biased(soil, recipe, static_cast<std::size_t>(recipe.variety), note), n, recipe.seed);
 }
 
 }  // namespace voussoir::host
