@@ -15,7 +15,7 @@ namespace voussoir::fem {
 struct RelaxationOptions {
   int max_substeps = 100;  ///< most substeps of one relaxation; with 0 increments are never relaxed
   int max_attempts = 3;    ///< Newton's iterates from the committed state that precede a relaxation
-  int max_settling = 3;    ///< substeps at equilibrium that let grains at their step limit come to rest
+  int max_settling = 30;   ///< substeps at equilibrium that let grains at their step limit come to rest
   /// Residual, over the reference of the tolerance, below which Newton's iterates end at once and the increment is
   /// relaxed [-].
   double near_residual = 0.4;

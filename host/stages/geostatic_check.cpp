@@ -97,11 +97,11 @@ GeostaticCheck check_geostatic(const Ground& ground, const GroundCase& soil) {
 std::string describe(const GeostaticCheck& check) {
   constexpr double degree = std::numbers::pi / 180.0;
   return fmt::format(
-      "the vertical stress is within {:.3g} Pa of the stress at rest ({:.2f} of the allowed 5 % + 1 kPa), the means of "
-      "rows within {:.2f} of 2 % + 0.5 kPa, with a scatter of up to {:.2g} %; K0 is {:.3f} to {:.3f}; the principal "
-      "axis "
-      "is off the vertical by {:.2g} deg (mean), {:.2g} deg (largest), {:.2g} deg (largest from 100 kPa on)",
-      check.vertical_error, check.vertical_ratio, check.row_ratio, 100 * check.row_scatter, check.k0_minimum,
+      "the means of the vertical stress over rows of points are within {:.2f} of the allowed 2 % + 0.5 kPa of the "
+      "stress at rest, a row scatters by up to {:.2g} %, and single points are off by at most {:.3g} Pa ({:.2f} times "
+      "5 % + 1 kPa); K0 is {:.3f} to {:.3f}; the principal axis is off the vertical by {:.2g} deg (mean), {:.2g} deg "
+      "(largest), {:.2g} deg (largest from 100 kPa on)",
+      check.row_ratio, 100 * check.row_scatter, check.vertical_error, check.vertical_ratio, check.k0_minimum,
       check.k0_maximum, check.deflection_mean / degree, check.deflection_max / degree, check.deflection_deep / degree);
 }
 

@@ -44,6 +44,7 @@ RUNS: dict[str, tuple[list[str], list[str]]] = {
     "tunnel_quick": (
         [
             SAND,
+            "packing.variety=1",
             "ground.mesh_size_opening=2.5 m",
             "ground.mesh_size_far=8 m",
             "gravity.uniform_step=0.1",
@@ -82,9 +83,10 @@ for soil, file, grains, seeds, strain in (
     confirmed = [f"calibrate.confirm_grains={grains}", "calibrate.confirm_seeds=[1, 2]"]
     RUNS[f"calibrate_{soil}"] = ([*common, *made, *confirmed], [])
     SEARCHES[f"calibrate_{soil}"] = [*common, file, "packing.seeds=[0]"]
-# The study's tunnels: few grains and elements and a first step of the volume loss; their meshes are counted in full
-# size.
+# The study's tunnels: one packing of few grains, few elements and a first step of the volume loss. Their meshes are
+# counted in full size.
 STUDY = [
+    "packing.variety=1",
     "ground.mesh_size_opening=2.5 m",
     "ground.mesh_size_far=17 m",
     "ground.width=8 m",

@@ -39,7 +39,7 @@ commands = {
     "calibrate": command("calibrate_cps_d", fresh("out_calibrate"), [*LOOSE, *calibration]),
     "biaxial_bvp": command("biaxial_bvp", fresh("out_biaxial_bvp"), LOOSE),
     "column": command("column", fresh("out_column"), [*LOOSE, "column.elements=2"]),
-    "tunnel": command("tunnel_quick", fresh("out_tunnel"), [*LOOSE, *GROUND]),
+    "tunnel": command("tunnel_quick", fresh("out_tunnel"), [*LOOSE, "packing.variety=1", *GROUND]),
 }
 for kind, words in commands.items():
     done = run(words, code=3)

@@ -28,7 +28,7 @@ REASONS = [
 
 COARSE = ["ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m", "column.elements=2", "gravity.ratio=10"]
 STEPS = ["gravity.uniform_step=1", "volume_loss.total=0.5 %", "volume_loss.increments=2"]
-GRAINS = ["packing.grains=60", "packing.candidates=1"]
+GRAINS = ["packing.grains=60", "packing.candidates=1", "packing.variety=1"]
 SPECIMEN = ["material=linear_elastic", "biaxial_bvp.strain=2 %", "biaxial_bvp.strain_step=0.5 %"]
 TEST = ['biaxial.pressures=["100 kPa"]', "biaxial.strain=2 %", "biaxial.inertial_number=1e-3", "packing.seeds=[1, 2]"]
 SEARCH = [

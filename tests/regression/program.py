@@ -21,6 +21,7 @@ NOT_COMPARED = {"wall_s", "peak_memory", "time_grains", "time_assembly", "time_s
 SMALL_TUNNEL = [
     "packing.grains=100",
     "packing.candidates=1",
+    "packing.variety=1",
     "packing.folder=packings",
     "ground.mesh_size_opening=2.5 m",
     "ground.mesh_size_far=8 m",

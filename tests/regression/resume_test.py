@@ -103,6 +103,7 @@ check(not (started / "column").exists(), "a replaced run left its column")
 GRAINS = [
     "packing.grains=100",
     "packing.candidates=1",
+    "packing.variety=1",
     "packing.folder=packings",
     "ground.mesh_size_opening=2.5 m",
     "ground.mesh_size_far=8 m",

@@ -16,7 +16,7 @@ RESULTS = {
     "settlement_5": ("at 5 %", "mm", 1e3),
     "settlement_10": ("at 10 %", "mm", 1e3),
     "width": ("K_s at 10 %", "-", 1.0),
-    "reaction": ("least ground reaction", "-", 1.0),
+    "reaction": ("least ground reaction until 10 %", "-", 1.0),
     "k0": ("K0 at the tunnel's axis", "-", 1.0),
 }
 
@@ -40,7 +40,7 @@ def _lanes_share(folder: Path) -> float:
 
 
 def measured(folder: Path) -> Measured | None:
-    """The results of a run; None where it has not come to V_l = 10 %."""
+    """The results of a run until V_l = 10 %; None where it has not come to V_l = 10 %."""
     cache = folder / "budget.json"
     index = folder / "run.h5"
     if not index.exists():
@@ -54,7 +54,8 @@ def measured(folder: Path) -> Measured | None:
         if last is None:
             return None
         trough = Trough(result, last, 0.0)
-        reaction = float(np.min(curve(result)[1]))
+        loss, ratio, _ = curve(result)
+        reaction = float(np.min(ratio[loss <= 0.1 * (1 + 1e-9)]))
     except Missing:
         return None
     with h5py.File(index) as file:
