@@ -32,6 +32,7 @@ struct GroupRun {
   RunScales scales;
   std::array<RveCourse<Drive>, width> lanes;
   std::array<LaneList<Law>, width> lists;
+  std::array<int, width> steps_before;  ///< steps that a lane had made when the group began
   GroupState<Law> group;
   UnionBuilder<Law> builder;
   SpringSystem<V> springs;             ///< empty unless the static tangent is asked for
@@ -40,6 +41,12 @@ struct GroupRun {
   std::vector<KeptContact<Law>> kept;  ///< scratch of a restore or rebase
   Regions regions;
 };
+
+/// The step of a lane's own course at a step of its group.
+template <class Run>
+[[nodiscard]] int step_of(const Run& run, std::size_t l, int step) {
+  return run.steps_before[l] + step;
+}
 
 /// Current volume of a lane's cell [m^3].
 template <class Run>
