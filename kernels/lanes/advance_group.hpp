@@ -34,6 +34,16 @@ void move_cells(Run& run, int step) {
   for (std::size_t l = 0; l < Run::width; ++l) move_cell(run.lanes[l], step_of(run, l, step), run.group.motion, l);
 }
 
+template <Sweep mode, class Run>
+void sweep(Run& run, SweepSums<typename Run::Value>& sums) {
+  if constexpr (Run::is_spread) {
+    if (!run.spread.holds()) run.spread.take(run.group);
+    run.spread.template sweep<mode>(run.group.motion, run.group.local_damping, sums);
+  } else {
+    sweep_pairs<mode>(run.group, sums);
+  }
+}
+
 /// Acts on a measuring step: lanes that are lost are given up, lanes at their end are frozen.
 template <class Run>
 void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums) {
@@ -76,7 +86,7 @@ int advance_group(Run& run, Queue& queue, std::span<RveReport> reports) {
     const bool measure = measures(run, step);
     {
       const Region region(run.regions, "sweep");
-      measure ? sweep_pairs<Sweep::measure>(run.group, sums) : sweep_pairs<Sweep::advance>(run.group, sums);
+      measure ? sweep<Sweep::measure>(run, sums) : sweep<Sweep::advance>(run, sums);
     }
     if (measure) {
       judge_lanes(run, step, sums);

@@ -30,6 +30,7 @@ struct ParkedLane {
 template <class Run>
 [[nodiscard]] ParkedLane<typename Run::Law, typename Run::Drive> park(Run& run, std::size_t l, int step) {
   ParkedLane<typename Run::Law, typename Run::Drive> out;
+  gather_spread(run);
   gather_lane(run.group, l, run.lists[l].pairs);
   out.next_step = step_of(run, l, step);
   out.course = std::exchange(run.lanes[l], {});
