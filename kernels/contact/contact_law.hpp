@@ -139,6 +139,19 @@ inline constexpr int history_size = [] {
 template <class Law, class Number>
 using HistoryNumbers = std::array<Number, static_cast<std::size_t>(history_size<Law>)>;
 
+/// The same law over another value type. The value type is the first argument of a law's template; a second one may say
+/// whether grains resist rolling.
+template <class Law, class V>
+struct LawOver;
+template <template <class, bool> class Law, class Value, bool rolling, class V>
+struct LawOver<Law<Value, rolling>, V> {
+  using type = Law<V, rolling>;
+};
+template <template <class> class Law, class Value, class V>
+struct LawOver<Law<Value>, V> {
+  using type = Law<V>;
+};
+
 /// The history of a contact that has never touched.
 template <class Law>
 [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION typename Law::History no_history() {

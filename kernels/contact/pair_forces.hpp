@@ -40,8 +40,9 @@ KOKKOS_FORCEINLINE_FUNCTION V excess_over(const V& e, const V& e2) {
 
 /// Computes e = -g/R^2, then z, then q = z/y = e - (1 - e) z. About half of e is left after this subtraction, so it
 /// loses no digits.
-template <class Law, class V>
-KOKKOS_FORCEINLINE_FUNCTION PairDistance<V> distance_of(const V& gap, const PairShape<Law>& shape) {
+/// @tparam Shape PairShape, or its numbers pair by pair (lanes/spread_rve.hpp)
+template <class Shape, class V>
+KOKKOS_FORCEINLINE_FUNCTION PairDistance<V> distance_of(const V& gap, const Shape& shape) {
   const auto touches = gap < V(0);
   const V e = gap * V(shape.minus_inverse_sum_squared);
   const V z = Kokkos::Experimental::condition(touches, e * excess_over(e, e * e), V(0));
@@ -72,8 +73,8 @@ KOKKOS_FORCEINLINE_FUNCTION PairGeometry<V> geometry_of(const PairLanes<Law>& pa
 }
 
 /// e = -g/R^2 of a pair; 0 in lanes where the pair does not touch.
-template <class Law, class V>
-KOKKOS_FORCEINLINE_FUNCTION V overlap_measure(const PairGeometry<V>& at, const PairShape<Law>& shape) {
+template <class Shape, class V>
+KOKKOS_FORCEINLINE_FUNCTION V overlap_measure(const PairGeometry<V>& at, const Shape& shape) {
   return Kokkos::Experimental::condition(at.gap < V(0), at.gap * V(shape.minus_inverse_sum_squared), V(0));
 }
 
@@ -93,10 +94,10 @@ KOKKOS_FORCEINLINE_FUNCTION GrainRim<V> rim_of(const V& radius, const V& spin) {
 /// Applies the law to a pair that touches in at least one lane, and returns what the pair does to its grains. (dw_x,
 /// dw_y) is w_j - w_i. The branch is not made a unit vector, because n and t are needed only in products that can be
 /// divided by |b| afterwards. D_xx b is subtracted from D b, which changes nothing, since b has no part along t.
-template <class Law, class V>
-KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<Law>& pair, const PairShape<Law>& shape,
-                                              const PairGeometry<V>& at, const CellMotion<V>& cell, const V& dw_x,
-                                              const V& dw_y, const GrainRim<V>& i, const V& spin_j) {
+template <class Law, class Shape, class V>
+KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<Law>& pair, const Shape& shape, const PairGeometry<V>& at,
+                                              const CellMotion<V>& cell, const V& dw_x, const V& dw_y,
+                                              const GrainRim<V>& i, const V& spin_j) {
   const PairDistance<V> distance = distance_of(at.gap, shape);
   const V vx = fused(cell.d_xy, at.branch_y, dw_x);
   const V vy = fused(cell.d_xy, at.branch_x, fused(cell.d_difference, at.branch_y, dw_y));

@@ -1,8 +1,11 @@
 #pragma once
-/// Brings one group from its committed to its trial states: it is restored, goes through the time loop, in which lanes
-/// that have ended stand still, and is finished.
+/// Brings the lanes of one group to their trial states: the group goes through the time loop, in which lanes that have
+/// ended stand still, and is finished.
+
+#include <algorithm>
 
 #include "kernels/lanes/finish.hpp"
+#include "kernels/lanes/park.hpp"
 #include "kernels/lanes/rebase.hpp"
 #include "kernels/lanes/record.hpp"
 #include "kernels/lanes/restore.hpp"
@@ -11,25 +14,34 @@
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
 template <class Run>
-[[nodiscard]] bool any_running(const Run& run) {
-  for (const auto& lane : run.lanes) {
-    if (lane.running) return true;
-  }
-  return false;
+[[nodiscard]] int running_lanes(const Run& run) {
+  return static_cast<int>(
+      std::count_if(run.lanes.begin(), run.lanes.end(), [](const auto& lane) { return lane.running; }));
 }
 
+/// Whether a lane looks at its stress or overlaps in this step.
 template <class Run>
 [[nodiscard]] bool measures(const Run& run, int step) {
-  if (guards(run.settings, step)) return true;
-  for (const auto& lane : run.lanes) {
-    if (lane.running && lane.drive.looks(step)) return true;
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    const int own = step_of(run, l, step);
+    if (run.lanes[l].running && (guards(run.settings, own) || run.lanes[l].drive.looks(own))) return true;
   }
   return false;
 }
 
 template <class Run>
 void move_cells(Run& run, int step) {
-  for (std::size_t l = 0; l < Run::width; ++l) move_cell(run.lanes[l], step, run.group.motion, l);
+  for (std::size_t l = 0; l < Run::width; ++l) move_cell(run.lanes[l], step_of(run, l, step), run.group.motion, l);
+}
+
+template <Sweep mode, class Run>
+void sweep(Run& run, SweepSums<typename Run::Value>& sums) {
+  if constexpr (Run::is_spread) {
+    if (!run.spread.holds()) run.spread.take(run.group);
+    run.spread.template sweep<mode>(run.group.motion, run.group.local_damping, sums);
+  } else {
+    sweep_pairs<mode>(run.group, sums);
+  }
 }
 
 /// Acts on a measuring step: lanes that are lost are given up, lanes at their end are frozen.
@@ -39,7 +51,7 @@ void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums)
     auto& lane = run.lanes[l];
     if (!lane.running) continue;
     Measurement seen;
-    switch (judge(lane, step, run.settings, sums, l, run.lists[l].cell, run.scales, seen)) {
+    switch (judge(lane, step_of(run, l, step), run.settings, sums, l, run.lists[l].cell, run.scales, seen)) {
       case Outcome::running:
         break;
       case Outcome::ended:
@@ -52,16 +64,21 @@ void judge_lanes(Run& run, int step, const SweepSums<typename Run::Value>& sums)
   }
 }
 
-/// Advances the group of `members`. @param requests, reports by RVE
-template <class Run>
-void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int>(Run::width)>& members,
-                   std::span<const typename Run::Drive::Request> requests, const EngineSettings& settings,
-                   std::span<RveReport> reports) {
-  run.batch = &batch;
-  run.settings = settings;
-  run.packing = &batch.packing(static_cast<std::size_t>(members[0]));
-  restore(run, members, requests);
-  for (int step = 0; any_running(run); ++step) {
+/// Puts all lanes that run aside, before `step`.
+template <class Run, class Queue>
+void park_rest(Run& run, int step, Queue& queue) {
+  const Region region(run.regions, "restore");
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    if (run.lanes[l].running) queue.put_aside(park(run, l, step));
+  }
+}
+
+/// Advances the lanes of a group until they have ended or the queue takes those that are left.
+/// @param reports by RVE @return the steps that the group has made
+template <class Run, class Queue>
+int advance_group(Run& run, Queue& queue, std::span<RveReport> reports) {
+  int step = 0;
+  for (int running = running_lanes(run); running > 0; ++step) {
     move_cells(run, step);
     check_lists(run, step);
     record_microstructures(run, step);
@@ -69,11 +86,16 @@ void advance_group(Run& run, RveBatch& batch, const GroupMembers<static_cast<int
     const bool measure = measures(run, step);
     {
       const Region region(run.regions, "sweep");
-      measure ? sweep_pairs<Sweep::measure>(run.group, sums) : sweep_pairs<Sweep::advance>(run.group, sums);
+      measure ? sweep<Sweep::measure>(run, sums) : sweep<Sweep::advance>(run, sums);
     }
-    if (measure) judge_lanes(run, step, sums);
+    if (measure) {
+      judge_lanes(run, step, sums);
+      if (queue.wants(*run.packing, running_lanes(run))) park_rest(run, step + 1, queue);
+    }
+    running = running_lanes(run);
   }
   finish(run, reports);
+  return step;
 }
 
 }  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

@@ -9,6 +9,7 @@
 #include "kernels/course/regions.hpp"
 #include "kernels/course/rve_course.hpp"
 #include "kernels/lanes/lists.hpp"
+#include "kernels/lanes/spread_rve.hpp"
 #include "kernels/tangents/loading_tangent.hpp"
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
@@ -16,6 +17,9 @@ namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 /// Members of a group by lane; -1 is an empty lane. All share one packing.
 template <int width>
 using GroupMembers = std::array<int, static_cast<std::size_t>(width)>;
+
+/// What a group of many lanes has in place of a SpreadRve.
+struct NotSpread {};
 
 template <class LawType, class DriveType>
 struct GroupRun {
@@ -25,6 +29,7 @@ struct GroupRun {
   using Drive = DriveType;
   using real = real_of<V>;
   static constexpr std::size_t width = static_cast<std::size_t>(lane_count<V>);
+  static constexpr bool is_spread = width == 1 && lane_count<WideLane<real>> > 1;
 
   RveBatch* batch = nullptr;
   const Packing* packing = nullptr;
@@ -32,7 +37,9 @@ struct GroupRun {
   RunScales scales;
   std::array<RveCourse<Drive>, width> lanes;
   std::array<LaneList<Law>, width> lists;
+  std::array<int, width> steps_before;  ///< steps that a lane had made when the group began
   GroupState<Law> group;
+  std::conditional_t<is_spread, SpreadRve<typename LawOver<Law, WideLane<real>>::type, Law>, NotSpread> spread;
   UnionBuilder<Law> builder;
   SpringSystem<V> springs;             ///< empty unless the static tangent is asked for
   StepSystem<V> step;                  ///< empty unless the loading tangent is asked for
@@ -41,15 +48,30 @@ struct GroupRun {
   Regions regions;
 };
 
+/// The step of a lane's own course at a step of its group.
+template <class Run>
+[[nodiscard]] int step_of(const Run& run, std::size_t l, int step) {
+  return run.steps_before[l] + step;
+}
+
 /// Current volume of a lane's cell [m^3].
 template <class Run>
 [[nodiscard]] double volume_of(const Run& run, std::size_t l) {
   return current_cell(run.lanes[l], run.lists[l].cell).det() * run.scales.thickness;
 }
 
+/// Brings what an RVE that is spread over the lanes has become back into its group.
+template <class Run>
+void gather_spread(Run& run) {
+  if constexpr (Run::is_spread) {
+    if (run.spread.holds()) run.spread.give(run.group);
+  }
+}
+
 /// Makes the lane stand still; no later step can change its numbers.
 template <class Run>
 void freeze(Run& run, std::size_t l, RveStatus status) {
+  gather_spread(run);
   run.lanes[l].running = false;
   run.lanes[l].status = status;
   for (auto& g : run.group.grains) g.w_x[l] = g.w_y[l] = g.spin[l] = 0;

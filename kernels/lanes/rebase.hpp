@@ -52,6 +52,7 @@ void rebase(Run& run, std::size_t l) {
 /// Renews the lists of the stale lanes, and the union of all lists.
 template <class Run>
 VOUSSOIR_OWN_SYMBOL void rebuild(Run& run, const std::array<bool, Run::width>& stale) {
+  gather_spread(run);
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0 || (stale[l] && !run.lanes[l].running)) continue;  // empty, or just discarded
     gather_lane(run.group, l, run.lists[l].pairs);
@@ -77,15 +78,21 @@ template <class Run>
 template <class Run>
 void check_lists(Run& run, int step) {
   bool due = false;
-  for (const auto& lane : run.lanes) due = due || (lane.running && step >= lane.next_list_check);
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    due = due || (run.lanes[l].running && step_of(run, l, step) >= run.lanes[l].next_list_check);
+  }
   if (!due) return;
+  if constexpr (Run::is_spread) {
+    if (run.spread.holds()) run.spread.give_grains(run.group);
+  }
   const auto motion = motion_of(run.group);
   std::array<bool, Run::width> stale{};
   bool any = false;
   for (std::size_t l = 0; l < Run::width; ++l) {
     const auto& lane = run.lanes[l];
-    if (!lane.running || step < lane.next_list_check) continue;
-    stale[l] = is_stale(run, l, motion, step);
+    const int own = step_of(run, l, step);
+    if (!lane.running || own < lane.next_list_check) continue;
+    stale[l] = is_stale(run, l, motion, own);
     any = any || stale[l];
   }
   if (!any) return;

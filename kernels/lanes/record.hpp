@@ -44,7 +44,8 @@ void record_microstructures(Run& run, int step) {
   if constexpr (Run::Drive::can_record) {
     for (std::size_t l = 0; l < Run::width; ++l) {
       auto& lane = run.lanes[l];
-      if (!lane.running || !lane.drive.records(step)) continue;
+      if (!lane.running || !lane.drive.records(step_of(run, l, step))) continue;
+      gather_spread(run);
       Microstructure m;
       for (const auto& g : run.group.grains) m.grain_rotation += static_cast<double>(g.rotation[l]);
       m.grain_rotation = lane.rotation + m.grain_rotation / run.group.n_grains;

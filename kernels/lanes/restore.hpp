@@ -44,12 +44,16 @@ template <class Run>
   return true;
 }
 
-/// Sets the grains' constants, and their motions to zero, for all lanes.
+/// Empties all lanes: sets the grains' constants, and their motions to zero.
 template <class Run>
-void restore_grains(Run& run) {
+void begin_group(Run& run) {
   using V = typename Run::Value;
   const Packing& packing = *run.packing;
   const std::size_t n = packing.radii.size();
+  run.scales = scales_of<typename Run::Law>(packing, run.settings);
+  run.lanes.fill({});
+  run.steps_before.fill(0);
+  for (auto& list : run.lists) list.pairs.clear();
   run.group.n_grains = packing.size();
   run.group.local_damping = packing.local_damping;
   run.group.grains.assign(n, GrainLanes<V>{V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0), V(0)});
@@ -65,11 +69,8 @@ template <class Run>
 VOUSSOIR_OWN_SYMBOL void restore(Run& run, const GroupMembers<static_cast<int>(Run::width)>& members,
                                  std::span<const typename Run::Drive::Request> requests) {
   const Region region(run.regions, "restore");
-  run.scales = scales_of<typename Run::Law>(*run.packing, run.settings);
-  restore_grains(run);
+  begin_group(run);
   for (std::size_t l = 0; l < Run::width; ++l) {
-    run.lanes[l] = {};
-    run.lists[l].pairs.clear();
     if (members[l] < 0) continue;
     run.lanes[l].rve = members[l];
     run.lanes[l].drive = typename Run::Drive(requests[static_cast<std::size_t>(members[l])], run.scales, run.settings);

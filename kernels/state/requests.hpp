@@ -1,6 +1,7 @@
 #pragma once
 /// The requests that a caller makes of the engine, and the cost of an answer.
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -80,8 +81,8 @@ struct ServoRequest {
 };
 
 /// Steps that a request is expected to take: RVEs of similar work advance together.
-[[nodiscard]] inline int predicted_steps(const StrainRequest& r) { return r.strain_steps + r.hold_cap / 4; }
-[[nodiscard]] inline int predicted_steps(const ServoRequest& r) { return r.max_steps; }
+[[nodiscard]] inline int predicted_steps(const StrainRequest& r, int last) { return std::max(r.strain_steps, last); }
+[[nodiscard]] inline int predicted_steps(const ServoRequest& r, int) { return r.max_steps; }
 
 /// The work of one call of the engine.
 struct Work {

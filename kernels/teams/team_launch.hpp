@@ -128,12 +128,13 @@ void append_samples(const Batch&, std::span<const StrainRequest>) {}
 template <class Space, class Law, class Drive>
 [[nodiscard]] TeamBatch<real_of<typename Law::Value>, Drive, Space> team_batch(
     const RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
-    std::span<const int> rves) {
+    std::span<const RveReport> reports, std::span<const int> rves) {
+  const auto steps = [&](int rve) {
+    const auto k = static_cast<std::size_t>(rve);
+    return predicted_steps(requests[k], reports[k].steps);
+  };
   std::vector<int> order(rves.begin(), rves.end());
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
-    return predicted_steps(requests[static_cast<std::size_t>(a)]) >
-           predicted_steps(requests[static_cast<std::size_t>(b)]);
-  });
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return steps(a) > steps(b); });
   std::vector<Drive> drives;
   std::vector<RunScales> scales;
   for (const Packing& packing : batch.packings) scales.push_back(scales_of<Law>(packing, settings));
@@ -165,7 +166,7 @@ Work launch_teams(RveBatch& batch, std::span<const typename Drive::Request> requ
   }
   if (rves.empty()) return {};
   const Kokkos::Profiling::ScopedRegion region("voussoir::teams");
-  Kernel kernel{.batch = team_batch<Space, Law, Drive>(batch, requests, settings, rves), .settings = settings};
+  Kernel kernel{.batch = team_batch<Space, Law, Drive>(batch, requests, settings, reports, rves), .settings = settings};
   auto policy = team_policy(static_cast<int>(rves.size()), settings.team_size, kernel);
   policy.set_chunk_size(1);
   ask_for_scratch(policy, kernel);
