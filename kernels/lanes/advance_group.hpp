@@ -73,29 +73,42 @@ void park_rest(Run& run, int step, Queue& queue) {
   }
 }
 
+/// Makes one step of all lanes of a group. True where lanes may have ended.
+template <class Run>
+[[nodiscard]] bool advance_step(Run& run, int step) {
+  move_cells(run, step);
+  check_lists(run, step);
+  record_microstructures(run, step);
+  SweepSums<typename Run::Value> sums;
+  const bool measure = measures(run, step);
+  {
+    const Region region(run.regions, "sweep");
+    measure ? sweep<Sweep::measure>(run, sums) : sweep<Sweep::advance>(run, sums);
+  }
+  if (measure) judge_lanes(run, step, sums);
+  return measure;
+}
+
 /// Advances the lanes of a group until they have ended or the queue takes those that are left.
 /// @param reports by RVE @return the steps that the group has made
 template <class Run, class Queue>
 int advance_group(Run& run, Queue& queue, std::span<RveReport> reports) {
   int step = 0;
   for (int running = running_lanes(run); running > 0; ++step) {
-    move_cells(run, step);
-    check_lists(run, step);
-    record_microstructures(run, step);
-    SweepSums<typename Run::Value> sums;
-    const bool measure = measures(run, step);
-    {
-      const Region region(run.regions, "sweep");
-      measure ? sweep<Sweep::measure>(run, sums) : sweep<Sweep::advance>(run, sums);
-    }
-    if (measure) {
-      judge_lanes(run, step, sums);
-      if (queue.wants(*run.packing, running_lanes(run))) park_rest(run, step + 1, queue);
-    }
+    if (advance_step(run, step) && queue.wants(*run.packing, running_lanes(run))) park_rest(run, step + 1, queue);
     running = running_lanes(run);
   }
   finish(run, reports);
   return step;
+}
+
+/// Advances the one lane of `run` to its end and returns it. @param steps receives the steps made
+template <class Run>
+[[nodiscard]] ParkedLaneOf<Run> advance_alone(Run& run, int& steps) {
+  int step = 0;
+  for (; run.lanes[0].running; ++step) static_cast<void>(advance_step(run, step));
+  steps = step;
+  return park(run, 0, step);
 }
 
 }  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

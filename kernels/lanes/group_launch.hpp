@@ -14,29 +14,69 @@
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
-/// Runs groups of the queue until there are none. @return the steps of their lanes x grains, empty lanes included
+/// A worker: its group, and the RVE that it advances alone.
 template <class Run>
-std::size_t work_off(Run& run, GroupQueue<Run>& queue, RveBatch& batch,
-                     std::span<const typename Run::Drive::Request> requests, std::span<RveReport> reports,
-                     RegionTeller& teller) {
-  std::size_t lane_steps = 0;
-  typename GroupQueue<Run>::Task task;
-  run.batch = &batch;
-  while (queue.next(task)) {
-    const typename GroupQueue<Run>::Turn running(queue);
-    const RegionTeller::Turn turn(teller);
-    run.regions = turn.regions();
-    run.packing = &batch.packings[static_cast<std::size_t>(task.packing)];
-    if (task.parked.empty()) {
-      restore(run, task.members, requests);
-    } else {
-      unpark(run, std::span(task.parked));
+class Worker {
+ public:
+  using Queue = GroupQueue<Run>;
+  using Alone = GroupRun<typename LawOver<typename Run::Law, SingleLane<typename Run::real>>::type,
+                         typename Run::Drive>;
+
+  Worker(RveBatch& batch, const EngineSettings& settings)
+      : batch_(&batch), settings_(settings), group_(std::make_unique<Run>()) {}
+
+  /// Runs tasks of the queue until there are none. @return the steps of their lanes x grains, empty lanes included
+  [[nodiscard]] std::size_t work_off(Queue& queue, std::span<const typename Run::Drive::Request> requests,
+                                     std::span<RveReport> reports, RegionTeller& teller) {
+    std::size_t lane_steps = 0;
+    typename Queue::Task task;
+    while (queue.next(task)) {
+      const typename Queue::Turn running(queue);
+      const RegionTeller::Turn turn(teller);
+      const auto grains = static_cast<std::size_t>(packing_of(task).size());
+      if (task.kind == Queue::Kind::alone) {
+        lane_steps += grains * static_cast<std::size_t>(advance_one(queue, task, turn));
+        continue;
+      }
+      prepare(*group_, task, turn);
+      if (task.kind == Queue::Kind::fresh) {
+        restore(*group_, task.members, requests);
+      } else {
+        unpark(*group_, std::span(task.parked));
+      }
+      lane_steps += grains * Run::width * static_cast<std::size_t>(advance_group(*group_, queue, reports));
     }
-    const auto steps = static_cast<std::size_t>(advance_group(run, queue, reports));
-    lane_steps += steps * static_cast<std::size_t>(run.packing->size()) * Run::width;
+    return lane_steps;
   }
-  return lane_steps;
-}
+
+ private:
+  RveBatch* batch_;
+  EngineSettings settings_;
+  std::unique_ptr<Run> group_;
+  std::unique_ptr<Alone> alone_;
+
+  [[nodiscard]] const Packing& packing_of(const typename Queue::Task& task) const {
+    return batch_->packings[static_cast<std::size_t>(task.packing)];
+  }
+
+  template <class AnyRun>
+  void prepare(AnyRun& run, const typename Queue::Task& task, const RegionTeller::Turn& turn) {
+    run.batch = batch_;
+    run.settings = settings_;
+    run.packing = &packing_of(task);
+    run.regions = turn.regions();
+  }
+
+  /// @return the steps made
+  [[nodiscard]] int advance_one(Queue& queue, typename Queue::Task& task, const RegionTeller::Turn& turn) {
+    if (!alone_) alone_ = std::make_unique<Alone>();
+    prepare(*alone_, task, turn);
+    unpark(*alone_, std::span(task.parked));
+    int steps = 0;
+    queue.put_aside(advance_alone(*alone_, steps));
+    return steps;
+  }
+};
 
 /// Advances the RVEs `rves` in groups on all cores of the host.
 /// @throws std::invalid_argument where the batch's histories are not the law's
@@ -62,9 +102,7 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
       [&](std::size_t) {
         const FlushSubnormals flush;
         try {
-          const auto run = std::make_unique<Run>();
-          run->settings = settings;
-          lane_steps += work_off(*run, queue, batch, requests, reports, teller);
+          lane_steps += Worker<Run>(batch, settings).work_off(queue, requests, reports, teller);
         } catch (...) {  // for example no memory; an exception may leave the parallel region only in this way
           if (!failed.test_and_set()) failure = std::current_exception();
           queue.stop();

@@ -49,31 +49,24 @@ class GroupQueue {
  public:
   static constexpr int width = static_cast<int>(Run::width);
   using Members = GroupMembers<width>;
-  using Parked = ParkedLane<typename Run::Law, typename Run::Drive>;
+  using Parked = ParkedLaneOf<Run>;
 
-  /// A group to be run: `members`, or lanes that were put aside where there are any.
+  enum class Kind {
+    fresh,   ///< a group of `members`
+    parked,  ///< a group of lanes that were put aside, or have ended alone
+    alone    ///< one lane that is to be advanced alone and given back as ended
+  };
   struct Task {
+    Kind kind = Kind::fresh;
     int packing = 0;
     Members members{};
     std::vector<Parked> parked;
   };
 
   GroupQueue(const RveBatch& batch, std::vector<Members> groups)
-      : batch_(&batch), groups_(std::move(groups)), aside_(batch.packings.size()), waiting_(batch.packings.size()) {
-    for (const Members& group : groups_) ++waiting_[packing_of(group[0])];
+      : batch_(&batch), groups_(std::move(groups)), of_packing_(batch.packings.size()) {
+    for (const Members& group : groups_) ++of_packing_[packing_of(group[0])].waiting;
   }
-
-  /// The time in which a worker runs a task.
-  class Turn {
-   public:
-    explicit Turn(GroupQueue& queue) : queue_(&queue) {}
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-    ~Turn() { queue_->end_task(); }
-
-   private:
-    GroupQueue* queue_;
-  };
 
   /// Waits while other workers run groups whose lanes may still be put aside. False at the end. Where it gives a task,
   /// a `Turn` must follow.
@@ -89,32 +82,68 @@ class GroupQueue {
     }
   }
 
+  /// The time in which a worker runs a task.
+  class Turn {
+   public:
+    explicit Turn(GroupQueue& queue) : queue_(&queue) {}
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+    ~Turn() { queue_->end_task(); }
+
+   private:
+    GroupQueue* queue_;
+  };
+
   /// Lets no further group begin.
   void stop() {
     const std::lock_guard lock(mutex_);
     first_ = groups_.size();
-    for (auto& lanes : aside_) lanes.clear();
+    for (OfPacking& p : of_packing_) p = {};
   }
 
   /// Whether a group of a packing, of whose lanes `running` still run, should put these aside. It should where they are
-  /// few and will find company.
+  /// few and will find company, and where so few are left that each of them is faster alone.
   [[nodiscard]] bool wants(const Packing& packing, int running) {
-    if (width == 1 || running == 0 || running > few) return false;
+    if (running == 0 || running > few) return false;
+    if (running <= most_alone) return true;
     const std::lock_guard lock(mutex_);
-    const auto p = static_cast<std::size_t>(&packing - batch_->packings.data());
-    return waiting_[p] > 0 || !aside_[p].empty();
+    const OfPacking& p = of_packing_[static_cast<std::size_t>(&packing - batch_->packings.data())];
+    return p.waiting > 0 || !p.aside.empty();
   }
 
+  /// Takes a lane that runs, or one that has ended alone and is to be finished in a group.
   void put_aside(Parked lane) {
     {
       const std::lock_guard lock(mutex_);
-      aside_[static_cast<std::size_t>(batch_->packing_of[static_cast<std::size_t>(lane.course.rve)])].push_back(
-          std::move(lane));
+      OfPacking& p = of_packing_[packing_of(lane.course.rve)];
+      (lane.course.running ? p.aside : p.ended).push_back(std::move(lane));
     }
     changed_.notify_one();
   }
 
  private:
+  static constexpr int few = width / 3;
+  /// One RVE spread over 16 lanes takes less than half of the time of a group for a step. Narrow lanes gain nothing.
+  static constexpr int most_alone = width < 8 ? 0 : 2;
+
+  struct OfPacking {
+    int waiting = 0;            ///< groups that have not begun
+    std::vector<Parked> aside;  ///< lanes that are to go on
+    std::vector<Parked> ended;  ///< lanes that have ended alone
+  };
+
+  const RveBatch* batch_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Members> groups_;
+  std::size_t first_ = 0;  ///< of the groups that have not begun
+  std::vector<OfPacking> of_packing_;
+  int running_ = 0;
+
+  [[nodiscard]] std::size_t packing_of(int rve) const {
+    return static_cast<std::size_t>(batch_->packing_of[static_cast<std::size_t>(rve)]);
+  }
+
   void end_task() {
     {
       const std::lock_guard lock(mutex_);
@@ -123,39 +152,44 @@ class GroupQueue {
     changed_.notify_all();
   }
 
-  static constexpr int few = width / 3;
-
-  const RveBatch* batch_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<Members> groups_;
-  std::size_t first_ = 0;                   ///< of the groups that have not begun
-  std::vector<std::vector<Parked>> aside_;  ///< by packing
-  std::vector<int> waiting_;                ///< by packing: groups that have not begun
-  int running_ = 0;
-
-  [[nodiscard]] std::size_t packing_of(int rve) const {
-    return static_cast<std::size_t>(batch_->packing_of[static_cast<std::size_t>(rve)]);
+  /// The packing with most lanes in one of its two lists.
+  [[nodiscard]] std::size_t fullest(std::vector<Parked> OfPacking::* list) const {
+    std::size_t most = 0;
+    for (std::size_t p = 1; p < of_packing_.size(); ++p) {
+      if ((of_packing_[p].*list).size() > (of_packing_[most].*list).size()) most = p;
+    }
+    return most;
   }
 
-  /// A full group of lanes that were put aside goes first, since these have most steps; a smaller one last.
+  static void take_lanes(Task& task, std::size_t packing, std::vector<Parked>& from, std::size_t most) {
+    task.packing = static_cast<int>(packing);
+    const auto begin = from.end() - static_cast<std::ptrdiff_t>(std::min(from.size(), most));
+    task.parked.assign(std::make_move_iterator(begin), std::make_move_iterator(from.end()));
+    from.erase(begin, from.end());
+  }
+
+  /// Full groups of lanes that were put aside go first, since these have most steps. Smaller ones follow the groups
+  /// that were formed at the start. Lanes that have ended alone are finished last, in groups as large as they can be.
   [[nodiscard]] bool take(Task& task) {
-    const auto most = std::max_element(aside_.begin(), aside_.end(),
-                                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    const std::size_t there = most == aside_.end() ? 0 : most->size();
-    if (there < static_cast<std::size_t>(width) && first_ < groups_.size()) {
-      task.parked.clear();
+    constexpr auto whole = static_cast<std::size_t>(width);
+    const std::size_t p = fullest(&OfPacking::aside), q = fullest(&OfPacking::ended);
+    auto &aside = of_packing_[p].aside, &ended = of_packing_[q].ended;
+    if (aside.size() < whole && first_ < groups_.size()) {
+      task.kind = Kind::fresh;
       task.members = groups_[first_++];
       task.packing = static_cast<int>(packing_of(task.members[0]));
-      --waiting_[static_cast<std::size_t>(task.packing)];
+      --of_packing_[static_cast<std::size_t>(task.packing)].waiting;
       return true;
     }
-    if (there == 0) return false;
-    const std::size_t taken = std::min(there, static_cast<std::size_t>(width));
-    const auto from = most->end() - static_cast<std::ptrdiff_t>(taken);
-    task.parked.assign(std::make_move_iterator(from), std::make_move_iterator(most->end()));
-    most->erase(from, most->end());
-    task.packing = static_cast<int>(most - aside_.begin());
+    if (!aside.empty()) {
+      const bool alone = aside.size() <= static_cast<std::size_t>(most_alone);
+      task.kind = alone ? Kind::alone : Kind::parked;
+      take_lanes(task, p, aside, alone ? 1 : whole);
+      return true;
+    }
+    if (ended.empty() || (ended.size() < whole && running_ > 0)) return false;
+    task.kind = Kind::parked;
+    take_lanes(task, q, ended, whole);
     return true;
   }
 };

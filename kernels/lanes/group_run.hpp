@@ -36,7 +36,7 @@ struct GroupRun {
   EngineSettings settings;
   RunScales scales;
   std::array<RveCourse<Drive>, width> lanes;
-  std::array<LaneList<Law>, width> lists;
+  std::array<LaneListOf<Law>, width> lists;
   std::array<int, width> steps_before;  ///< steps that a lane had made when the group began
   GroupState<Law> group;
   std::conditional_t<is_spread, SpreadRve<typename LawOver<Law, WideLane<real>>::type, Law>, NotSpread> spread;
@@ -89,7 +89,7 @@ void discard(Run& run, std::size_t l, RveStatus status) {
 /// Makes the cell as wide as its lattice allows: its shortest vectors replace those of a sheared cell, with the same
 /// images. False when nearest images are not unique even then.
 template <class Run>
-[[nodiscard]] bool reduce_cell(const Run& run, LaneList<typename Run::Law>& list) {
+[[nodiscard]] bool reduce_cell(const Run& run, LaneListOf<typename Run::Law>& list) {
   list.cell = reduced_lattice(list.cell);
   const Cell cell(list.cell);
   for (std::size_t i = 0; 2 * i < list.position.size(); ++i) cell.wrap(list.position[2 * i], list.position[2 * i + 1]);

@@ -24,27 +24,31 @@ struct KeptContact {
   HistoryNumbers<Law, double> history;
 };
 
-/// A candidate with the numbers that one lane has for it.
-template <class Law>
+/// A candidate with the numbers that one lane has for it. @tparam numbers of the law's history
+template <class real, std::size_t numbers>
 struct ListedPair {
-  using real = real_of<typename Law::Value>;
   std::uint32_t key;
   real branch_x, branch_y, gap;
-  HistoryNumbers<Law, real> history;
+  std::array<real, numbers> history;
 };
 
-/// One lane between two rebases.
-template <class Law>
+/// One lane between two rebases. It is the same beside many lanes and beside none.
+template <class real, std::size_t numbers>
 struct LaneList {
   std::vector<double> position;  ///< (grain, 2) at the last rebase [m]
   Mat2 cell = identity2;         ///< at the last rebase
-  std::vector<ListedPair<Law>> pairs;
+  std::vector<ListedPair<real, numbers>> pairs;
 };
+
+template <class Law>
+using ListedPairOf = ListedPair<real_of<typename Law::Value>, static_cast<std::size_t>(history_size<Law>)>;
+template <class Law>
+using LaneListOf = LaneList<real_of<typename Law::Value>, static_cast<std::size_t>(history_size<Law>)>;
 
 /// Lists the pairs `keys` of a lane. Branches and gaps are computed in double and rounded once; histories come from
 /// `kept`, whose keys ascend. A kept contact that is no candidate has opened by more than the skin and is dropped.
 template <class Law>
-void list_pairs(LaneList<Law>& lane, std::span<const double> radii, std::span<const std::uint32_t> keys,
+void list_pairs(LaneListOf<Law>& lane, std::span<const double> radii, std::span<const std::uint32_t> keys,
                 const std::vector<KeptContact<Law>>& kept) {
   using real = real_of<typename Law::Value>;
   const Cell cell(lane.cell);
@@ -56,7 +60,7 @@ void list_pairs(LaneList<Law>& lane, std::span<const double> radii, std::span<co
     const PairReference at = pair_reference(lane.position[2 * j] - lane.position[2 * i],
                                             lane.position[2 * j + 1] - lane.position[2 * i + 1], radii[i] + radii[j],
                                             cell);
-    ListedPair<Law> pair{
+    ListedPairOf<Law> pair{
         key, static_cast<real>(at.branch_x), static_cast<real>(at.branch_y), static_cast<real>(at.gap), {}};
     while (from != kept.end() && from->key < key) ++from;
     if (from != kept.end() && from->key == key) {
@@ -83,7 +87,7 @@ class UnionBuilder {
   using V = typename Law::Value;
   using real = real_of<V>;
   static constexpr int width = lane_count<V>;
-  using Lanes = std::array<LaneList<Law>, static_cast<std::size_t>(width)>;
+  using Lanes = std::array<LaneListOf<Law>, static_cast<std::size_t>(width)>;
 
   void build(GroupState<Law>& group, const Lanes& lanes, const Packing& packing) {
     const int n = group.n_grains;
@@ -136,11 +140,11 @@ class UnionBuilder {
   void fill(PairLanes<Law>& to, const Lanes& lanes, std::uint32_t key, const Packing& packing) {
     const double sum = packing.radii[static_cast<std::size_t>(first_of(key))] +
                        packing.radii[static_cast<std::size_t>(second_of(key))];
-    const ListedPair<Law> inert{key, real(0), real(0), static_cast<real>(sum * sum), {}};
+    const ListedPairOf<Law> inert{key, real(0), real(0), static_cast<real>(sum * sum), {}};
     for (std::size_t l = 0; l < static_cast<std::size_t>(width); ++l) {
       const auto& pairs = lanes[l].pairs;
       const bool own = cursor_[l] < pairs.size() && pairs[cursor_[l]].key == key;
-      const ListedPair<Law>& from = own ? pairs[cursor_[l]++] : inert;
+      const ListedPairOf<Law>& from = own ? pairs[cursor_[l]++] : inert;
       to.branch_x[l] = from.branch_x;
       to.branch_y[l] = from.branch_y;
       to.gap[l] = from.gap;
@@ -151,14 +155,14 @@ class UnionBuilder {
 
 /// Reads a lane's own pairs (with the histories they have now) back out of the group.
 template <class Law>
-void gather_lane(const GroupState<Law>& group, std::size_t lane, std::vector<ListedPair<Law>>& pairs) {
+void gather_lane(const GroupState<Law>& group, std::size_t lane, std::vector<ListedPairOf<Law>>& pairs) {
   pairs.clear();
   for (int i = 0; i < group.n_grains; ++i) {
     const auto si = static_cast<std::size_t>(i);
     for (auto p = static_cast<std::size_t>(group.row[si]); p < static_cast<std::size_t>(group.row[si + 1]); ++p) {
       const PairLanes<Law>& from = group.pairs[p];
       if (from.branch_x[lane] == 0 && from.branch_y[lane] == 0) continue;
-      ListedPair<Law>& pair = pairs.emplace_back();
+      ListedPairOf<Law>& pair = pairs.emplace_back();
       pair.key = pair_key(i, group.pair_shapes[p].other);
       pair.branch_x = from.branch_x[lane];
       pair.branch_y = from.branch_y[lane];

@@ -1,7 +1,7 @@
 #pragma once
-/// Lanes that leave their group while they run. A group waits for its slowest lane; so its last lanes are put aside,
-/// and go on beside those of other groups of their packing. A lane takes all its numbers with it as they are, so that
-/// where it runs changes no bit of them.
+/// Lanes that leave their group before it is finished. A group waits for its slowest lane; so its last lanes are put
+/// aside. They go on beside those of other groups of their packing, or alone, spread over all lanes. A lane takes all
+/// its numbers with it as they are, so that where it runs changes no bit of them.
 
 #include <span>
 #include <utility>
@@ -18,20 +18,24 @@ struct ParkedGrain {
 };
 
 /// A lane between two steps.
-template <class Law, class Drive>
+template <class real, std::size_t numbers, class Drive>
 struct ParkedLane {
   RveCourse<Drive> course;
-  int next_step = 0;   ///< of its course
-  LaneList<Law> list;  ///< with the histories of now
-  std::vector<ParkedGrain<real_of<typename Law::Value>>> grains;
+  int next_step = 0;             ///< of its course
+  LaneList<real, numbers> list;  ///< with the histories of now
+  std::vector<ParkedGrain<real>> grains;
 };
 
-/// Takes lane `l` out of its group, which has made all steps before `step`.
 template <class Run>
-[[nodiscard]] ParkedLane<typename Run::Law, typename Run::Drive> park(Run& run, std::size_t l, int step) {
-  ParkedLane<typename Run::Law, typename Run::Drive> out;
+using ParkedLaneOf = ParkedLane<typename Run::real, static_cast<std::size_t>(history_size<typename Run::Law>),
+                                typename Run::Drive>;
+
+/// Takes lane `l`, which may have ended, out of its group, which has made all steps before `step`.
+template <class Run>
+[[nodiscard]] ParkedLaneOf<Run> park(Run& run, std::size_t l, int step) {
+  ParkedLaneOf<Run> out;
   gather_spread(run);
-  gather_lane(run.group, l, run.lists[l].pairs);
+  if (!is_failure(run.lanes[l].status)) gather_lane<typename Run::Law>(run.group, l, run.lists[l].pairs);
   out.next_step = step_of(run, l, step);
   out.course = std::exchange(run.lanes[l], {});
   out.list = std::exchange(run.lists[l], {});
@@ -45,7 +49,7 @@ template <class Run>
 
 /// Makes a group of parked lanes of one packing, at most one a lane. They are moved from.
 template <class Run>
-VOUSSOIR_OWN_SYMBOL void unpark(Run& run, std::span<ParkedLane<typename Run::Law, typename Run::Drive>> parked) {
+VOUSSOIR_OWN_SYMBOL void unpark(Run& run, std::span<ParkedLaneOf<Run>> parked) {
   const Region region(run.regions, "restore");
   begin_group(run);
   for (std::size_t l = 0; l < parked.size(); ++l) {

@@ -46,7 +46,7 @@ void rebase(Run& run, std::size_t l) {
   for (auto& g : run.group.grains) g.u_x[l] = g.u_y[l] = 0;
   if (!reduce_cell(run, list)) return discard(run, l, RveStatus::neighbour_overflow);
   find_candidates(list.position, run.packing->radii, Cell(list.cell), run.scales.skin, run.keys);
-  list_pairs(list, run.packing->radii, run.keys, run.kept);
+  list_pairs<typename Run::Law>(list, run.packing->radii, run.keys, run.kept);
 }
 
 /// Renews the lists of the stale lanes, and the union of all lists.
@@ -55,7 +55,7 @@ VOUSSOIR_OWN_SYMBOL void rebuild(Run& run, const std::array<bool, Run::width>& s
   gather_spread(run);
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0 || (stale[l] && !run.lanes[l].running)) continue;  // empty, or just discarded
-    gather_lane(run.group, l, run.lists[l].pairs);
+    gather_lane<typename Run::Law>(run.group, l, run.lists[l].pairs);
     if (stale[l]) rebase(run, l);
   }
   for (std::size_t l = 0; l < Run::width; ++l) round_motion(run.lanes[l], run.group.motion, l);

@@ -39,7 +39,7 @@ template <class Run>
     kept.key = from.contact_key(rve, c);
     for (std::size_t k = 0; k < kept.history.size(); ++k) kept.history[k] = from.contact_history(rve, c, k);
   }
-  list_pairs(list, run.packing->radii, cached, run.kept);
+  list_pairs<typename Run::Law>(list, run.packing->radii, cached, run.kept);
   set_rate(lane, 0);
   return true;
 }
