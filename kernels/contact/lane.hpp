@@ -1,10 +1,11 @@
 #pragma once
 /// The value type of the engine. A value holds one number for each RVE of a group, one RVE per SIMD lane.
 ///
-/// `SingleLane<real>` holds one RVE; it serves unlike packings, the threads of a GPU and processors without a wide set
-/// of instructions. `WideLane<real>` (lanes/wide_lane.hpp) is as wide as the instruction set allows for which a file of
-/// the lanes is compiled. Every kernel is a template over this type and uses the operations of this file only. Lanes
-/// are compared with `<` only: Kokkos 4.5.1 swaps the operands of `>` and `>=` of AVX-512 doubles.
+/// `SingleLane<real>` holds one RVE; it serves RVEs without company (whose pairs are then spread over wide lanes), the
+/// threads of a GPU and processors without a wide set of instructions. `WideLane<real>` (lanes/wide_lane.hpp) is as
+/// wide as the instruction set allows for which a file of the lanes is compiled. Every kernel is a template over this
+/// type and uses the operations of this file only. Lanes are compared with `<` only: Kokkos 4.5.1 swaps the operands of
+/// `>` and `>=` of AVX-512 doubles.
 
 #include <Kokkos_Core.hpp>
 #include <Kokkos_SIMD.hpp>

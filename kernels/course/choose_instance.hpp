@@ -17,7 +17,7 @@ struct Instance {
 };
 
 /// Whether most RVEs have a packing of their own. Such RVEs would leave most lanes of a group empty, so that each of
-/// them runs in a group of one lane instead.
+/// them runs alone instead (lanes/spread_rve.hpp).
 [[nodiscard]] inline bool mostly_alone(const RveBatch& batch) { return batch.size() < 2 * batch.packings.size(); }
 
 /// Calls body(Instance<float or double>).
