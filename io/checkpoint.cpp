@@ -157,7 +157,10 @@ std::map<int, fs::path> list(const fs::path& folder) {
 
 }  // namespace
 
-void Checkpoint::put(const std::string& name, std::vector<std::byte> bytes) { blobs_[name] = std::move(bytes); }
+void Checkpoint::put(const std::string& name, std::vector<std::byte> bytes) {
+  late_.erase(name);
+  blobs_[name] = std::move(bytes);
+}
 
 void Checkpoint::put_doubles(const std::string& name, std::span<const double> values) { put(name, bytes_of(values)); }
 
@@ -169,7 +172,7 @@ void Checkpoint::put_text(const std::string& name, const std::string& text) {
   put(name, bytes_of(std::span<const char>(text.data(), text.size())));
 }
 
-void Checkpoint::put(const std::string& name, LateBytes bytes) {
+void Checkpoint::put_late(const std::string& name, LateBytes bytes) {
   blobs_.erase(name);
   late_[name] = std::move(bytes);
 }

@@ -27,7 +27,7 @@ struct LateBytes {
 class Checkpoint {
  public:
   void put(const std::string& name, std::vector<std::byte> bytes);
-  void put(const std::string& name, LateBytes bytes);
+  void put_late(const std::string& name, LateBytes bytes);
   void put_doubles(const std::string& name, std::span<const double> values);
   void put_integers(const std::string& name, std::span<const std::int64_t> values);
   void put_text(const std::string& name, const std::string& text);
