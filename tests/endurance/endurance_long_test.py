@@ -8,7 +8,6 @@ library of tests/faults lets a call of the run find the disk full. An argument i
     ctest --preset openmp -R endurance_long_test --verbose
 """
 
-import errno
 import os
 import random
 import shutil
