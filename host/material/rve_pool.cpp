@@ -60,7 +60,8 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
       least_areas_(least_areas(mix)),
       all_states_{batch_.committed, batch_.trial} {
   for (const kernels::Packing& packing : batch_.packings) {
-    mobilities_.push_back(kernels::mean_mobility<kernels::PlainEngineLaw>(packing, kernels::EngineSettings{}.overlap_limit));
+    mobilities_.push_back(
+        kernels::mean_mobility<kernels::PlainEngineLaw>(packing, kernels::EngineSettings{}.overlap_limit));
   }
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
   for (std::size_t k = 0; k < mix.points(); ++k) {

@@ -64,7 +64,8 @@ class RunRecorder {
   /// The files that this process has written, such as "12 result files of 0.9 MB, checkpoint of 145 MB".
   [[nodiscard]] std::string disk_use() const;
 
-  /// Writes a table of run.h5 before it returns, see io::ResultWriter::set_table. A finished run that has a table of this name keeps it.
+  /// Writes a table of run.h5 before it returns, see io::ResultWriter::set_table. A finished run that has a table of
+  /// this name keeps it.
   void set_table(const std::string& name, std::vector<io::TableColumn> columns);
 
  private:

@@ -41,9 +41,9 @@ std::string row(const StageTotals& t) {
   const double named = t.parts.material + t.parts.assembly + t.parts.solve + t.output;
   const double most = t.evaluations.empty() ? 0 : *std::max_element(t.evaluations.begin(), t.evaluations.end());
   return fmt::format(
-      "{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>9.1f}", t.stage,
-      t.evaluations.size(), t.wall, t.parts.material, t.parts.assembly, t.parts.solve, t.output, t.writer.wall, t.wall - named,
-      median(t.evaluations), most, t.cuts, t.particle_steps,
+      "{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>9.1f}",
+      t.stage, t.evaluations.size(), t.wall, t.parts.material, t.parts.assembly, t.parts.solve, t.output, t.writer.wall,
+      t.wall - named, median(t.evaluations), most, t.cuts, t.particle_steps,
       t.parts.material > 0 ? 1e-6 * t.particle_steps / t.parts.material : 0.0);
 }
 
@@ -168,8 +168,8 @@ std::vector<std::string> totals_table(const std::vector<StageTotals>& totals) {
       "particle-steps, "
       "and how many 10^6 of them the grains made in a second");
   lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}", "stage",
-                              "incr.", "wall", "grains", "assembly", "solve", "output", "writer", "other", "eval.", "most",
-                              "cuts", "steps", "M/s"));
+                              "incr.", "wall", "grains", "assembly", "solve", "output", "writer", "other", "eval.",
+                              "most", "cuts", "steps", "M/s"));
   for (const StageTotals& stage : totals) lines.push_back(row(stage));
   if (totals.size() > 1) lines.push_back(row(sum_of(totals)));
   return lines;

@@ -60,8 +60,8 @@ void save(const Ground& ground, io::Checkpoint& checkpoint) {
   checkpoint.put_doubles("load", scalars);
   put_list(checkpoint, "strain", ground.strain);
   const std::shared_ptr<const fem::HeldState> material = ground.material.hold();
-  checkpoint.put_late("material", {[material] { return material->size(); },
-                                   [material](const auto& sink) { material->write(sink); }});
+  checkpoint.put_late(
+      "material", {[material] { return material->size(); }, [material](const auto& sink) { material->write(sink); }});
 }
 
 void restore(Ground& ground, const io::Checkpoint& checkpoint) {

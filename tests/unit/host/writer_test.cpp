@@ -77,7 +77,9 @@ TEST(Writer, EndsBehindItsJob) {
     });
   }
   EXPECT_TRUE(done);
-  { Writer without_a_job; }
+  {
+    Writer without_a_job;
+  }
   Writer failed;
   failed.submit([] { throw std::runtime_error("nobody asks"); });
 }
