@@ -18,14 +18,18 @@ namespace {
 
 /// Below this size an array stands in the header of its dataset, whose checksum holds for it as well [bytes].
 constexpr std::size_t most_in_header = 4096;
-constexpr std::size_t memory_step = std::size_t{1} << 20;  ///< by which a file in memory grows [bytes]
+constexpr std::size_t memory_step = std::size_t{1} << 20;   ///< by which a file in memory grows [bytes]
 
 /// HDF5 prints its error stack by default; here the innermost entry becomes part of an exception instead.
 void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-/// Locked by the thread that uses HDF5; a thread may have several files open.
+/// Locked by the thread that uses HDF5; a thread may have several files open. HDF5 is told first to do nothing when the
+/// program exits: there is no file of its own to save, and where memory has run out its exit handler ends in a
+/// segmentation fault.
 std::recursive_mutex& one_thread() {
   static std::recursive_mutex mutex;
+  static const bool without_exit_handler = H5dont_atexit() >= 0;
+  static_cast<void>(without_exit_handler);
   return mutex;
 }
 

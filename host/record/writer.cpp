@@ -1,5 +1,6 @@
 #include "host/record/writer.hpp"
 
+#include <malloc.h>
 #include <signal.h>
 
 #include <stdexcept>
@@ -30,9 +31,14 @@ bool Writer::idle() const {
   return !job_;
 }
 
+/// The C library reserves 64 MB of addresses for the memory of a new thread. Where `ulimit -v` does not leave so much,
+/// each piece of memory takes a page, until HDF5 finds none and ends the process; so this thread shares what others
+/// have.
+///
 /// A thread inherits the signals that are blocked. Requests to stop are for the thread that computes, whose waiting
 /// they may end, as it was when this thread did the writing.
 void Writer::start() {
+  mallopt(M_ARENA_MAX, 1);
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
