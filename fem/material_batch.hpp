@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,6 +49,17 @@ struct PointField {
   std::vector<double> values;
 };
 
+/// A committed state that stays what it is while its batch goes on. Another thread may read it.
+class HeldState {
+ public:
+  using Sink = std::function<void(std::span<const std::byte>)>;
+
+  virtual ~HeldState() = default;
+  [[nodiscard]] virtual std::size_t size() const = 0;  ///< number of bytes that `write` gives
+  /// Gives the bytes of MaterialBatch::state() of that moment to `sink`, piece by piece.
+  virtual void write(const Sink& sink) const = 0;
+};
+
 class MaterialBatch {
  public:
   virtual ~MaterialBatch() = default;
@@ -78,6 +91,12 @@ class MaterialBatch {
   /// batch.
   [[nodiscard]] virtual std::vector<std::byte> state() const = 0;
   virtual void set_state(std::span<const std::byte> bytes) = 0;
+
+  /// Holds the committed state, to go back to it or to write it to a file later. Here the state's bytes are copied; a
+  /// batch whose states are large holds them without a copy.
+  [[nodiscard]] virtual std::shared_ptr<const HeldState> hold();
+  /// Makes a state that this batch has held the committed one again.
+  virtual void return_to(const HeldState& held);
 };
 
 }  // namespace voussoir::fem

@@ -52,7 +52,7 @@ double next_factor(double factor, double driving, double left, const RelaxationO
 NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path, double to, const NewtonReport& attempt,
                    Increment& increment, const RelaxationOptions& options) {
   const MeshState before = state;
-  const std::vector<std::byte> material_before = solver.material().state();
+  const std::shared_ptr<const HeldState> material_before = solver.material().hold();
   NewtonReport report = attempt;
   double factor = state.relaxation_factor;
   int settling = 0;
@@ -85,7 +85,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
     return report;
   }
   state = before;
-  solver.material().set_state(material_before);
+  solver.material().return_to(*material_before);
   return report;
 }
 

@@ -48,21 +48,33 @@ class HashedWriter {
   void bytes(std::span<const std::byte> piece) {
     sum_.add(piece);
     file_.write(piece);
+    written_ += piece.size();
   }
   void integer(std::uint64_t value) { bytes(std::as_bytes(std::span(&value, 1))); }
   void text(std::string_view value) {
     integer(value.size());
     bytes(std::as_bytes(std::span(value.data(), value.size())));
   }
-  /// Ends the file with the checksum and gives it its name.
-  void publish() {
+  void late_bytes(const std::string& name, const LateBytes& value) {
+    const std::size_t size = value.size();
+    integer(size);
+    const std::size_t before = written_;
+    value.write([this](std::span<const std::byte> piece) { bytes(piece); });
+    if (written_ - before != size) {
+      throw std::logic_error(fmt::format("checkpoint: \"{}\" has {} bytes and not {}", name, written_ - before, size));
+    }
+  }
+  /// Ends the file with the checksum and gives it its name; returns its size.
+  std::size_t publish() {
     integer(sum_.value());
     file_.publish();
+    return written_;
   }
 
  private:
   AtomicFile file_;
   Checksum sum_;
+  std::size_t written_ = 0;
 };
 
 /// Takes pieces from bytes whose checksum is right. A length that goes beyond their end throws nevertheless.
@@ -145,7 +157,10 @@ std::map<int, fs::path> list(const fs::path& folder) {
 
 }  // namespace
 
-void Checkpoint::put(const std::string& name, std::vector<std::byte> bytes) { blobs_[name] = std::move(bytes); }
+void Checkpoint::put(const std::string& name, std::vector<std::byte> bytes) {
+  late_.erase(name);
+  blobs_[name] = std::move(bytes);
+}
 
 void Checkpoint::put_doubles(const std::string& name, std::span<const double> values) { put(name, bytes_of(values)); }
 
@@ -157,7 +172,20 @@ void Checkpoint::put_text(const std::string& name, const std::string& text) {
   put(name, bytes_of(std::span<const char>(text.data(), text.size())));
 }
 
+void Checkpoint::put_late(const std::string& name, LateBytes bytes) {
+  blobs_.erase(name);
+  late_[name] = std::move(bytes);
+}
+
 const std::vector<std::byte>& Checkpoint::get(const std::string& name) const {
+  if (const auto later = late_.find(name); later != late_.end()) {
+    std::vector<std::byte> bytes;
+    bytes.reserve(later->second.size());
+    later->second.write(
+        [&bytes](std::span<const std::byte> piece) { bytes.insert(bytes.end(), piece.begin(), piece.end()); });
+    late_.erase(later);
+    blobs_[name] = std::move(bytes);
+  }
   const auto found = blobs_.find(name);
   if (found == blobs_.end()) {
     throw std::runtime_error(fmt::format("checkpoint: it has no \"{}\"", name));
@@ -181,20 +209,24 @@ std::string Checkpoint::get_text(const std::string& name) const {
 CheckpointStore::CheckpointStore(std::filesystem::path folder, std::string fingerprint)
     : folder_(std::move(folder)), fingerprint_(std::move(fingerprint)) {}
 
-void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
+std::size_t CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
   if (!fs::exists(folder_)) {
     fs::create_directory(folder_);  // not its parent: where the folder of the run has vanished, saving has to fail
   }
   HashedWriter writer(checkpoint_path(folder_, increment));
   writer.text(magic);
   writer.text(fingerprint_);
-  writer.integer(checkpoint.blobs().size());
+  writer.integer(checkpoint.blobs().size() + checkpoint.late().size());
   for (const auto& [name, bytes] : checkpoint.blobs()) {
     writer.text(name);
     writer.integer(bytes.size());
     writer.bytes(bytes);
   }
-  writer.publish();
+  for (const auto& [name, bytes] : checkpoint.late()) {
+    writer.text(name);
+    writer.late_bytes(name, bytes);
+  }
+  const std::size_t size = writer.publish();
 
   // Checkpoints with a higher number were written before the run was resumed from an earlier state, and are not part of
   // its history any more.
@@ -210,6 +242,7 @@ void CheckpointStore::save(int increment, const Checkpoint& checkpoint) const {
       fs::remove(path);
     }
   }
+  return size;
 }
 
 std::optional<CheckpointStore::Loaded> CheckpointStore::load_latest() const {

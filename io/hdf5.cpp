@@ -18,10 +18,20 @@ namespace {
 
 /// Below this size an array stands in the header of its dataset, whose checksum holds for it as well [bytes].
 constexpr std::size_t most_in_header = 4096;
-constexpr std::size_t memory_step = std::size_t{1} << 20;  ///< by which a file in memory grows [bytes]
+constexpr std::size_t memory_step = std::size_t{1} << 20;   ///< by which a file in memory grows [bytes]
 
 /// HDF5 prints its error stack by default; here the innermost entry becomes part of an exception instead.
 void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+/// Locked by the thread that uses HDF5; a thread may have several files open. HDF5 is told first to do nothing when the
+/// program exits: there is no file of its own to save, and where memory has run out its exit handler ends in a
+/// segmentation fault.
+std::recursive_mutex& one_thread() {
+  static std::recursive_mutex mutex;
+  static const bool without_exit_handler = H5dont_atexit() >= 0;
+  static_cast<void>(without_exit_handler);
+  return mutex;
+}
 
 std::string innermost_reason() {
   std::string reason;
@@ -57,9 +67,10 @@ Handle storage_for(std::size_t bytes) {
 
 }  // namespace
 
-Hdf5File::Hdf5File(Id file, std::filesystem::path path) : file_(file), path_(std::move(path)) {}
+Hdf5File::Hdf5File(Id file, std::filesystem::path path) : turn_(one_thread()), file_(file), path_(std::move(path)) {}
 
-Hdf5File::Hdf5File(Hdf5File&& other) noexcept : file_(std::exchange(other.file_, -1)), path_(std::move(other.path_)) {}
+Hdf5File::Hdf5File(Hdf5File&& other) noexcept
+    : turn_(std::move(other.turn_)), file_(std::exchange(other.file_, -1)), path_(std::move(other.path_)) {}
 
 Hdf5File::~Hdf5File() {
   if (file_ >= 0) {
@@ -75,8 +86,8 @@ Hdf5File::Id Hdf5File::checked(Id id, const std::string& what) const {
 }
 
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {
-  be_quiet();
   Hdf5File file(-1, path);
+  be_quiet();
   const Handle access(file.checked(H5Pcreate(H5P_FILE_ACCESS), "create the file"), H5Pclose);
   file.checked(H5Pset_fapl_core(access, memory_step, 0), "create the file");
   file.checked(H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18), "create the file");
@@ -87,12 +98,12 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
 }
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path) {
-  be_quiet();
   const std::string fault = file_fault(path);  // HDF5 would wait for a pipe
   if (!fault.empty()) {
     throw std::runtime_error(fmt::format("{}: cannot open the file: it {}", in_one_line(path.string()), fault));
   }
   Hdf5File file(-1, path);
+  be_quiet();
   file.file_ = file.checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open the file");
   return file;
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ struct Array {
 ///
 /// A new file is made in memory, and `publish` gives its bytes to an AtomicFile. HDF5 itself never writes to a disk,
 /// because after a failed write it cannot close its file and ends in a segmentation fault when the program exits.
+///
+/// Not every build of HDF5 may be used by two threads at a time. A file that is open keeps all other threads from
+/// opening or making one, until it is closed; it must be closed by the thread that has opened it.
 ///
 /// HDF5 may also end in a segmentation fault where it reads damaged metadata. A file is therefore written in the format
 /// of HDF5 1.8, in which every piece of metadata has a checksum. Small arrays are metadata too; larger ones have an
@@ -84,6 +88,7 @@ class Hdf5File {
   /// Returns `id` when it is valid; otherwise throws, with the action that was tried and HDF5's reason.
   Id checked(Id id, const std::string& what) const;
 
+  std::unique_lock<std::recursive_mutex> turn_;  ///< of the thread that uses HDF5
   Id file_;
   std::filesystem::path path_;
 };

@@ -12,7 +12,7 @@ namespace {
 // of 700 grains 915.8 MB, 148.1 MB and, with five whole RVEs, 1.33 MB.
 constexpr double process_bytes = 73e6;    ///< memory of the program with its libraries
 constexpr double memory_a_grain = 360.0;  ///< committed and trial state with room for four contacts a grain, and
-                                          ///< the copies of which a checkpoint is made
+                                          ///< a third one while an earlier state is held for a checkpoint
 constexpr double memory_a_point = 6e3;    ///< matrix and factors; measured on rectangles of 1e4 to 1e5 elements
 constexpr double contacts_a_grain = 1.93;
 constexpr double nodes_a_point = 0.79;  ///< of the study's meshes: 3.16 nodes an element

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <Kokkos_Core.hpp>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include "host/material/deformation.hpp"
 #include "kernels/state/committed_contacts.hpp"
 #include "kernels/state/describe_committed.hpp"
+#include "kernels/state/mobility.hpp"
 
 namespace voussoir::host {
 
@@ -55,7 +57,12 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
       trial_reports_(mix.points()),
       committed_reports_(mix.points()),
       deferral_(engine_.defer, settings_.pressure_floor),
-      least_areas_(least_areas(mix)) {
+      least_areas_(least_areas(mix)),
+      all_states_{batch_.committed, batch_.trial} {
+  for (const kernels::Packing& packing : batch_.packings) {
+    mobilities_.push_back(
+        kernels::mean_mobility<kernels::PlainEngineLaw>(packing, kernels::EngineSettings{}.overlap_limit));
+  }
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
   for (std::size_t k = 0; k < mix.points(); ++k) {
     kernels::RveReport& report = committed_reports_[k];
@@ -81,7 +88,9 @@ void RvePool::begin_increment() {
 int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
   const double strain = kernels::symmetric_norm(kernels::log_of(f_rel));
   const double p = std::max(committed_reports_[rve].pressure(), settings_.pressure_floor);
-  const double steps = strain / engine_.inertial_number * batch_.packing(rve).inertial_time(p);
+  const double time = kernels::inertial_time(mobilities_[static_cast<std::size_t>(batch_.packing_of[rve])],
+                                             batch_.packing(rve).thickness, p);
+  const double steps = strain / engine_.inertial_number * time;
   if (!std::isfinite(steps)) return engine_.minimum_steps;
   const double most = engine_.maximum_steps;
   return std::clamp(round_up(std::clamp(steps, 1.0, most)), engine_.minimum_steps, engine_.maximum_steps);
@@ -138,12 +147,14 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
 }
 
 void RvePool::commit() {
+  const kernels::RveStates before = batch_.committed;
   kernels::commit(batch_);
   committed_reports_ = trial_reports_;
+  if (is_held(before)) batch_.trial = free_states();
   if (!deferral_.on()) return;
   for (std::size_t k = 0; k < size(); ++k) {
     if (!deferral_.commit(k, increment_[k], trial_reports_[k])) continue;
-    kernels::copy_state(batch_.trial, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
+    kernels::copy_state(before, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
   }
 }
 
@@ -155,7 +166,10 @@ std::vector<fem::PointField> RvePool::fields() const {
   std::vector<fem::PointField> out;
   const auto add = [&](const ResultField& row, auto&& value) {
     fem::PointField field{row.name, row.unit, row.components, std::vector<double>(size())};
-    for (std::size_t k = 0; k < size(); ++k) field.values[k] = value(k);
+    using Space = Kokkos::DefaultHostExecutionSpace;
+    Kokkos::parallel_for("voussoir::fields", Kokkos::RangePolicy<Space>(0, size()),
+                         [&](std::size_t k) { field.values[k] = value(k); });
+    Space().fence("voussoir::fields");
     out.push_back(std::move(field));
   };
   const auto& reports = committed_reports_;

@@ -5,6 +5,7 @@
 #include "fem/material_batch.hpp"
 #include "host/case/case.hpp"
 #include "host/material/deferral.hpp"
+#include "host/material/held_rves.hpp"
 #include "host/material/snapshot_source.hpp"
 #include "host/material/state_records.hpp"
 #include "host/packing/variety.hpp"
@@ -37,6 +38,9 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<fem::PointField> fields() const override;
   [[nodiscard]] std::vector<std::byte> state() const override;
   void set_state(std::span<const std::byte> bytes) override;
+  /// Nothing is copied but the reports.
+  [[nodiscard]] std::shared_ptr<const fem::HeldState> hold() override;
+  void return_to(const fem::HeldState& held) override;
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
   [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
@@ -53,7 +57,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
     return settings_.pressure_floor;
   }  ///< least pressure that the reports' ratios are relative to [Pa]
   [[nodiscard]] std::uint64_t identity() const;
-  [[nodiscard]] std::vector<std::byte> state_of(std::size_t rve) const;
+  [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;  ///< of `n` RVEs
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
 
  private:
@@ -68,11 +72,17 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<int> running_;              ///< RVEs whose grains the evaluation needs; only where some may be deferred
   std::vector<fem::Gradient> increment_;  ///< of the last evaluation; only where some may be deferred
   bool steps_are_fixed_ = false;
-  std::vector<double> least_areas_;  ///< (RVE), see least_areas [m^2]
+  std::vector<double> least_areas_;                  ///< (RVE), see least_areas [m^2]
+  std::vector<double> mobilities_;                   ///< mean over the grains of each packing [m/N]
+  std::vector<kernels::RveStates> all_states_;       ///< committed, trial and held ones
+  std::vector<std::weak_ptr<const HeldRves>> held_;  ///< those that somebody holds, and such as were held
 
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
   void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);
   kernels::Work advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings);
+  [[nodiscard]] HeldRves committed_rves() const;
+  [[nodiscard]] bool is_held(const kernels::RveStates& states);
+  [[nodiscard]] kernels::RveStates free_states();
   [[nodiscard]] io::RveSnapshot snapshot(std::size_t rve) const;
 };
 

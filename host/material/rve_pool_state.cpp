@@ -1,4 +1,5 @@
 // The committed state of a pool as bytes: everything that an evaluation starts from, without what follows from it.
+#include <algorithm>
 #include <array>
 #include <numeric>
 #include <stdexcept>
@@ -28,11 +29,9 @@ void transfer_report(Transfer& transfer, Report& r) {
   transfer(&r.cell_area, 1);
 }
 
-/// Transfers the deferral's record of one RVE; nothing where no RVE may be deferred.
-template <class Transfer, class Deferral>
-void transfer_deferral(Transfer& transfer, Deferral& deferral, std::size_t rve) {
-  if (!deferral.on()) return;
-  auto& at = deferral.committed(rve);
+/// Transfers the deferral's record of one RVE.
+template <class Transfer, class Committed>
+void transfer_deferral(Transfer& transfer, Committed& at) {
   transfer(at.gradient.data(), 4);
   transfer_report(transfer, at.grains);
   transfer(&at.trust, 1);
@@ -60,6 +59,27 @@ void transfer_rve(Transfer& transfer, States& s, std::size_t rve, std::size_t gr
   }
 }
 
+/// Transfers the record of one held RVE.
+template <class Transfer>
+void transfer_record(Transfer& transfer, const HeldRves& held, std::size_t rve) {
+  transfer_report(transfer, held.reports[rve]);
+  if (!held.deferred.empty()) transfer_deferral(transfer, held.deferred[rve]);
+  transfer_rve(transfer, held.states, rve, held.grains[rve]);
+}
+
+bool same_arrays(const kernels::RveStates& a, const kernels::RveStates& b) {
+  return a.position.data() == b.position.data();
+}
+
+/// Counts the bytes that a ByteWriter would write.
+struct ByteCounter {
+  std::size_t bytes = 0;
+  template <class T>
+  void operator()(const T* /*from*/, std::size_t n) {
+    bytes += n * sizeof(T);
+  }
+};
+
 }  // namespace
 
 std::uint64_t RvePool::identity() const {
@@ -78,23 +98,90 @@ std::uint64_t RvePool::identity() const {
   return hash;
 }
 
-std::vector<std::byte> RvePool::state_of(std::size_t rve) const {
-  std::vector<std::byte> bytes;
-  const auto grains = static_cast<std::size_t>(batch_.packing(rve).size());
-  // A grain takes 24 bytes and a contact 20; there are about two contacts a grain. With more, the vector grows once.
-  bytes.reserve(256 + 72 * grains);
+void HeldRves::write_record(std::size_t rve, std::vector<std::byte>& bytes) const {
   io::ByteWriter write(bytes);
-  transfer_report(write, committed_reports_[rve]);
-  transfer_deferral(write, deferral_, rve);
-  transfer_rve(write, batch_.committed, rve, grains);
-  return bytes;
+  transfer_record(write, *this, rve);
+}
+
+std::size_t HeldRves::size() const {
+  std::vector<std::byte> head;
+  write_head(head, identity, grains.size());
+  ByteCounter count{head.size() + grains.size() * sizeof(std::uint64_t)};
+  for (std::size_t k = 0; k < grains.size(); ++k) transfer_record(count, *this, k);
+  return count.bytes;
+}
+
+void HeldRves::write(const Sink& sink) const {
+  std::vector<std::byte> bytes;
+  write_head(bytes, identity, grains.size());
+  sink(bytes);
+  for (std::size_t k = 0; k < grains.size(); ++k) {
+    bytes.clear();
+    write_record(k, bytes);
+    const std::uint64_t length = bytes.size();
+    sink(std::as_bytes(std::span(&length, 1)));
+    sink(bytes);
+  }
+}
+
+HeldRves RvePool::committed_rves() const {
+  HeldRves held;
+  held.states = batch_.committed;
+  held.reports = committed_reports_;
+  held.identity = identity();
+  for (std::size_t k = 0; k < size(); ++k) {
+    held.grains.push_back(static_cast<std::size_t>(batch_.packing(k).size()));
+    if (deferral_.on()) held.deferred.push_back(deferral_.committed(k));
+  }
+  return held;
+}
+
+std::vector<std::vector<std::byte>> RvePool::records(std::size_t first, std::size_t n) const {
+  const HeldRves held = committed_rves();
+  std::vector<std::vector<std::byte>> records(n);
+  for (std::size_t k = 0; k < n; ++k) held.write_record(first + k, records[k]);
+  return records;
+}
+
+std::shared_ptr<const fem::HeldState> RvePool::hold() {
+  const auto held = std::make_shared<const HeldRves>(committed_rves());
+  held_.push_back(held);
+  return held;
+}
+
+void RvePool::return_to(const fem::HeldState& held) {
+  const auto& rves = dynamic_cast<const HeldRves&>(held);
+  batch_.committed = rves.states;
+  committed_reports_ = rves.reports;
+  for (std::size_t k = 0; k < rves.deferred.size(); ++k) deferral_.committed(k) = rves.deferred[k];
+  kernels::forget_candidates(batch_);
+  begin_increment();
+}
+
+bool RvePool::is_held(const kernels::RveStates& states) {
+  std::erase_if(held_, [](const auto& held) { return held.expired(); });
+  return std::any_of(held_.begin(), held_.end(), [&](const auto& held) {
+    const std::shared_ptr<const HeldRves> alive = held.lock();
+    return alive && same_arrays(alive->states, states);
+  });
+}
+
+/// Arrays for trial states that nobody holds. There are three at the most where one state is held at a time.
+kernels::RveStates RvePool::free_states() {
+  for (const kernels::RveStates& states : all_states_) {
+    if (!same_arrays(states, batch_.committed) && !is_held(states)) return states;
+  }
+  const auto grains = static_cast<int>(batch_.committed.rotation.extent(1));
+  all_states_.emplace_back("held", size(), grains, static_cast<int>(batch_.committed.history_size()));
+  return all_states_.back();
 }
 
 void RvePool::set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records) {
+  if (is_held(batch_.committed)) throw std::logic_error("a state that is held would be overwritten");
   for (std::size_t k = 0; k < rves.size(); ++k) {
     io::ByteReader read(records[k], not_of_this_case);
     transfer_report(read, committed_reports_[rves[k]]);
-    transfer_deferral(read, deferral_, rves[k]);
+    if (deferral_.on()) transfer_deferral(read, deferral_.committed(rves[k]));
     transfer_rve(read, batch_.committed, rves[k], static_cast<std::size_t>(batch_.packing(rves[k]).size()));
     if (!read.at_end()) throw std::runtime_error(not_of_this_case);
   }
@@ -103,9 +190,11 @@ void RvePool::set_states(std::span<const std::size_t> rves, std::span<const Stat
 }
 
 std::vector<std::byte> RvePool::state() const {
-  std::vector<std::vector<std::byte>> states;
-  for (std::size_t k = 0; k < size(); ++k) states.push_back(state_of(k));
-  return join_state(identity(), std::vector<StateRecord>(states.begin(), states.end()));
+  const HeldRves held = committed_rves();
+  std::vector<std::byte> bytes;
+  bytes.reserve(held.size());
+  held.write([&bytes](std::span<const std::byte> piece) { bytes.insert(bytes.end(), piece.begin(), piece.end()); });
+  return bytes;
 }
 
 void RvePool::set_state(std::span<const std::byte> bytes) {

@@ -20,15 +20,20 @@ constexpr std::uint64_t marked_version = 0x766f757373000000U + record_version;
 
 }  // namespace
 
+void write_head(std::vector<std::byte>& bytes, std::uint64_t identity, std::size_t n) {
+  io::ByteWriter write(bytes);
+  write.value(marked_version);
+  write.value(static_cast<std::uint64_t>(n));
+  write.value(identity);
+}
+
 std::vector<std::byte> join_state(std::uint64_t identity, std::span<const StateRecord> records) {
   std::size_t size = 3 * sizeof(std::uint64_t);
   for (const StateRecord& record : records) size += sizeof(std::uint64_t) + record.size();
   std::vector<std::byte> bytes;
   bytes.reserve(size);
+  write_head(bytes, identity, records.size());
   io::ByteWriter write(bytes);
-  write.value(marked_version);
-  write.value(static_cast<std::uint64_t>(records.size()));
-  write.value(identity);
   for (const StateRecord& record : records) write.list(record);
   return bytes;
 }

@@ -18,6 +18,9 @@ inline constexpr const char* not_of_this_case = "the checkpoint's RVEs are not t
 /// Version of the records; it must be raised when the meaning of their bytes changes.
 inline constexpr std::uint64_t record_version = 3;
 
+/// The bytes before the first record.
+void write_head(std::vector<std::byte>& bytes, std::uint64_t identity, std::size_t n);
+
 /// @param identity a hash of the packings that the RVEs are made of; the states have no meaning with other packings
 [[nodiscard]] std::vector<std::byte> join_state(std::uint64_t identity, std::span<const StateRecord> records);
 

@@ -213,11 +213,8 @@ std::vector<fem::PointField> RankPool::fields() const {
 
 /// The records of `n` RVEs of a rank from its RVE `first` on, counted within the rank.
 std::vector<std::vector<std::byte>> RankPool::records_of(std::size_t rank, std::size_t first, std::size_t n) const {
+  if (rank == 0) return own_->records(first, n);
   std::vector<std::vector<std::byte>> records;
-  if (rank == 0) {
-    for (std::size_t k = first; k < first + n; ++k) records.push_back(own_->state_of(k));
-    return records;
-  }
   send_message(static_cast<int>(rank),
                message_of(Command::states, static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(n)));
   const Message reply = receive_message(static_cast<int>(rank));

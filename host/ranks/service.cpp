@@ -112,7 +112,7 @@ class Service {
   void states(ByteReader& read, ByteWriter& reply) {
     const auto first = read.value<std::uint64_t>();
     const auto n = read.value<std::uint64_t>();
-    for (std::size_t k = first; k < first + n; ++k) reply.list(pool().state_of(k));
+    for (const std::vector<std::byte>& record : pool().records(first, n)) reply.list(record);
   }
 
   void set_states(ByteReader& read, ByteWriter& reply) {

@@ -42,7 +42,7 @@ struct EquilibriumReport {
   double time_grains = 0;    ///< wall time of the material, tangents included [s]
   double time_assembly = 0;  ///< wall time of gradients, nodal forces and stiffness [s]
   double time_solve = 0;     ///< wall time of factorisations and solutions [s]
-  double time_output = 0;    ///< wall time of the result file and the checkpoint of the increment before [s]
+  double time_output = 0;    ///< wall time that the increment before waited for its files and for earlier ones [s]
   double peak_memory = 0;    ///< largest resident memory of this process so far [B]
 };
 

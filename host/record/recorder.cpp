@@ -145,12 +145,13 @@ std::string RunRecorder::time_left(int done) const {
 }
 
 void RunRecorder::show_iterate(double load_parameter, const fem::Iterate& iterate) {
+  if (given_ && thread_.idle()) finish();
   log_.live(fmt::format("{} {}/{}  at {:.4g}  iteration {}  residual {:.2e} of {:.2e} N/m  the stage ends in {}",
                         stage_, stage_current_ + 1, stage_planned_, load_parameter, iterate.iteration, iterate.residual,
                         iterate.bound, time_left(stage_current_)));
 }
 
-void RunRecorder::report(const IncrementReport& increment) {
+void RunRecorder::add_line(const IncrementReport& increment) {
   const io::IncrementInfo& info = increment.info;
   stage_current_ = info.stage_index;
   std::string text = fmt::format("{} {}/{}: at {:.5g}, {} iterations, residual {:.1e}, {:.2g} s", info.stage,
@@ -159,18 +160,73 @@ void RunRecorder::report(const IncrementReport& increment) {
   if (info.cuts > 0) text += fmt::format(", the step was cut {} times", info.cuts);
   if (increment.equilibrium) text += remarks(*increment.equilibrium);
   if (stage_current_ < stage_planned_) text += fmt::format("; the stage ends in {}", time_left(stage_current_));
-  log_.line(text);
+  next_.line = std::move(text);
 }
 
-void RunRecorder::write(const IncrementReport& increment, const std::vector<io::Field>& fields,
-                        const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates) {
-  confirm();
+void RunRecorder::add_file(const IncrementReport& increment, std::vector<io::Field> fields,
+                           std::vector<io::RveSnapshot> snapshots, std::vector<double> coordinates) {
   io::IncrementInfo row = row_of(increment);
   row.index = ++result_index_;
-  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): only a finished run has no writer, and it writes no increments.
-  writer_->write(row, fields, snapshots, coordinates);
-  ++files_;
-  file_bytes_ += static_cast<double>(std::filesystem::file_size(io::increment_path(folder_, row.index)));
+  next_.file = Output::File{std::move(row), std::move(fields), std::move(snapshots), std::move(coordinates)};
+}
+
+void RunRecorder::add_checkpoint(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished) {
+  checkpoint.put_text("stage", stage);
+  checkpoint.put_text("kind", provenance_.case_kind);
+  host::save(totals_, checkpoint);
+  const std::array<std::int64_t, 3> record{stage_index, result_index_, finished ? 1 : 0};
+  checkpoint.put_integers("record", record);
+  next_.checkpoint = std::move(checkpoint);
+  next_.sequence = ++sequence_;
+}
+
+void RunRecorder::hand_over() {
+  finish();
+  if (!next_.file && !next_.checkpoint) return tell(std::exchange(next_, {}));
+  thread_.submit([this, output = &given_.emplace(std::exchange(next_, {}))] { put_on_disk(*output); });
+}
+
+void RunRecorder::finish() {
+  if (!given_) return;
+  try {
+    thread_.wait();
+  } catch (...) {
+    given_.reset();
+    throw;
+  }
+  const Output written = *std::exchange(given_, {});
+  tell(written);
+}
+
+/// Called on the thread that writes, which alone uses the files meanwhile.
+void RunRecorder::put_on_disk(Output& output) {
+  const WriterTime start = WriterTime::now();
+  const auto confirm_here = [&] {
+    confirm_lock(options_, [&output](const std::string& changed) { output.warnings.push_back(changed); });
+  };
+  if (output.file) {
+    confirm_here();
+    const Output::File& file = *output.file;
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): only a finished run has no writer, and it has no increments.
+    writer_->write(file.row, file.fields, file.snapshots, file.coordinates);
+    output.file_bytes = static_cast<double>(std::filesystem::file_size(io::increment_path(folder_, file.row.index)));
+  }
+  if (output.checkpoint) {
+    confirm_here();
+    output.checkpoint_bytes = static_cast<double>(store_.save(output.sequence, *output.checkpoint));
+  }
+  output.time = WriterTime::now() - start;
+}
+
+void RunRecorder::tell(const Output& output) {
+  for (const std::string& warning : output.warnings) log_.warning(warning);
+  if (output.file) {
+    ++files_;
+    file_bytes_ += output.file_bytes;
+  }
+  if (output.checkpoint) checkpoint_bytes_ = output.checkpoint_bytes;
+  if (!totals_.empty()) totals_.back().writer += output.time;
+  if (!output.line.empty()) log_.line(output.line);
 }
 
 std::string RunRecorder::disk_use() const {
@@ -179,24 +235,13 @@ std::string RunRecorder::disk_use() const {
 }
 
 void RunRecorder::set_table(const std::string& name, std::vector<io::TableColumn> columns) {
+  finish();
   confirm();
   if (!writer_) {
     if (std::filesystem::exists(folder_ / "run.h5") && io::read_tables(folder_ / "run.h5").contains(name)) return;
     writer_ = io::ResultWriter::resume(folder_, provenance_, mesh_, result_index_);
   }
   writer_->set_table(name, std::move(columns));
-}
-
-void RunRecorder::save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished) {
-  confirm();
-  checkpoint.put_text("stage", stage);
-  checkpoint.put_text("kind", provenance_.case_kind);
-  host::save(totals_, checkpoint);
-  const std::array<std::int64_t, 3> record{stage_index, result_index_, finished ? 1 : 0};
-  checkpoint.put_integers("record", record);
-  checkpoint_bytes_ = 0;
-  for (const auto& [name, bytes] : checkpoint.blobs()) checkpoint_bytes_ += static_cast<double>(bytes.size());
-  store_.save(++sequence_, checkpoint);
 }
 
 }  // namespace voussoir::host

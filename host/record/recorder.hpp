@@ -1,6 +1,9 @@
 #pragma once
 /// The record of one run in one folder: result files, checkpoints, log lines and progress. The recorder does not know
 /// how the results are computed.
+///
+/// The files of an increment are written by a thread of their own while the next increment is computed. All files and
+/// the log are otherwise used by the calling thread alone, which waits for the other one first.
 
 #include <chrono>
 #include <optional>
@@ -12,6 +15,7 @@
 #include "host/record/increment_report.hpp"
 #include "host/record/log.hpp"
 #include "host/record/totals.hpp"
+#include "host/record/writer.hpp"
 #include "io/checkpoint.hpp"
 #include "io/result_file.hpp"
 
@@ -38,29 +42,58 @@ class RunRecorder {
   /// The totals of the stage that was begun last.
   [[nodiscard]] StageTotals& stage_totals() { return totals_.back(); }
 
+  // A failure of the files that are written is thrown by whichever of the next functions is called first.
+
   /// Tells the progress display that a stage of `planned` increments begins or goes on behind its increment `done`.
   void begin_stage(const std::string& name, int done, int planned);
   void show_iterate(double load_parameter, const fem::Iterate& iterate);
-  /// Writes one line about a finished increment to the log and to the terminal.
-  void report(const IncrementReport& increment);
+
+  /// Takes a result file that hand_over writes, and gives the increment its index.
+  void add_file(const IncrementReport& increment, std::vector<io::Field> fields, std::vector<io::RveSnapshot> snapshots,
+                std::vector<double> coordinates);
+  /// Takes a checkpoint after increment `stage_index` of `stage` that hand_over writes. `finished` says that the whole
+  /// run ends there.
+  void add_checkpoint(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished);
+  /// Takes one line about a finished increment, which the log and the terminal get when its files are on the disk.
+  void add_line(const IncrementReport& increment);
+  /// Begins to write what was taken, after what was handed over before is on the disk.
+  void hand_over();
+  /// Waits until everything that was handed over is on the disk, and tells of it.
+  void finish();
 
   /// The files that this process has written, such as "12 result files of 0.9 MB, checkpoint of 145 MB".
   [[nodiscard]] std::string disk_use() const;
 
-  /// Writes a result file and gives the increment its index.
-  void write(const IncrementReport& increment, const std::vector<io::Field>& fields,
-             const std::vector<io::RveSnapshot>& snapshots, const std::vector<double>& coordinates);
-
-  /// Writes a table of run.h5, see io::ResultWriter::set_table. A finished run that has a table of this name keeps it.
+  /// Writes a table of run.h5 before it returns, see io::ResultWriter::set_table. A finished run that has a table of
+  /// this name keeps it.
   void set_table(const std::string& name, std::vector<io::TableColumn> columns);
 
-  /// Saves a checkpoint after increment `stage_index` of `stage`. `finished` says that the whole run ends there.
-  void save(io::Checkpoint checkpoint, const std::string& stage, int stage_index, bool finished);
-
  private:
+  /// The output of one increment.
+  struct Output {
+    struct File {
+      io::IncrementInfo row;
+      std::vector<io::Field> fields;
+      std::vector<io::RveSnapshot> snapshots;
+      std::vector<double> coordinates;
+    };
+    std::optional<File> file;
+    std::optional<io::Checkpoint> checkpoint;
+    int sequence = 0;  ///< number of the checkpoint
+    std::string line;  ///< empty: none
+
+    // What its writing has found.
+    std::vector<std::string> warnings;
+    double file_bytes = 0;
+    double checkpoint_bytes = 0;
+    WriterTime time;
+  };
+
   [[nodiscard]] std::string time_left(int done) const;
   /// Makes sure that the folder still belongs to this run.
   void confirm();
+  void put_on_disk(Output& output);
+  void tell(const Output& output);
 
   RunOptions options_;
   std::filesystem::path folder_;
@@ -84,6 +117,9 @@ class RunRecorder {
   int stage_current_ = 0;  ///< increments of the stage done
   int stage_planned_ = 0;
   std::chrono::steady_clock::time_point stage_start_;
+  Output next_;                  ///< of the present increment
+  std::optional<Output> given_;  ///< to the thread that writes, whose it is until that thread is idle
+  Writer thread_;                ///< destroyed first, because its job uses the other members
 };
 
 }  // namespace voussoir::host

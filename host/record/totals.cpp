@@ -2,7 +2,10 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <time.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <limits>
 
@@ -28,6 +31,7 @@ StageTotals sum_of(const std::vector<StageTotals>& totals) {
     sum.lane_steps += stage.lane_steps;
     sum.parts += stage.parts;
     sum.output += stage.output;
+    sum.writer += stage.writer;
     sum.wall += stage.wall;
   }
   return sum;
@@ -37,13 +41,20 @@ std::string row(const StageTotals& t) {
   const double named = t.parts.material + t.parts.assembly + t.parts.solve + t.output;
   const double most = t.evaluations.empty() ? 0 : *std::max_element(t.evaluations.begin(), t.evaluations.end());
   return fmt::format(
-      "{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>9.1f}", t.stage,
-      t.evaluations.size(), t.wall, t.parts.material, t.parts.assembly, t.parts.solve, t.output, t.wall - named,
-      median(t.evaluations), most, t.cuts, t.particle_steps,
+      "{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>9.1f}",
+      t.stage, t.evaluations.size(), t.wall, t.parts.material, t.parts.assembly, t.parts.solve, t.output, t.writer.wall,
+      t.wall - named, median(t.evaluations), most, t.cuts, t.particle_steps,
       t.parts.material > 0 ? 1e-6 * t.particle_steps / t.parts.material : 0.0);
 }
 
 }  // namespace
+
+WriterTime WriterTime::now() {
+  timespec processor{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &processor);
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(),
+          static_cast<double>(processor.tv_sec) + 1e-9 * static_cast<double>(processor.tv_nsec)};
+}
 
 void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
   std::string names;
@@ -56,7 +67,9 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
                                       t.parts.assembly,
                                       t.parts.solve,
                                       t.output,
-                                      t.wall};
+                                      t.wall,
+                                      t.writer.wall,
+                                      t.writer.processor};
     checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
     checkpoint.put_doubles(fmt::format("totals_lane_steps_{}", k), {&t.lane_steps, 1});
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
@@ -94,6 +107,7 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
     t.parts = {numbers.at(2), numbers.at(3), numbers.at(4)};
     t.output = numbers.at(5);
     t.wall = numbers.at(6);
+    if (numbers.size() > 8) t.writer = {numbers[7], numbers[8]};  // earlier versions had no writer
     totals.push_back(t);
   }
   return totals;
@@ -149,12 +163,13 @@ std::vector<std::string> totals_table(const std::vector<StageTotals>& totals) {
   std::vector<std::string> lines;
   if (totals.empty()) return lines;
   lines.emplace_back(
-      "the columns are: wall time [s] by stage and part; evaluations of an increment (median, largest); "
+      "the columns are: wall time [s] by stage and part, output being the time that the run waited for its files, and "
+      "writer the time of the thread that writes them meanwhile; evaluations of an increment (median, largest); "
       "particle-steps, "
       "and how many 10^6 of them the grains made in a second");
-  lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}", "stage",
-                              "incr.", "wall", "grains", "assembly", "solve", "output", "other", "eval.", "most",
-                              "cuts", "steps", "M/s"));
+  lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}", "stage",
+                              "incr.", "wall", "grains", "assembly", "solve", "output", "writer", "other", "eval.",
+                              "most", "cuts", "steps", "M/s"));
   for (const StageTotals& stage : totals) lines.push_back(row(stage));
   if (totals.size() > 1) lines.push_back(row(sum_of(totals)));
   return lines;

@@ -9,6 +9,20 @@
 
 namespace voussoir::host {
 
+/// Time of the thread that writes result files and checkpoints.
+struct WriterTime {
+  double wall = 0;       ///< [s]
+  double processor = 0;  ///< [s]
+
+  [[nodiscard]] static WriterTime now();  ///< of the calling thread, from some moment on
+  [[nodiscard]] WriterTime operator-(const WriterTime& o) const { return {wall - o.wall, processor - o.processor}; }
+  WriterTime& operator+=(const WriterTime& o) {
+    wall += o.wall;
+    processor += o.processor;
+    return *this;
+  }
+};
+
 struct StageTotals {
   std::string stage;
   std::vector<double> evaluations;          ///< evaluations of each increment, those of tries that were cut included
@@ -23,7 +37,8 @@ struct StageTotals {
   double lane_steps = 0;  ///< steps of lanes, as fem::BatchReport::lane_steps; not a number where a checkpoint of an
                           ///< earlier version did not say how many there were
   fem::PartTimes parts;   ///< wall time of material, assembly and solution
-  double output = 0;      ///< wall time of result files and checkpoints [s]
+  double output = 0;      ///< wall time that the increments waited for result files and checkpoints [s]
+  WriterTime writer;      ///< spent on these files meanwhile
   double wall = 0;        ///< wall time of the whole stage [s]
 };
 
@@ -49,7 +64,7 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint);
 [[nodiscard]] std::string lanes_line(const StageTotals& stage);
 
 /// The lines of a table with one row for each stage and one for their sum: increments, wall time by part [s],
-/// evaluations of an increment (median and largest), cuts, particle-steps and their rate.
+/// evaluations of an increment (median and largest), cuts, particle-steps and their rate, and the writer's time.
 [[nodiscard]] std::vector<std::string> totals_table(const std::vector<StageTotals>& totals);
 
 }  // namespace voussoir::host

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -58,7 +59,9 @@ void save(const Ground& ground, io::Checkpoint& checkpoint) {
                                       state.relaxation_factor};
   checkpoint.put_doubles("load", scalars);
   put_list(checkpoint, "strain", ground.strain);
-  checkpoint.put("material", ground.material.state());
+  const std::shared_ptr<const fem::HeldState> material = ground.material.hold();
+  checkpoint.put_late(
+      "material", {[material] { return material->size(); }, [material](const auto& sink) { material->write(sink); }});
 }
 
 void restore(Ground& ground, const io::Checkpoint& checkpoint) {

@@ -112,7 +112,7 @@ void record_ground(const Ground& ground, const IncrementReport& increment, const
     return !output.fields.empty() &&
            std::find(output.fields.begin(), output.fields.end(), field.name) == output.fields.end();
   });
-  recorder.write(increment, fields, snapshots, moved_coordinates(ground));
+  recorder.add_file(increment, std::move(fields), std::move(snapshots), moved_coordinates(ground));
 }
 
 }  // namespace voussoir::host

@@ -21,7 +21,8 @@ namespace voussoir::host {
 /// empty, the field `reaction` is left out.
 [[nodiscard]] std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd& reactions);
 
-/// Writes the present state of the ground to a result file, with the fields and the whole RVEs that `output` asks for.
+/// Gives the present state of the ground to the recorder, for a result file with the fields and the whole RVEs that
+/// `output` asks for.
 void record_ground(const Ground& ground, const IncrementReport& increment, const Eigen::VectorXd& reactions,
                    const OutputCase& output, RunRecorder& recorder);
 

@@ -21,8 +21,10 @@ fem::StepOptions step_options(const NewtonCase& newton) {
 
 /// Writes the lines at the end of a stage to the log.
 void report_totals(GroundRun& run, const std::string& stage) {
-  run.log().line(fmt::format("{}: {}, peak memory {:.0f} MB", stage, run.recorder().disk_use(), peak_memory() * 1e-6));
   const StageTotals& totals = run.recorder().stage_totals();
+  run.log().line(fmt::format("{}: {}, written in {:.2g} s, {:.2g} s of them on a processor; peak memory {:.0f} MB",
+                             stage, run.recorder().disk_use(), totals.writer.wall, totals.writer.processor,
+                             peak_memory() * 1e-6));
   for (const std::string& line : {lanes_line(totals), unsettled_line(totals, run.ground().strain.size()),
                                   deferral_line(totals, run.settings().defer)}) {
     if (!line.empty()) run.log().line(line);

@@ -60,7 +60,13 @@ void StageRun::failed(const fem::FailedStep& step) {
   run_.log().detail("the residuals of its iterates were" + residuals);
 }
 
-void StageRun::end() { run_.recorder().stage_totals().wall += seconds_since(effort_.since); }
+void StageRun::end() {
+  const auto start = Clock::now();
+  run_.recorder().finish();
+  StageTotals& totals = run_.recorder().stage_totals();
+  totals.output += seconds_since(start);
+  totals.wall += seconds_since(effort_.since);
+}
 
 void StageRun::tally(const fem::NewtonReport& report) {
   effort_.iterations += report.iterations;
@@ -91,8 +97,9 @@ void StageRun::finish_increment(const fem::ConvergedStep& step, bool stop) {
     if (last_target || done_ % output.every == 0) {
       record_ground(run_.ground(), increment, step.increment.reactions, output, run_.recorder());
     }
-    if (last_target || stop || done_ % output.checkpoint_every == 0) save_checkpoint(stage_.last && last_target);
-    run_.recorder().report(increment);
+    if (last_target || stop || done_ % output.checkpoint_every == 0) add_checkpoint(stage_.last && last_target);
+    run_.recorder().add_line(increment);
+    run_.recorder().hand_over();
   }
   output_ = seconds_since(effort_.since) - increment.info.wall_s;
   run_.recorder().stage_totals().output += output_;
@@ -166,11 +173,11 @@ void StageRun::add_to_totals(const IncrementReport& increment) {
   totals.wall += increment.info.wall_s;
 }
 
-void StageRun::save_checkpoint(bool finished) {
+void StageRun::add_checkpoint(bool finished) {
   io::Checkpoint checkpoint;
   save(run_.ground(), checkpoint);
   if (stage_.on_checkpoint) stage_.on_checkpoint(checkpoint);
-  run_.recorder().save(std::move(checkpoint), stage_.name, done_, finished);
+  run_.recorder().add_checkpoint(std::move(checkpoint), stage_.name, done_, finished);
 }
 
 }  // namespace voussoir::host

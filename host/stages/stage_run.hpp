@@ -24,7 +24,8 @@ class StageRun {
   /// Counts and logs a step that did not converge.
   void failed(const fem::FailedStep& step);
 
-  /// Adds the wall time since the last increment to the totals: it went into steps that did not complete an increment.
+  /// Waits until all increments are on the disk, and adds the wall time since the last one to the totals: it went into
+  /// this waiting and into steps that did not complete an increment.
   void end();
 
  private:
@@ -48,13 +49,13 @@ class StageRun {
   [[nodiscard]] IncrementReport report_of(const fem::ConvergedStep& step) const;
   [[nodiscard]] EquilibriumReport equilibrium_of(const fem::NewtonReport& report) const;
   void add_to_totals(const IncrementReport& increment);
-  void save_checkpoint(bool finished);
+  void add_checkpoint(bool finished);
 
   GroundRun& run_;
   const Stage& stage_;
   int done_ = 0;
   Effort effort_;
-  double output_ = 0;  ///< wall time of the output of the last increment [s]
+  double output_ = 0;  ///< wall time that the last increment waited for output [s]
 };
 
 }  // namespace voussoir::host

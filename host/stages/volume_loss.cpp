@@ -45,6 +45,7 @@ void record_start(GroundRun& run, const GroundCase& soil, const K0Table& k0) {
   start.info.converged = true;
   add_columns(tunnel_report(ground), tunnel_columns, start.info.extra);
   record_ground(ground, start, opening.reactions, run.settings().output, run.recorder());
+  run.recorder().hand_over();
 }
 
 }  // namespace

@@ -8,7 +8,6 @@ library of tests/faults lets a call of the run find the disk full. An argument i
     ctest --preset openmp -R endurance_long_test --verbose
 """
 
-import errno
 import os
 import random
 import shutil
@@ -44,7 +43,7 @@ class Disk:
         """Fills the disk but for some pages, starts the run and frees the disk again; returns how the run ended."""
         if not self.is_tmpfs:
             pattern = f"{self.folder.resolve()}/*"
-            return started(Path(), words, pattern, chance.randrange(1, 150), errno.ENOSPC, "on")
+            return started(Path(), words, pattern, at=chance.randrange(1, 150))
         filler = self.folder / "filler"
         free = shutil.disk_usage(self.folder).free - chance.randrange(1_000_000)
         with filler.open("wb") as opened:

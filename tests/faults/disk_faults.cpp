@@ -6,7 +6,8 @@
 //   DISK_FAULTS_ERRNO    the reason, as a number
 //   DISK_FAULTS_MODE     "once", or "on": every later call fails too, except those that remove files, as on a full
 //   disk;
-//                        a write of several bytes first writes a half of them
+//                        a write of several bytes first writes a half of them; "never": no call fails
+//   DISK_FAULTS_DELAY    time by which the call of this number is late [ms]
 //   DISK_FAULTS_COUNT    a file that gets the number of calls and a list of them when the program ends
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -35,6 +36,8 @@ struct Settings {
   long at = 0;
   int reason = ENOSPC;
   bool on = false;
+  bool never = false;
+  long delay = 0;
 };
 
 const char* variable(const char* name) {
@@ -51,6 +54,8 @@ const Settings& settings() {
     read->at = std::atol(variable("DISK_FAULTS_AT"));
     read->reason = std::atoi(variable("DISK_FAULTS_ERRNO"));
     read->on = std::string(variable("DISK_FAULTS_MODE")) == "on";
+    read->never = std::string(variable("DISK_FAULTS_MODE")) == "never";
+    read->delay = std::atol(variable("DISK_FAULTS_DELAY"));
     return read;
   }();
   return *all;
@@ -86,17 +91,22 @@ std::string& report() {
   return *text;
 }
 
+long count(const char* call, const std::string& path) {
+  static auto* const guard = new std::mutex;
+  const std::lock_guard<std::mutex> lock(*guard);
+  report() += std::string(call) + " " + path + "\n";
+  return ++calls;
+}
+
 enum class Fate { passes, fails, fails_after_half };
 
 /// Counts a call for `path` and says what becomes of it.
 Fate fate(const char* call, const std::string& path) {
   if (!matches(path)) return Fate::passes;
-  static auto* const guard = new std::mutex;
-  const std::lock_guard<std::mutex> lock(*guard);
-  const long number = ++calls;
-  report() += std::string(call) + " " + path + "\n";
   const Settings& s = settings();
-  if (s.at <= 0 || number < s.at) return Fate::passes;
+  const long number = count(call, path);
+  if (s.at > 0 && number == s.at) usleep(static_cast<useconds_t>(1000 * s.delay));
+  if (s.at <= 0 || number < s.at || s.never) return Fate::passes;
   if (number == s.at) return s.on ? Fate::fails_after_half : Fate::fails;
   const bool removes = std::strcmp(call, "remove") == 0;
   return s.on && !removes ? Fate::fails : Fate::passes;

@@ -96,15 +96,21 @@ SCENARIOS = {
 }
 
 
-def started(root, words, pattern="", at=0, reason=errno.ENOSPC, mode="on", count=""):
-    environment = os.environ | {
+def faults(pattern="", at=0, reason=errno.ENOSPC, mode="on", count="", delay=0):
+    """The environment of a program on whose disk the call of this number fails, or is late [ms]."""
+    return os.environ | {
         "LD_PRELOAD": LIBRARY,
         "DISK_FAULTS_PATTERN": pattern,
         "DISK_FAULTS_AT": str(at),
         "DISK_FAULTS_ERRNO": str(reason),
         "DISK_FAULTS_MODE": mode,
         "DISK_FAULTS_COUNT": count,
+        "DISK_FAULTS_DELAY": str(delay),
     }
+
+
+def started(root, words, pattern="", **how):
+    environment = faults(pattern, **how)
     return subprocess.run(words, check=False, capture_output=True, text=True, timeout=280, env=environment, cwd=root)
 
 
@@ -146,7 +152,7 @@ def try_fault(name, pattern, at, call):
     root.mkdir()
     reason, mode = REASONS[at % len(REASONS)]
     what = f"{name}, call {at} ({call}), {errno.errorcode[reason]} {mode}"
-    done = started(root, scenario.words(root), pattern.format(root=root.resolve()), at, reason, mode)
+    done = started(root, scenario.words(root), pattern.format(root=root.resolve()), at=at, reason=reason, mode=mode)
     if mode == "once" and call.startswith("open") and call.endswith("run.log"):
         check(done.returncode == 0, f"{what}: the log is not opened in a second try: {done.stderr}")
         check_equal(Path(f"straight_{name}"), root)

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "tests/host_support.hpp"
@@ -46,6 +47,81 @@ TEST(RvePool, ASnapshotShowsTheGrainsWhereTheyAre) {
     EXPECT_EQ(shown.radius[i], rve.packing.radii[i]);
   }
 }
+
+std::vector<std::byte> bytes_of(const fem::HeldState& held) {
+  std::vector<std::byte> bytes;
+  held.write([&](std::span<const std::byte> piece) { bytes.insert(bytes.end(), piece.begin(), piece.end()); });
+  EXPECT_EQ(held.size(), bytes.size());
+  return bytes;
+}
+
+class HeldState : public testing::TestWithParam<double> {
+ protected:
+  HeldState() {
+    EngineCase engine;
+    engine.defer = GetParam();
+    engine.hold_cap = 300;
+    for (auto* pool : {&pool_, &copied_}) *pool = std::make_unique<RvePool>(small_packing(), PoolOptions{engine}, 3);
+  }
+
+  /// The first RVE is strained so little that it is deferred where RVEs may be.
+  static void advance(RvePool& pool, int increments) {
+    std::vector<fem::Gradient> h(3, fem::Gradient::Zero());
+    for (std::size_t k = 0; k < 3; ++k) h[k](1, 1) = -1e-7 * std::pow(50.0, static_cast<double>(k));
+    std::vector<fem::Stress> stress(3);
+    std::vector<fem::Tangent> tangent(3);
+    for (int n = 0; n < increments; ++n) {
+      pool.begin_increment();
+      ASSERT_TRUE(pool.evaluate(h, stress, tangent).usable);
+      pool.commit();
+    }
+  }
+
+  std::unique_ptr<RvePool> pool_, copied_;
+};
+
+TEST_P(HeldState, StaysWhatItIs) {
+  advance(*pool_, 1);
+  const std::shared_ptr<const fem::HeldState> held = pool_->hold();
+  const std::vector<std::byte> then = pool_->state();
+  EXPECT_EQ(bytes_of(*held), then);
+  for (int commits = 1; commits <= 4; ++commits) {
+    advance(*pool_, 1);
+    EXPECT_EQ(bytes_of(*held), then) << commits;
+    EXPECT_NE(pool_->state(), then);
+  }
+}
+
+/// Holding changes no bit of what follows, whether the state is let go at once, late, or gone back to.
+TEST_P(HeldState, ChangesNothingOfWhatFollows) {
+  std::shared_ptr<const fem::HeldState> held;
+  for (int n = 0; n < 4; ++n) {
+    const std::shared_ptr<const fem::HeldState> before = pool_->hold();
+    const std::vector<std::byte> copy = copied_->state();
+    advance(*pool_, 2);
+    advance(*copied_, 2);
+    pool_->return_to(*before);
+    copied_->set_state(copy);
+    EXPECT_EQ(pool_->state(), copy);
+    held = n % 2 == 0 ? before : nullptr;
+    advance(*pool_, 1);
+    advance(*copied_, 1);
+    EXPECT_EQ(pool_->state(), copied_->state()) << n;
+  }
+}
+
+/// A state of another moment cannot be written over one that is held.
+TEST_P(HeldState, IsNotWrittenOver) {
+  const std::vector<std::byte> first = pool_->state();
+  advance(*pool_, 1);
+  std::shared_ptr<const fem::HeldState> held = pool_->hold();
+  EXPECT_THROW(pool_->set_state(first), std::logic_error);
+  held.reset();
+  pool_->set_state(first);
+  EXPECT_EQ(pool_->state(), first);
+}
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutDeferral, HeldState, testing::Values(0.0, 1e-2));
 
 }  // namespace
 }  // namespace voussoir::host

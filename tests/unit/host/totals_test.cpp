@@ -18,6 +18,7 @@ std::vector<StageTotals> two_stages() {
   gravity.lane_steps = 5e8;
   gravity.parts = {.material = 2.0, .assembly = 0.25, .solve = 0.5};
   gravity.output = 0.125;
+  gravity.writer = {.wall = 0.5, .processor = 0.25};
   gravity.wall = 3.0;
   StageTotals loss = gravity;
   loss.stage = "volume_loss";
@@ -53,6 +54,8 @@ TEST(RunTotals, ComeBackFromACheckpoint) {
     EXPECT_EQ(read[k].parts.assembly, written[k].parts.assembly);
     EXPECT_EQ(read[k].parts.solve, written[k].parts.solve);
     EXPECT_EQ(read[k].output, written[k].output);
+    EXPECT_EQ(read[k].writer.wall, written[k].writer.wall);
+    EXPECT_EQ(read[k].writer.processor, written[k].writer.processor);
     EXPECT_EQ(read[k].wall, written[k].wall);
   }
 }
@@ -115,9 +118,9 @@ TEST(RunTotals, TableSumsTheStages) {
     for (std::string word; in >> word;) found.push_back(word);
     return found;
   };
-  EXPECT_EQ(words(lines[4]), (std::vector<std::string>{"all", "5", "6.0", "4.0", "0.5", "1.0", "0.2", "0.2", "4", "9",
-                                                       "2", "8.000e+08", "200.0"}));
-  EXPECT_EQ(words(lines[2]).at(8), "2.5");
+  EXPECT_EQ(words(lines[4]), (std::vector<std::string>{"all", "5", "6.0", "4.0", "0.5", "1.0", "0.2", "1.0", "0.2", "4",
+                                                       "9", "2", "8.000e+08", "200.0"}));
+  EXPECT_EQ(words(lines[2]).at(9), "2.5");
 }
 
 }  // namespace

@@ -52,6 +52,28 @@ class CheckpointTest : public testing::Test {
 
 TEST_F(CheckpointTest, NothingToLoadAtFirst) { EXPECT_FALSE(store_.load_latest().has_value()); }
 
+TEST_F(CheckpointTest, BytesThatAreMadeLateAreTheSame) {
+  const std::vector<std::byte> bytes(7, std::byte{5});
+  const auto in_pieces = [&bytes](const auto& sink) {
+    sink(std::span(bytes).first(3));
+    sink(std::span(bytes).subspan(3));
+  };
+  Checkpoint late = example(1.0);
+  late.put_late("grains", {[&bytes] { return bytes.size(); }, in_pieces});
+  EXPECT_TRUE(late.has("grains"));
+  Checkpoint at_once = example(1.0);
+  at_once.put("grains", bytes);
+  const std::size_t size = store_.save(1, late);
+  EXPECT_EQ(size, fs::file_size(folder_ / "checkpoint_0001.bin"));
+  EXPECT_EQ(store_.load_latest()->checkpoint.blobs(), at_once.blobs());
+  EXPECT_EQ(late.get("grains"), bytes);
+  EXPECT_EQ(late.blobs(), at_once.blobs());
+
+  late.put_late("grains", {[] { return std::size_t{8}; }, in_pieces});
+  expect_throws<std::logic_error>([&] { store_.save(2, late); }, "has 7 bytes and not 8");
+  EXPECT_EQ(store_.load_latest()->increment, 1);
+}
+
 TEST_F(CheckpointTest, SameBitsBack) {
   const Checkpoint saved = example(1.0 / 3);
   store_.save(4, saved);
