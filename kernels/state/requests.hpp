@@ -38,7 +38,8 @@ struct EngineSettings {
   int team_size = 0;  ///< threads of a team; with 0 Kokkos chooses: on CPUs one, since several threads would wait for
                       ///< one another on shared cores
   TangentKind tangent = TangentKind::contact;
-  double tangent_tolerance = 2e-3;  ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
+  double tangent_tolerance = 2e-3;  ///< error of the grains' motion under which a static tangent's iterations end, in
+                                    ///< the norm of the energy; the tangent's own error is its square [-]
   int tangent_iterations = 800;     ///< most iterations of a static tangent
   double tangent_strain = 1e-6;     ///< strain over which a loading tangent is the secant; negative: against the last
                                     ///< motion [-]
