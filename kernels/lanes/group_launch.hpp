@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <vector>
 
@@ -14,12 +15,11 @@
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
-/// Runs groups of the queue until there are none. @return the steps of their lanes x grains, empty lanes included
+/// Runs groups of the queue until there are none. @return the work of this worker without the RVEs' own steps
 template <class Run>
-std::size_t work_off(Run& run, GroupQueue<Run>& queue, RveBatch& batch,
-                     std::span<const typename Run::Drive::Request> requests, std::span<RveReport> reports,
-                     RegionTeller& teller) {
-  std::size_t lane_steps = 0;
+Work work_off(Run& run, GroupQueue<Run>& queue, RveBatch& batch, std::span<const typename Run::Drive::Request> requests,
+              std::span<RveReport> reports, RegionTeller& teller) {
+  Work work;
   typename GroupQueue<Run>::Task task;
   run.batch = &batch;
   while (queue.next(task)) {
@@ -33,9 +33,11 @@ std::size_t work_off(Run& run, GroupQueue<Run>& queue, RveBatch& batch,
       unpark(run, std::span(task.parked));
     }
     const auto steps = static_cast<std::size_t>(advance_group(run, queue, reports));
-    lane_steps += steps * static_cast<std::size_t>(run.packing->size()) * Run::width;
+    work.lane_steps += steps * static_cast<std::size_t>(run.packing->size()) * Run::width;
   }
-  return lane_steps;
+  work.tangent_seconds = run.tangent_seconds;
+  work.workers = 1;
+  return work;
 }
 
 /// Advances the RVEs `rves` in groups on all cores of the host.
@@ -55,7 +57,8 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
   RegionTeller teller;
   std::exception_ptr failure;
   std::atomic_flag failed;
-  std::atomic<std::size_t> lane_steps = 0;
+  std::mutex adding;
+  Work work;
   Kokkos::parallel_for(
       "voussoir::lanes::groups",
       Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(space, 0, workers).set_chunk_size(1),
@@ -64,7 +67,9 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
         try {
           const auto run = std::make_unique<Run>();
           run->settings = settings;
-          lane_steps += work_off(*run, queue, batch, requests, reports, teller);
+          const Work done = work_off(*run, queue, batch, requests, reports, teller);
+          const std::lock_guard lock(adding);
+          work += done;
         } catch (...) {  // for example no memory; an exception may leave the parallel region only in this way
           if (!failed.test_and_set()) failure = std::current_exception();
           queue.stop();
@@ -72,7 +77,6 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
       });
   space.fence("voussoir::lanes::groups");
   if (failure) std::rethrow_exception(failure);
-  Work work{.particle_steps = 0, .lane_steps = lane_steps};
   for (const int rve : rves) {
     const auto k = static_cast<std::size_t>(rve);
     work.particle_steps += static_cast<std::size_t>(batch.packing(k).size()) *

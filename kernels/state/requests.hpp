@@ -89,11 +89,20 @@ struct ServoRequest {
 struct Work {
   std::size_t particle_steps = 0;  ///< executed steps x grains, of the RVEs that ran
   std::size_t lane_steps = 0;  ///< as particle_steps, with the lanes that were empty or had ended: the hardware's work
+  double tangent_seconds = 0;  ///< time of static and loading tangents, summed over the workers [s]
+  std::size_t workers = 0;     ///< threads that shared these tangents
 
+  /// The work of two calls that ran at the same time, on workers of their own.
   Work& operator+=(const Work& other) {
     particle_steps += other.particle_steps;
     lane_steps += other.lane_steps;
+    tangent_seconds += other.tangent_seconds;
+    workers += other.workers;
     return *this;
+  }
+  /// Time of the tangents as a part of the call's wall time: the mean over the workers [s].
+  [[nodiscard]] double tangent_time() const {
+    return workers > 0 ? tangent_seconds / static_cast<double>(workers) : 0.0;
   }
 };
 

@@ -118,8 +118,10 @@ void list_above(SpringSystem<V>& system) {
   system.above.resize(system.shapes.size());
   for (const auto& shape : system.shapes) ++system.column[static_cast<std::size_t>(shape.other)];
   int end = 0;
-  for (int& count : system.column)
-    end = count += end;  // where the grain's entries end; filling turns it into the start
+  for (int& entry : system.column) {  // from the number of a grain's entries to their end; filling makes it their start
+    end += entry;
+    entry = end;
+  }
   for (std::size_t i = n; i-- > 0;) {
     for (int c = system.row[i + 1]; c-- > system.row[i];) {
       const auto j = static_cast<std::size_t>(system.shapes[static_cast<std::size_t>(c)].other);
