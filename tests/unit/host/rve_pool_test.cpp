@@ -35,7 +35,7 @@ TEST(RvePool, StepsAreTheNextOfTheirSeries) {
 }
 
 TEST(RvePool, TellsTheTimeOfTheTangentsThatAreWanted) {
-  RvePool pool(small_packing(), {.tangent = kernels::TangentKind::elastic}, 1);
+  RvePool pool(small_packing(), {.engine = {}, .tangent = kernels::TangentKind::elastic}, 1);
   const fem::Gradient none = fem::Gradient::Zero();
   std::vector<fem::Stress> stress(1);
   std::vector<fem::Tangent> tangent(1);
