@@ -28,6 +28,7 @@ struct BatchReport {
   double stress_noise = 0;
   std::size_t work = 0;        ///< particle-steps spent by this call (0 for a continuum law)
   std::size_t lane_steps = 0;  ///< the same, with the lanes counted that stood idle meanwhile
+  double tangent_time = 0;     ///< the part of this call's wall time that the tangents took [s]
   std::size_t open = 0;        ///< points without any contact (stress 0)
   std::size_t step_limit = 0;  ///< points whose hold ended at its cap
   /// Rms over all points of the stress error that points at `step_limit` may have: each its own pressure [Pa].

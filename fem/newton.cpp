@@ -210,6 +210,8 @@ Failure NewtonSolver::Workspace::evaluate() {
   ++report.evaluations;
   report.work += report.material.work;
   report.lane_steps += report.material.lane_steps;
+  report.times.material -= report.material.tangent_time;
+  report.times.tangents += report.material.tangent_time;
   return report.material.usable ? Failure{} : Failure{NewtonStatus::material_failed};
 }
 

@@ -25,12 +25,14 @@ enum class Part {
 
 /// Wall time of each part.
 struct PartTimes {
-  double material = 0;  ///< [s]
+  double material = 0;  ///< of Part::material without the tangents [s]
+  double tangents = 0;  ///< of the tangents, as the material reports it [s]
   double assembly = 0;  ///< [s]
   double solve = 0;     ///< of Part::solution [s]
 
   PartTimes& operator+=(const PartTimes& other) {
     material += other.material;
+    tangents += other.tangents;
     assembly += other.assembly;
     solve += other.solve;
     return *this;

@@ -142,6 +142,7 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
   fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor, least_areas_);
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
+  report.tangent_time = work.tangent_time();
   report.deferral_error = deferral_.error();
   return report;
 }

@@ -165,6 +165,7 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
   fem::BatchReport report = summarise(trial_, own_->pressure_floor(), least_areas_);
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
+  report.tangent_time = work.tangent_time();
   report.deferral_error = deferral_error;
   ++ledger_.evaluations;
   ledger_.slowest += slowest;

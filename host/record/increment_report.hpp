@@ -39,7 +39,8 @@ struct EquilibriumReport {
   std::optional<std::size_t> deferred_points = {};
   /// Largest error of such answers that the grains have shown in this increment, over the RVE's pressure [-].
   std::optional<double> deferral_error = {};
-  double time_grains = 0;    ///< wall time of the material, tangents included [s]
+  double time_grains = 0;    ///< wall time of the material without its tangents [s]
+  double time_tangents = 0;  ///< wall time of the material's tangents [s]
   double time_assembly = 0;  ///< wall time of gradients, nodal forces and stiffness [s]
   double time_solve = 0;     ///< wall time of factorisations and solutions [s]
   double time_output = 0;    ///< wall time that the increment before waited for its files and for earlier ones [s]
@@ -62,6 +63,7 @@ inline constexpr auto equilibrium_columns = std::to_array<Column<EquilibriumRepo
     {"deferred_points", "-", &EquilibriumReport::deferred_points},
     {"deferral_error", "-", &EquilibriumReport::deferral_error},
     {"time_grains", "s", &EquilibriumReport::time_grains},
+    {"time_tangents", "s", &EquilibriumReport::time_tangents},
     {"time_assembly", "s", &EquilibriumReport::time_assembly},
     {"time_solve", "s", &EquilibriumReport::time_solve},
     {"time_output", "s", &EquilibriumReport::time_output},

@@ -38,12 +38,13 @@ StageTotals sum_of(const std::vector<StageTotals>& totals) {
 }
 
 std::string row(const StageTotals& t) {
-  const double named = t.parts.material + t.parts.assembly + t.parts.solve + t.output;
+  const double named = t.parts.material + t.parts.tangents + t.parts.assembly + t.parts.solve + t.output;
   const double most = t.evaluations.empty() ? 0 : *std::max_element(t.evaluations.begin(), t.evaluations.end());
   return fmt::format(
-      "{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>9.1f}",
-      t.stage, t.evaluations.size(), t.wall, t.parts.material, t.parts.assembly, t.parts.solve, t.output, t.writer.wall,
-      t.wall - named, median(t.evaluations), most, t.cuts, t.particle_steps,
+      "{:<12}{:>6}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.3g}{:>7.3g}{:>6}{:>13.3e}{:>"
+      "9.1f}",
+      t.stage, t.evaluations.size(), t.wall, t.parts.material, t.parts.tangents, t.parts.assembly, t.parts.solve,
+      t.output, t.writer.wall, t.wall - named, median(t.evaluations), most, t.cuts, t.particle_steps,
       t.parts.material > 0 ? 1e-6 * t.particle_steps / t.parts.material : 0.0);
 }
 
@@ -72,6 +73,7 @@ void save(const std::vector<StageTotals>& totals, io::Checkpoint& checkpoint) {
                                       t.writer.processor};
     checkpoint.put_doubles(fmt::format("totals_{}", k), numbers);
     checkpoint.put_doubles(fmt::format("totals_lane_steps_{}", k), {&t.lane_steps, 1});
+    checkpoint.put_doubles(fmt::format("totals_tangents_{}", k), {&t.parts.tangents, 1});
     checkpoint.put_doubles(fmt::format("totals_evaluations_{}", k), t.evaluations);
     checkpoint.put_doubles(fmt::format("totals_unsettled_{}", k), t.step_limit_points);
     checkpoint.put_doubles(fmt::format("totals_unsettled_share_{}", k), t.unsettled);
@@ -104,7 +106,9 @@ std::vector<StageTotals> totals_from(const io::Checkpoint& checkpoint) {
                                          : std::numeric_limits<double>::quiet_NaN();
     t.cuts = static_cast<int>(numbers.at(0));
     t.particle_steps = numbers.at(1);
-    t.parts = {numbers.at(2), numbers.at(3), numbers.at(4)};
+    t.parts = {.material = numbers.at(2), .assembly = numbers.at(3), .solve = numbers.at(4)};
+    const std::string tangents = fmt::format("totals_tangents_{}", totals.size());
+    if (checkpoint.has(tangents)) t.parts.tangents = checkpoint.get_doubles(tangents).at(0);
     t.output = numbers.at(5);
     t.wall = numbers.at(6);
     if (numbers.size() > 8) t.writer = {numbers[7], numbers[8]};  // earlier versions had no writer
@@ -167,9 +171,9 @@ std::vector<std::string> totals_table(const std::vector<StageTotals>& totals) {
       "writer the time of the thread that writes them meanwhile; evaluations of an increment (median, largest); "
       "particle-steps, "
       "and how many 10^6 of them the grains made in a second");
-  lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}", "stage",
-                              "incr.", "wall", "grains", "assembly", "solve", "output", "writer", "other", "eval.",
-                              "most", "cuts", "steps", "M/s"));
+  lines.push_back(fmt::format("{:<12}{:>6}{:>10}{:>10}{:>10}{:>10}{:>9}{:>9}{:>9}{:>9}{:>8}{:>7}{:>6}{:>13}{:>9}",
+                              "stage", "incr.", "wall", "grains", "tangents", "assembly", "solve", "output", "writer",
+                              "other", "eval.", "most", "cuts", "steps", "M/s"));
   for (const StageTotals& stage : totals) lines.push_back(row(stage));
   if (totals.size() > 1) lines.push_back(row(sum_of(totals)));
   return lines;

@@ -36,7 +36,7 @@ struct StageTotals {
   double particle_steps = 0;           ///< steps of grains
   double lane_steps = 0;  ///< steps of lanes, as fem::BatchReport::lane_steps; not a number where a checkpoint of an
                           ///< earlier version did not say how many there were
-  fem::PartTimes parts;   ///< wall time of material, assembly and solution
+  fem::PartTimes parts;   ///< wall time by part; checkpoints of earlier versions counted tangents with the material
   double output = 0;      ///< wall time that the increments waited for result files and checkpoints [s]
   WriterTime writer;      ///< spent on these files meanwhile
   double wall = 0;        ///< wall time of the whole stage [s]

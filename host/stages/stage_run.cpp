@@ -153,6 +153,7 @@ EquilibriumReport StageRun::equilibrium_of(const fem::NewtonReport& report) cons
     found.deferral_error = effort_.deferral_error;
   }
   found.time_grains = effort_.times.material;
+  found.time_tangents = effort_.times.tangents;
   found.time_assembly = effort_.times.assembly;
   found.time_solve = effort_.times.solve;
   found.time_output = output_;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <vector>
 
@@ -25,17 +26,17 @@ class Worker {
   Worker(RveBatch& batch, const EngineSettings& settings)
       : batch_(&batch), settings_(settings), group_(std::make_unique<Run>()) {}
 
-  /// Runs tasks of the queue until there are none. @return the steps of their lanes x grains, empty lanes included
-  [[nodiscard]] std::size_t work_off(Queue& queue, std::span<const typename Run::Drive::Request> requests,
-                                     std::span<RveReport> reports, RegionTeller& teller) {
-    std::size_t lane_steps = 0;
+  /// Runs tasks of the queue until there are none. @return the work of this worker without the RVEs' own steps
+  [[nodiscard]] Work work_off(Queue& queue, std::span<const typename Run::Drive::Request> requests,
+                              std::span<RveReport> reports, RegionTeller& teller) {
+    Work work;
     typename Queue::Task task;
     while (queue.next(task)) {
       const typename Queue::Turn running(queue);
       const RegionTeller::Turn turn(teller);
       const auto grains = static_cast<std::size_t>(packing_of(task).size());
       if (task.kind == Queue::Kind::alone) {
-        lane_steps += grains * static_cast<std::size_t>(advance_one(queue, task, turn));
+        work.lane_steps += grains * static_cast<std::size_t>(advance_one(queue, task, turn));
         continue;
       }
       prepare(*group_, task, turn);
@@ -44,9 +45,11 @@ class Worker {
       } else {
         unpark(*group_, std::span(task.parked));
       }
-      lane_steps += grains * Run::width * static_cast<std::size_t>(advance_group(*group_, queue, reports));
+      work.lane_steps += grains * Run::width * static_cast<std::size_t>(advance_group(*group_, queue, reports));
     }
-    return lane_steps;
+    work.tangent_seconds = group_->tangent_seconds;
+    work.workers = 1;
+    return work;
   }
 
  private:
@@ -95,14 +98,17 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
   RegionTeller teller;
   std::exception_ptr failure;
   std::atomic_flag failed;
-  std::atomic<std::size_t> lane_steps = 0;
+  std::mutex adding;
+  Work work;
   Kokkos::parallel_for(
       "voussoir::lanes::groups",
       Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(space, 0, workers).set_chunk_size(1),
       [&](std::size_t) {
         const FlushSubnormals flush;
         try {
-          lane_steps += Worker<Run>(batch, settings).work_off(queue, requests, reports, teller);
+          const Work done = Worker<Run>(batch, settings).work_off(queue, requests, reports, teller);
+          const std::lock_guard lock(adding);
+          work += done;
         } catch (...) {  // for example no memory; an exception may leave the parallel region only in this way
           if (!failed.test_and_set()) failure = std::current_exception();
           queue.stop();
@@ -110,7 +116,6 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
       });
   space.fence("voussoir::lanes::groups");
   if (failure) std::rethrow_exception(failure);
-  Work work{.particle_steps = 0, .lane_steps = lane_steps};
   for (const int rve : rves) {
     const auto k = static_cast<std::size_t>(rve);
     work.particle_steps += static_cast<std::size_t>(batch.packing(k).size()) *

@@ -45,6 +45,7 @@ struct GroupRun {
   StepSystem<V> step;                  ///< empty unless the loading tangent is asked for
   std::vector<std::uint32_t> keys;     ///< scratch of a rebase
   std::vector<KeptContact<Law>> kept;  ///< scratch of a restore or rebase
+  double tangent_seconds = 0;          ///< that the tangents of all groups so far have taken [s]
   Regions regions;
 };
 

@@ -3,6 +3,7 @@
 /// usable.
 
 #include <algorithm>
+#include <chrono>
 
 #include "kernels/lanes/group_run.hpp"
 
@@ -64,6 +65,7 @@ inline void replace_tangent(RveReport& report, const FoundTangent& found, const 
 template <class Run>
 VOUSSOIR_OWN_SYMBOL void replace_tangents(Run& run, std::array<RveReport, Run::width>& reports) {
   const Region region(run.regions, "tangents");
+  const auto since = std::chrono::steady_clock::now();
   const bool loads = run.settings.tangent == TangentKind::loading;
   std::array<bool, Run::width> live{};
   for (std::size_t l = 0; l < Run::width; ++l) live[l] = run.lanes[l].rve >= 0 && !is_failure(reports[l].status);
@@ -89,6 +91,7 @@ VOUSSOIR_OWN_SYMBOL void replace_tangents(Run& run, std::array<RveReport, Run::w
     report.tangent_capped = !second.converged;
     if (second.converged) replace_tangent(report, second, contact);
   }
+  run.tangent_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
 }
 
 }  // namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES

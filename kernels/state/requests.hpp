@@ -38,7 +38,8 @@ struct EngineSettings {
   int team_size = 0;  ///< threads of a team; with 0 Kokkos chooses: on CPUs one, since several threads would wait for
                       ///< one another on shared cores
   TangentKind tangent = TangentKind::contact;
-  double tangent_tolerance = 2e-3;  ///< change of a static tangent's diagonal over 16 iterations that ends them [-]
+  double tangent_tolerance = 2e-3;  ///< error of the grains' motion under which a static tangent's iterations end, in
+                                    ///< the norm of the energy; the tangent's own error is its square [-]
   int tangent_iterations = 800;     ///< most iterations of a static tangent
   double tangent_strain = 1e-6;     ///< strain over which a loading tangent is the secant; negative: against the last
                                     ///< motion [-]
@@ -88,11 +89,20 @@ struct ServoRequest {
 struct Work {
   std::size_t particle_steps = 0;  ///< executed steps x grains, of the RVEs that ran
   std::size_t lane_steps = 0;  ///< as particle_steps, with the lanes that were empty or had ended: the hardware's work
+  double tangent_seconds = 0;  ///< time of static and loading tangents, summed over the workers [s]
+  std::size_t workers = 0;     ///< threads that shared these tangents
 
+  /// The work of two calls that ran at the same time, on workers of their own.
   Work& operator+=(const Work& other) {
     particle_steps += other.particle_steps;
     lane_steps += other.lane_steps;
+    tangent_seconds += other.tangent_seconds;
+    workers += other.workers;
     return *this;
+  }
+  /// Time of the tangents as a part of the call's wall time: the mean over the workers [s].
+  [[nodiscard]] double tangent_time() const {
+    return workers > 0 ? tangent_seconds / static_cast<double>(workers) : 0.0;
   }
 };
 

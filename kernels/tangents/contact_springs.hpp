@@ -46,21 +46,46 @@ using PerStrain = std::array<V, unit_strains>;
 template <class V>
 using StrainDofs = std::array<GrainDofs<V>, unit_strains>;
 
-/// Working arrays of one grain in the conjugate gradients.
+/// The lower triangle of a 3 x 3 matrix over (x, y, spin), which is symmetric or has nothing above it.
+template <class V>
+struct Triangle {
+  V xx, yx, yy, sx, sy, ss;
+};
+
+/// What two touching grains do to each other in the scaled stiffness (grain_blocks.hpp), negative: row of grain i,
+/// column of grain j.
+template <class V>
+struct CouplingBlock {
+  V xx, xy, xs, yx, yy, ys, sx, sy, ss;
+};
+
+/// Working arrays of one grain. Those of the conjugate gradients are scaled (grain_blocks.hpp), `motion` only until
+/// they end.
 template <class V>
 struct SolverGrain {
-  StrainDofs<V> motion, residual, direction, image;
+  StrainDofs<V> motion, residual, direction;
+  StrainDofs<V> image;   ///< of the direction: through the backward substitution, or the matrix (loading_tangent.hpp)
+  StrainDofs<V> answer;  ///< of the forward substitution
+  Triangle<V> scale;     ///< the inverse of the Cholesky factor of the grain's own block of K; 0 where K is
   GrainDofs<V> inverse_diagonal;  ///< of K; 0 where the grain has no stiffness
 };
 
-/// The stiffness K of a group as its springs; the matrix itself is never formed. The arrays are reused from group to
-/// group.
+/// A spring in the row of its grain of the larger number.
+struct SpringAbove {
+  int grain;   ///< that of the smaller number
+  int spring;  ///< its place in `springs`
+};
+
+/// The stiffness K of a group as its springs. The arrays are reused from group to group.
 template <class V>
 struct SpringSystem {
   std::vector<int> row;  ///< springs of grain i: row[i] .. row[i + 1]
   std::vector<SpringLanes<V>> springs;
   std::vector<SpringShape<real_of<V>>> shapes;
-  std::vector<V> overlaps;  ///< delta/R by spring [-]; 0 in lanes where the pair does not touch
+  std::vector<V> overlaps;               ///< delta/R by spring [-]; 0 in lanes where the pair does not touch
+  std::vector<CouplingBlock<V>> blocks;  ///< by spring
+  std::vector<int> column;               ///< entries of `above` of grain i: column[i] .. column[i + 1]
+  std::vector<SpringAbove> above;
   std::vector<real_of<V>> radii;
   std::vector<SolverGrain<V>> grains;
 };
@@ -127,10 +152,9 @@ void collect_springs(const GroupState<Law>& group, TangentKind kind, SpringSyste
   using real = real_of<V>;
   const V zero(0), share(static_cast<real>(elastic_share(kind)));
   const auto n = static_cast<std::size_t>(group.n_grains);
-  const GrainDofs<V> none{zero, zero, zero};
   system.row.assign(n + 1, 0);
   system.radii.resize(n);
-  system.grains.assign(n, {{none, none, none}, {none, none, none}, {none, none, none}, {none, none, none}, none});
+  system.grains.resize(n);
   system.springs.clear();
   system.shapes.clear();
   system.overlaps.clear();
@@ -155,19 +179,6 @@ void collect_springs(const GroupState<Law>& group, TangentKind kind, SpringSyste
   }
 }
 
-template <class V>
-KOKKOS_FORCEINLINE_FUNCTION void add_diagonal(const SpringLanes<V>& s, const V& radius, GrainDofs<V>& on) {
-  const V kt = s.tangential * s.ratio * s.ratio;
-  on.x = on.x + fused(s.normal * s.normal_x, s.normal_x, kt * s.normal_y * s.normal_y);
-  on.y = on.y + fused(s.normal * s.normal_y, s.normal_y, kt * s.normal_x * s.normal_x);
-  on.spin = on.spin + fused(s.tangential * radius, radius, s.rolling);
-}
-
-template <class V>
-KOKKOS_FORCEINLINE_FUNCTION V inverse_or_zero(const V& x) {
-  return Kokkos::Experimental::condition(V(0) < x, V(1) / x, V(0));
-}
-
 /// Calls body(c, i, j, radius_i, radius_j) for all springs c, in the order of the lists.
 template <class V, class Body>
 void for_each_spring(SpringSystem<V>& system, const Body& body) {
@@ -177,28 +188,6 @@ void for_each_spring(SpringSystem<V>& system, const Body& body) {
       body(c, system.grains[i], system.grains[static_cast<std::size_t>(shape.other)], V(system.radii[i]),
            V(shape.radius_other));
     }
-  }
-}
-
-/// Computes the residuals under the unit strains, the inverse diagonal, and twice the energies of the affine motion.
-template <class V>
-void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
-  const V zero(0);
-  for_each_spring(system, [&](std::size_t c, SolverGrain<V>& gi, SolverGrain<V>& gj, const V& ri, const V& rj) {
-    const SpringLanes<V>& s = system.springs[c];
-    add_diagonal(s, ri, gi.inverse_diagonal);
-    add_diagonal(s, rj, gj.inverse_diagonal);
-    for (std::size_t a = 0; a < unit_strains; ++a) {
-      V dx = zero, dy = zero;
-      add_unit_strain(static_cast<int>(a), s, dx, dy);
-      const SpringStrain<V> e = spring_strain(s, dx, dy, ri, zero, rj, zero);
-      pull(s, force_of(s, e), ri, rj, gi.residual[a], gj.residual[a]);
-      energy[a] = fused(s.normal * e.normal, e.normal, fused(s.tangential * e.sliding, e.sliding, energy[a]));
-    }
-  });
-  for (SolverGrain<V>& g : system.grains) {
-    auto& d = g.inverse_diagonal;
-    d = {inverse_or_zero(d.x), inverse_or_zero(d.y), inverse_or_zero(d.spin)};
   }
 }
 
@@ -224,25 +213,6 @@ void respond(const SpringSystem<V>& system, const Motions& motions, const Forces
     }
     forces(i) = on;
   }
-}
-
-/// The action of the springs, for `respond`.
-template <class V>
-struct SpringsAct {
-  const SpringSystem<V>& system;
-
-  VOUSSOIR_LANES_INLINE void operator()(std::size_t c, std::size_t, const SpringStrain<V>& e, const V& radius_i,
-                                        const V& radius_j, GrainDofs<V>& on_i, GrainDofs<V>& on_j) const {
-    pull(system.springs[c], force_of(system.springs[c], e), radius_i, radius_j, on_i, on_j);
-  }
-};
-
-/// image = -K direction.
-template <class V>
-void apply_springs(SpringSystem<V>& system) {
-  respond(
-      system, [&](std::size_t i) -> const StrainDofs<V>& { return system.grains[i].direction; },
-      [&](std::size_t i) -> StrainDofs<V>& { return system.grains[i].image; }, SpringsAct<V>{system});
 }
 
 /// Total strain of spring c under unit strain `a` and the grains' motion in answer to it.

@@ -45,6 +45,23 @@ template <class V>
   return {V(0), V(0), V(0)};
 }
 
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> scaled(const GrainDofs<V>& factor, const GrainDofs<V>& a) {
+  return {factor.x * a.x, factor.y * a.y, factor.spin * a.spin};
+}
+
+/// residual . (preconditioner residual), by unit strain.
+template <class V>
+[[nodiscard]] PerStrain<V> preconditioned_norms(const SpringSystem<V>& system) {
+  PerStrain<V> norm = none_per_strain<V>();
+  for (const SolverGrain<V>& g : system.grains) {
+    for (std::size_t a = 0; a < unit_strains; ++a) {
+      norm[a] = dot(g.residual[a], scaled(g.inverse_diagonal, g.residual[a]), norm[a]);
+    }
+  }
+  return norm;
+}
+
 /// x where the column is running and x is finite and not 0. Elsewhere the value is 0 and the column is frozen.
 template <class V>
 VOUSSOIR_LANES_INLINE V usable(const V& x, V& running) {

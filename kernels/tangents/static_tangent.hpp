@@ -3,10 +3,12 @@
 ///
 /// Every contact is replaced by the springs of the law at its state (a contact that slides has lost its tangential
 /// spring, one that rolls its rolling spring). Under a unit strain the grains move and spin until the springs balance:
-/// K x = -B,  D = (1/V)(A - B^T K^+ B)  with A the springs' affine stiffness. K is never formed; preconditioned
-/// conjugate gradients (Hestenes and Stiefel 1952) find x for the three unit strains at once, one RVE per lane. D is
-/// the energy of the motion found, sum k e_a e_b / V. It is therefore symmetric and positive semidefinite wherever the
-/// iterations end, its error is of second order, and it is never softer than the exact D (Ritz).
+/// K x = -B,  D = (1/V)(A - B^T K^+ B)  with A the springs' affine stiffness. Conjugate gradients (Hestenes and Stiefel
+/// 1952) find x for the three unit strains at once, one RVE per lane. The preconditioner is symmetric Gauss-Seidel over
+/// the blocks of the grains, in Eisenstat's form (SIAM J. Sci. Stat. Comput. 2, 1981): with K scaled to I + L + L^T
+/// (grain_blocks.hpp) the iterations run for (I + L^T) x, whose matrix takes one substitution backward and one forward.
+/// D is the energy of the motion found, sum k e_a e_b / V. It is therefore symmetric and positive semidefinite wherever
+/// the iterations end, its error is of second order, and it is never softer than the exact D (Ritz).
 ///
 /// K is singular (rigid translations, rattlers, mechanisms of sliding contacts), but the loads come from the same
 /// springs, so the system is consistent and the iterations stay in the range of K.
@@ -15,11 +17,11 @@
 #include <array>
 #include <limits>
 
-#include "kernels/tangents/contact_springs.hpp"
+#include "kernels/tangents/grain_blocks.hpp"
 
 namespace voussoir::kernels {
 
-inline constexpr int tangent_look_interval = 16;  ///< iterations between looks at the energies
+inline constexpr int tangent_look_interval = 2;  ///< iterations between looks at the energies
 inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine energy, because
                                          ///< mechanisms have no energy
 
@@ -37,9 +39,10 @@ KOKKOS_FORCEINLINE_FUNCTION V dot(const GrainDofs<V>& a, const GrainDofs<V>& b, 
   return fused(a.x, b.x, fused(a.y, b.y, fused(a.spin, b.spin, sum)));
 }
 
+/// a + b
 template <class V>
-KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> scaled(const GrainDofs<V>& factor, const GrainDofs<V>& a) {
-  return {factor.x * a.x, factor.y * a.y, factor.spin * a.spin};
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> plus(const GrainDofs<V>& a, const GrainDofs<V>& b) {
+  return {a.x + b.x, a.y + b.y, a.spin + b.spin};
 }
 
 /// a + s b
@@ -48,28 +51,24 @@ KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> plus(const GrainDofs<V>& a, const V& s,
   return {fused(s, b.x, a.x), fused(s, b.y, a.y), fused(s, b.spin, a.spin)};
 }
 
-/// residual . (preconditioner residual), by unit strain.
+/// The residual of (I + L^T) x: (I + L) takes it to the forces. Returns its squared norm by unit strain.
 template <class V>
-[[nodiscard]] PerStrain<V> preconditioned_norms(const SpringSystem<V>& system) {
+[[nodiscard]] PerStrain<V> begin_residuals(SpringSystem<V>& system) {
   PerStrain<V> norm{V(0), V(0), V(0)};
-  for (const SolverGrain<V>& g : system.grains) {
-    for (std::size_t a = 0; a < unit_strains; ++a) {
-      norm[a] = dot(g.residual[a], scaled(g.inverse_diagonal, g.residual[a]), norm[a]);
-    }
-  }
+  const auto residual = [](SolverGrain<V>& g) -> StrainDofs<V>& { return g.residual; };
+  substitute_forward(system, residual, residual, [&](const SolverGrain<V>&, const StrainDofs<V>& x) {
+    for (std::size_t a = 0; a < unit_strains; ++a) norm[a] = dot(x[a], x[a], norm[a]);
+  });
   return norm;
 }
 
-/// direction = preconditioned residual + beta direction; clears the images.
+/// direction = residual + beta direction, and its image.
 template <class V>
 void turn_directions(SpringSystem<V>& system, const PerStrain<V>& beta) {
-  const V zero(0);
-  for (SolverGrain<V>& g : system.grains) {
-    for (std::size_t a = 0; a < unit_strains; ++a) {
-      g.direction[a] = plus(scaled(g.inverse_diagonal, g.residual[a]), beta[a], g.direction[a]);
-      g.image[a] = {zero, zero, zero};
-    }
-  }
+  substitute_backward(system, [&](SolverGrain<V>& g) -> const StrainDofs<V>& {
+    for (std::size_t a = 0; a < unit_strains; ++a) g.direction[a] = plus(g.residual[a], beta[a], g.direction[a]);
+    return g.direction;
+  });
 }
 
 /// The solutions that go on, lane by lane, and their energies.
@@ -78,40 +77,62 @@ struct Progress {
   PerStrain<V> running;
   PerStrain<V> energy;                    ///< twice the energy of the motion so far: the diagonal of V D
   PerStrain<V> affine;                    ///< the same of the affine motion
-  PerStrain<V> rounding;                  ///< preconditioned residual norm below which a residual is rounding
+  PerStrain<V> rounding;                  ///< squared residual below which a residual is rounding
   PerStrain<V> gained{V(0), V(0), V(0)};  ///< its decrease since the last look
+  PerStrain<V> before;                    ///< its decrease between the two looks before
 };
 
-/// Step lengths: rho / (direction . K direction), 0 where a solution is frozen or its residual is down to rounding (at
-/// the exact solution of a mechanism the next step would be the quotient of two rounding errors).
+/// Completes the products of the matrix with the directions, image + answer, and returns the step lengths: rho /
+/// (direction . product), 0 where a solution is frozen or its residual is down to rounding (at the exact solution of a
+/// mechanism the next step would be the quotient of two rounding errors).
 template <class V>
-[[nodiscard]] PerStrain<V> step_lengths(const SpringSystem<V>& system, const PerStrain<V>& rho,
-                                        const Progress<V>& progress) {
+[[nodiscard]] PerStrain<V> step_lengths(SpringSystem<V>& system, const PerStrain<V>& rho, const Progress<V>& progress) {
   const V zero(0);
   PerStrain<V> work{zero, zero, zero}, alpha;
-  for (const SolverGrain<V>& g : system.grains) {
-    for (std::size_t a = 0; a < unit_strains; ++a) work[a] = dot(g.direction[a], g.image[a], work[a]);
-  }
+  substitute_forward(
+      system,
+      [](const SolverGrain<V>& g) {
+        StrainDofs<V> rest;
+        for (std::size_t a = 0; a < unit_strains; ++a) rest[a] = plus(g.direction[a], V(-1), g.image[a]);
+        return rest;
+      },
+      [](SolverGrain<V>& g) -> StrainDofs<V>& { return g.answer; },
+      [&](const SolverGrain<V>& g, const StrainDofs<V>& answer) {
+        for (std::size_t a = 0; a < unit_strains; ++a) {
+          work[a] = dot(g.direction[a], plus(g.image[a], answer[a]), work[a]);
+        }
+      });
   for (std::size_t a = 0; a < unit_strains; ++a) {
-    const auto goes_on = (work[a] < zero) && (zero < progress.running[a]) && (progress.rounding[a] < rho[a]);
-    alpha[a] = Kokkos::Experimental::condition(goes_on, -(rho[a] / work[a]), zero);
+    const auto goes_on = (zero < work[a]) && (zero < progress.running[a]) && (progress.rounding[a] < rho[a]);
+    alpha[a] = Kokkos::Experimental::condition(goes_on, rho[a] / work[a], zero);
   }
   return alpha;
 }
 
+/// Goes along the directions. Returns the squared norms of the new residuals.
 template <class V>
-void advance_motions(SpringSystem<V>& system, const PerStrain<V>& alpha) {
+[[nodiscard]] PerStrain<V> advance_motions(SpringSystem<V>& system, const PerStrain<V>& alpha) {
+  PerStrain<V> norm{V(0), V(0), V(0)};
   for (SolverGrain<V>& g : system.grains) {
     for (std::size_t a = 0; a < unit_strains; ++a) {
-      g.motion[a] = plus(g.motion[a], alpha[a], g.direction[a]);
-      g.residual[a] = plus(g.residual[a], alpha[a], g.image[a]);
+      g.motion[a] = plus(g.motion[a], alpha[a], g.image[a]);
+      g.residual[a] = plus(g.residual[a], -alpha[a], plus(g.image[a], g.answer[a]));
+      norm[a] = dot(g.residual[a], g.residual[a], norm[a]);
     }
   }
+  return norm;
 }
 
-/// Freezes the solutions whose diagonal entry changed by less than the tolerance since the last look (the decrease of
-/// the energy over the last iterations estimates the error: Hestenes and Stiefel; Strakos and Tichy 2002); false when
-/// no solution is left.
+/// The part of the energy that is still to be lost, if the losses go on as those between the last three looks (the sum
+/// of a geometric series); at least the last loss.
+[[nodiscard]] inline double loss_to_come(double before, double last) {
+  if (!(last > 0)) return last;  // NaN too
+  return before > last ? last * std::max(1.0, last / (before - last)) : std::numeric_limits<double>::infinity();
+}
+
+/// Freezes the solutions whose diagonal entry is off by less than the square of the tolerance, as its last changes let
+/// expect (what the energy loses in the last iterations estimates its error: Hestenes and Stiefel; Strakos and Tichy
+/// 2002); false when no solution is left.
 template <class V>
 [[nodiscard]] bool look_at(Progress<V>& progress, StaticTangent<V>& out, int iteration, double tolerance) {
   bool any = false;
@@ -120,9 +141,11 @@ template <class V>
     for (std::size_t a = 0; a < unit_strains; ++a) {
       const double floor = softest * static_cast<double>(progress.affine[a][l]);
       const double energy = std::max(static_cast<double>(progress.energy[a][l]), floor);
-      const auto gained = static_cast<double>(progress.gained[a][l]);
-      if (!(gained > tolerance * energy)) progress.running[a][l] = 0;  // NaN ends here too
+      const double error = loss_to_come(static_cast<double>(progress.before[a][l]),
+                                        static_cast<double>(progress.gained[a][l]));
+      if (!(error > tolerance * tolerance * energy)) progress.running[a][l] = 0;  // NaN ends here too
       lane_runs = lane_runs || progress.running[a][l] > 0;
+      progress.before[a][l] = progress.gained[a][l];
       progress.gained[a][l] = 0;
     }
     if (!lane_runs && !out.converged[l]) {
@@ -134,21 +157,22 @@ template <class V>
   return any;
 }
 
-/// Runs the conjugate gradients. On return system.grains[i].motion holds the motion of grain i.
+/// Runs the conjugate gradients, until the scaled motions are found.
 template <class V>
 void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent<V>& out,
                    const EngineSettings& settings) {
   const V zero(0);
   PerStrain<V> beta{zero, zero, zero};
-  PerStrain<V> rho = preconditioned_norms(system);
+  PerStrain<V> rho = begin_residuals(system);
   constexpr real_of<V> resolution = 8 * std::numeric_limits<real_of<V>>::epsilon();
-  for (std::size_t a = 0; a < unit_strains; ++a) progress.rounding[a] = V(resolution * resolution) * rho[a];
+  for (std::size_t a = 0; a < unit_strains; ++a) {
+    progress.rounding[a] = V(resolution * resolution) * rho[a];
+    progress.before[a] = V(std::numeric_limits<real_of<V>>::max());
+  }
   for (int k = 1; k <= settings.tangent_iterations; ++k) {
     turn_directions(system, beta);
-    apply_springs(system);
     const PerStrain<V> alpha = step_lengths(system, rho, progress);
-    advance_motions(system, alpha);
-    const PerStrain<V> next = preconditioned_norms(system);
+    const PerStrain<V> next = advance_motions(system, alpha);
     for (std::size_t a = 0; a < unit_strains; ++a) {
       const V gain = alpha[a] * rho[a];
       progress.energy[a] = progress.energy[a] - gain;
@@ -164,7 +188,8 @@ void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent
 }
 
 /// The static tangent of a group; to be called after homogenise(), which brings the contacts' histories to the final
-/// positions. @param live lanes whose answer is wanted; the other lanes do not prolong the iterations
+/// positions. On return system.grains[i].motion holds the motion of grain i. @param live lanes whose answer is wanted;
+/// the other lanes do not prolong the iterations
 template <class Law, class V>
 StaticTangent<V> static_tangent(const GroupState<Law>& group, SpringSystem<V>& system,
                                 const std::array<bool, V::size()>& live, const EngineSettings& settings) {
@@ -178,6 +203,9 @@ StaticTangent<V> static_tangent(const GroupState<Law>& group, SpringSystem<V>& s
   load_springs(system, progress.energy);
   out.affine = progress.affine = progress.energy;
   relax_springs(system, progress, out, settings);
+  for (SolverGrain<V>& g : system.grains) {
+    for (GrainDofs<V>& x : g.motion) x = unscaled(g.scale, x);
+  }
   add_energies(system, out.tangent);
   return out;
 }

@@ -127,7 +127,8 @@ with h5py.File(whole / "ensemble.h5") as file:
     check(np.array_equal(loads, [row["load_parameter"] for row in rows[0]]), "its increments are not the members'")
     for name in ("surface_settlement", "crown_settlement", "residual", "iterations", "evaluations"):
         expect(file["curves"][name], [[row[name] for row in r] for r in rows], name)
-    for name in ("wall_s", "time_grains", "peak_memory", "slowest_point", "converged", "load_parameter"):
+    times = ("wall_s", "time_grains", "time_tangents")
+    for name in (*times, "peak_memory", "slowest_point", "converged", "load_parameter"):
         check(name not in file["curves"], f"{name} is no result of the study")
 
     # The columns that are made of fields are those of the tools.

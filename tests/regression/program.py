@@ -16,7 +16,7 @@ import numpy as np
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 PROGRAM = os.environ["VOUSSOIR"]
 # All that two equal runs may differ in.
-NOT_COMPARED = {"wall_s", "peak_memory", "time_grains", "time_assembly", "time_solve", "time_output"}
+NOT_COMPARED = {"wall_s", "peak_memory", "time_grains", "time_tangents", "time_assembly", "time_solve", "time_output"}
 # A tunnel of grains that takes seconds, in cases/tunnel_quick; the number of its loss increments is left to the test.
 SMALL_TUNNEL = [
     "packing.grains=100",

@@ -60,7 +60,10 @@ def measured(folder: Path) -> Measured | None:
         return None
     with h5py.File(index) as file:
         table = {name: file["table"][name][()] for name in ("volume_loss", "surface_settlement")}
-        steps, seconds = (float(np.nansum(file["table"][name][()])) for name in ("particle_steps", "time_grains"))
+        steps = float(np.nansum(file["table/particle_steps"][()]))
+        # Runs of earlier versions count the tangents with the grains and have no column of their own for them.
+        times = [name for name in ("time_grains", "time_tangents") if name in file["table"]]
+        seconds = sum(float(np.nansum(file["table"][name][()])) for name in times)
         stress, ratio = (file["tables/k0"][name][()] for name in ("vertical_stress", "ratio"))
     (axis_depth, unit_weight, surcharge) = result.need("axis_depth", "unit_weight", "surcharge")
     in_loss = np.isfinite(table["volume_loss"]) & (table["volume_loss"] > 0)

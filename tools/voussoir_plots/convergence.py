@@ -64,7 +64,8 @@ def draw(result: Result, path: Path) -> None:
 def _draw_times(axis: Axes, index: np.ndarray, increments: Sequence[Increment], wall: np.ndarray) -> None:
     """Draws the wall time so far, by part where parts are recorded; an increment's output counts with the next one."""
     parts = [
-        ("time_grains", "grains and tangents", "C0"),
+        ("time_grains", "grains", "C0"),
+        ("time_tangents", "tangents", "C4"),
         ("time_solve", "solution", "C1"),
         ("time_assembly", "assembly", "C2"),
         ("time_output", "output", "C3"),

@@ -56,6 +56,8 @@ TEST(Newton, AndersonConvergesOnATangentThatIsTooStiff) {
     EXPECT_EQ(report.evaluations, block.material.evaluations);
     EXPECT_EQ(report.work, block.material.size() * static_cast<std::size_t>(report.evaluations));
     EXPECT_EQ(report.lane_steps, 3 * report.work);
+    EXPECT_EQ(report.times.tangents, 2 * report.evaluations);
+    EXPECT_LT(std::abs(report.times.material + report.times.tangents), 1) << "the material's time holds its tangents";
     EXPECT_EQ(block.material.increments_begun, 1);
     for (const auto& [dof, value] : load.prescribed) EXPECT_EQ(increment.displacement[dof], value);
   }

@@ -42,9 +42,11 @@ TEST(PartTimes, EachPartHasItsOwn) {
   EXPECT_EQ(times.solve, 0.0);
   times.of(Part::material) = 2;
   times.of(Part::solution) = 3;
+  times.tangents = 0.5;
   PartTimes sum = times;
   sum += times;
   EXPECT_EQ(sum.material, 4.0);
+  EXPECT_EQ(sum.tangents, 1.0);
   EXPECT_EQ(sum.solve, 6.0);
 }
 

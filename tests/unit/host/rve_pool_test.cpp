@@ -35,6 +35,15 @@ TEST(RvePool, StepsAreTheNextOfTheirSeries) {
   }
 }
 
+TEST(RvePool, TellsTheTimeOfTheTangentsThatAreWanted) {
+  RvePool pool(small_packing(), {.engine = {}, .tangent = kernels::TangentKind::elastic}, 1);
+  const fem::Gradient none = fem::Gradient::Zero();
+  std::vector<fem::Stress> stress(1);
+  std::vector<fem::Tangent> tangent(1);
+  EXPECT_GT(pool.evaluate({&none, 1}, stress, tangent).tangent_time, 0.0);
+  EXPECT_EQ(pool.evaluate({&none, 1}, stress, {}).tangent_time, 0.0);
+}
+
 TEST(RvePool, ASnapshotShowsTheGrainsWhereTheyAre) {
   const PackedRve rve = small_packing();
   const RvePool pool(rve, {}, 2);

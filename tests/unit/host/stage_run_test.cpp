@@ -61,7 +61,7 @@ fem::NewtonReport report_of(int n, fem::NewtonStatus status) {
   report.lane_steps = 7 * count;
   report.relaxations = 11 * n;
   report.viscous_work = 13 * n;
-  report.times = {.material = 17.0 * n, .assembly = 19.0 * n, .solve = 23.0 * n};
+  report.times = {.material = 17.0 * n, .tangents = 47.0 * n, .assembly = 19.0 * n, .solve = 23.0 * n};
   report.material.open = 29 * count;
   report.material.step_limit = 31 * count;
   report.material.slowest_steps = 37 * n;
@@ -93,6 +93,7 @@ TEST_F(Steps, OfAnIncrementAreSummed) {
   const EquilibriumReport& found = recorded_[0].equilibrium.value();
   EXPECT_EQ(found.relaxations, 11 * 111);
   EXPECT_EQ(found.time_grains, 17.0 * 111);
+  EXPECT_EQ(found.time_tangents, 47.0 * 111);
   EXPECT_EQ(found.time_assembly, 19.0 * 111);
   EXPECT_EQ(found.time_solve, 23.0 * 111);
   EXPECT_EQ(found.viscous_work, 13.0 * 110) << "a step that did not converge has dissipated nothing";

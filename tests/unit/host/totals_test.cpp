@@ -16,7 +16,7 @@ std::vector<StageTotals> two_stages() {
   gravity.evaluations = {2, 3};
   gravity.particle_steps = 4e8;
   gravity.lane_steps = 5e8;
-  gravity.parts = {.material = 2.0, .assembly = 0.25, .solve = 0.5};
+  gravity.parts = {.material = 1.5, .tangents = 0.5, .assembly = 0.25, .solve = 0.5};
   gravity.output = 0.125;
   gravity.writer = {.wall = 0.5, .processor = 0.25};
   gravity.wall = 3.0;
@@ -51,6 +51,7 @@ TEST(RunTotals, ComeBackFromACheckpoint) {
     EXPECT_EQ(read[k].particle_steps, written[k].particle_steps);
     EXPECT_EQ(read[k].lane_steps, written[k].lane_steps);
     EXPECT_EQ(read[k].parts.material, written[k].parts.material);
+    EXPECT_EQ(read[k].parts.tangents, written[k].parts.tangents);
     EXPECT_EQ(read[k].parts.assembly, written[k].parts.assembly);
     EXPECT_EQ(read[k].parts.solve, written[k].parts.solve);
     EXPECT_EQ(read[k].output, written[k].output);
@@ -66,11 +67,12 @@ TEST(RunTotals, OfAnEarlierVersionSayNothingOfLanes) {
   save(two_stages(), now);
   io::Checkpoint then;
   for (const auto& [name, bytes] : now.blobs()) {
-    if (!name.starts_with("totals_lane_steps")) then.put(name, bytes);
+    if (!name.starts_with("totals_lane_steps") && !name.starts_with("totals_tangents")) then.put(name, bytes);
   }
   std::vector<StageTotals> read = totals_from(then);
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[1].cuts, 2);
+  EXPECT_EQ(read[1].parts.tangents, 0.0);
   read[1].lane_steps += 1e6;
   EXPECT_EQ(lanes_line(read[1]), "");
 }
@@ -118,9 +120,9 @@ TEST(RunTotals, TableSumsTheStages) {
     for (std::string word; in >> word;) found.push_back(word);
     return found;
   };
-  EXPECT_EQ(words(lines[4]), (std::vector<std::string>{"all", "5", "6.0", "4.0", "0.5", "1.0", "0.2", "1.0", "0.2", "4",
-                                                       "9", "2", "8.000e+08", "200.0"}));
-  EXPECT_EQ(words(lines[2]).at(9), "2.5");
+  EXPECT_EQ(words(lines[4]), (std::vector<std::string>{"all", "5", "6.0", "3.0", "1.0", "0.5", "1.0", "0.2", "1.0",
+                                                       "0.2", "4", "9", "2", "8.000e+08", "266.7"}));
+  EXPECT_EQ(words(lines[2]).at(10), "2.5");
 }
 
 }  // namespace

@@ -155,17 +155,22 @@ TEST_F(StaticTangent, RowIsSpringsInSeries) {
   EXPECT_GT(contact.tangent[5], 0.1 * expected(0, 0));
 }
 
+// Without resistance to rolling the block of a grain with one contact is singular itself.
 TEST_F(StaticTangent, MechanismHasNone) {
-  const reference::Rve rve = reference::two_grains(1e-3, 1.5e-3, 1e-6, 0.3, 1.5e-2, reference::Material{});
-  for (const Precision precision : {Precision::float32, Precision::float64}) {
-    EngineSettings settings = asking(TangentKind::elastic);
-    settings.precision = precision;
-    RveBatch batch = one(rve);
-    const RveReport contact = at_rest(batch, EngineSettings{});
-    const RveReport r = at_rest(batch, settings);
-    EXPECT_EQ(r.tangent_kind, TangentKind::elastic);
-    EXPECT_FALSE(r.tangent_capped);
-    for (const double d : r.tangent) EXPECT_LT(std::abs(d), 1e-12 * contact.tangent[0]);
+  for (const double rolling : {reference::Material{}.rolling_stiffness, 0.0}) {
+    reference::Material material;
+    material.rolling_stiffness = rolling;
+    const reference::Rve rve = reference::two_grains(1e-3, 1.5e-3, 1e-6, 0.3, 1.5e-2, material);
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
+      EngineSettings settings = asking(TangentKind::elastic);
+      settings.precision = precision;
+      RveBatch batch = one(rve);
+      const RveReport contact = at_rest(batch, EngineSettings{});
+      const RveReport r = at_rest(batch, settings);
+      EXPECT_EQ(r.tangent_kind, TangentKind::elastic);
+      EXPECT_FALSE(r.tangent_capped);
+      for (const double d : r.tangent) EXPECT_LT(std::abs(d), 1e-12 * contact.tangent[0]);
+    }
   }
 }
 
@@ -183,6 +188,55 @@ TEST_F(StaticTangent, FollowsTheDenseSolve) {
     if (rve == &dense) continue;
     EXPECT_LT(told_apart(1, 1), 0.98 * stuck(1, 1)) << "no contact slides: the test shows nothing";
   }
+}
+
+TEST_F(StaticTangent, FollowsTheDenseSolveOfGrainsThatRollFreely) {
+  reference::Material material;
+  material.rolling_stiffness = 0;
+  const reference::Rve rve = reference::consolidated_packing(80, 4, 1e5, 0.0, material);
+  RveBatch batch = one(rve);
+  const Matrix expected = dense_tangent(rve, 2.0);
+  expect_near(host::tangent_of(at_rest(batch, asking(TangentKind::elastic))), expected, 1e-9);
+  EngineSettings single = asking(TangentKind::elastic, EngineSettings{}.tangent_tolerance);
+  single.precision = Precision::float32;
+  expect_near(host::tangent_of(at_rest(batch, single)), expected, 1e-5);
+}
+
+// The tolerance is that of the motions: the tangent's error is its square, and a smaller tolerance costs more.
+TEST_F(StaticTangent, EndsWhereItsErrorIsTheSquareOfTheTolerance) {
+  for (const reference::Rve* rve : {&dense, &sheared}) {
+    RveBatch batch = clones(*rve, 1);
+    const Matrix exact = dense_tangent(*rve, 2.0);
+    int before = 0;
+    for (const double tolerance : {0.1, 0.01, 1e-3}) {
+      const RveReport r = at_rest(batch, asking(TangentKind::elastic, tolerance));
+      EXPECT_FALSE(r.tangent_capped);
+      EXPECT_GT(r.tangent_iterations, before) << tolerance;
+      EXPECT_LE(r.tangent_iterations, 16) << tolerance;
+      const Matrix d = host::tangent_of(r);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_GT(d(k, k), exact(k, k) * (1 - 1e-12)) << tolerance;
+        EXPECT_LT(d(k, k), exact(k, k) * (1 + tolerance * tolerance)) << tolerance;
+      }
+      before = r.tangent_iterations;
+    }
+  }
+}
+
+TEST_F(StaticTangent, TellsItsTimeApart) {
+  RveBatch batch = clones(dense, 40);
+  const std::vector<StrainRequest> requests(40, {.hold_cap = 1});
+  std::vector<RveReport> reports(40);
+  const auto work_of = [&](const EngineSettings& settings) {
+    return advance(batch, std::span<const StrainRequest>(requests), settings, reports);
+  };
+  EXPECT_EQ(work_of(in_double()).tangent_time(), 0.0);
+  Work found = work_of(asking(TangentKind::elastic));
+  EXPECT_GT(found.tangent_time(), 0.0);
+  EXPECT_GE(found.workers, 1U);
+  const double once = found.tangent_time();
+  found += found;  // of two ranks at the same time
+  EXPECT_DOUBLE_EQ(found.tangent_time(), once);
 }
 
 TEST_F(StaticTangent, IsPositiveAndSofterThanTheContactTangent) {
