@@ -18,7 +18,7 @@ namespace {
 
 /// Below this size an array stands in the header of its dataset, whose checksum holds for it as well [bytes].
 constexpr std::size_t most_in_header = 4096;
-constexpr std::size_t memory_step = std::size_t{1} << 20;   ///< by which a file in memory grows [bytes]
+constexpr std::size_t memory_step = std::size_t{1} << 20;  ///< by which a file in memory grows [bytes]
 
 /// HDF5 prints its error stack by default; here the innermost entry becomes part of an exception instead.
 void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
