@@ -4,6 +4,8 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -85,8 +87,23 @@ Hdf5File::Id Hdf5File::checked(Id id, const std::string& what) const {
   return id;
 }
 
+namespace {
+
+/// Makes sure that there is memory for what HDF5 takes for a file (some 1 MB, most of it for its cache of metadata),
+/// because HDF5 1.10 uses the cache without a look at whether there was memory for it.
+/// @throws std::bad_alloc
+void ask_for_memory() {
+  constexpr std::size_t enough = std::size_t{4} << 20;
+  void* volatile room = std::malloc(enough);  // volatile, since a compiler may leave out memory that nobody uses
+  if (room == nullptr) throw std::bad_alloc();
+  std::free(room);
+}
+
+}  // namespace
+
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   Hdf5File file(-1, path);
+  ask_for_memory();
   be_quiet();
   const Handle access(file.checked(H5Pcreate(H5P_FILE_ACCESS), "create the file"), H5Pclose);
   file.checked(H5Pset_fapl_core(access, memory_step, 0), "create the file");
@@ -103,6 +120,7 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path) {
     throw std::runtime_error(fmt::format("{}: cannot open the file: it {}", in_one_line(path.string()), fault));
   }
   Hdf5File file(-1, path);
+  ask_for_memory();
   be_quiet();
   file.file_ = file.checked(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), "open the file");
   return file;

@@ -21,6 +21,11 @@ std::vector<int> all_of(const RveBatch& batch) {
 bool wants_lanes(const StrainRequest&) { return false; }
 bool wants_lanes(const ServoRequest& r) { return r.microstructure.any(); }
 
+/// To be called before trial states are written.
+void forget_motions(RveBatch& batch, std::span<const int> rves) {
+  for (const int rve : rves) batch.candidates.spending[static_cast<std::size_t>(rve)] = -1.0;
+}
+
 /// Only lanes solve for static tangents and record microstructures.
 template <class Request>
 bool runs_teams(const EngineSettings& settings, std::span<const Request> requests) {
@@ -43,6 +48,7 @@ Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const Eng
 
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports, std::span<const int> rves) {
+  forget_motions(batch, rves);
   if (runs_teams(settings, requests)) return teams::advance(batch, requests, settings, reports, rves);
   return chosen_lanes().lanes->advance_given(batch, requests, settings, reports, rves);
 }
@@ -50,6 +56,7 @@ Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const Eng
 Work advance(RveBatch& batch, std::span<const ServoRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports) {
   const std::vector<int> rves = all_of(batch);
+  forget_motions(batch, rves);
   if (runs_teams(settings, requests)) return teams::advance(batch, requests, settings, reports, rves);
   return chosen_lanes().lanes->advance_servo(batch, requests, settings, reports, rves);
 }

@@ -2,10 +2,12 @@
 /// The end of a group: stress, tangent and report of each lane, and its trial state.
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "kernels/contact/resting_pair.hpp"
 #include "kernels/course/rve_report.hpp"
+#include "kernels/lanes/rebase.hpp"
 #include "kernels/lanes/tangent.hpp"
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
@@ -84,6 +86,17 @@ template <class Run>
   return true;
 }
 
+/// Notes by how much grains may have come nearer in a lane, which decides how long its candidates hold.
+template <class Run>
+void note_motion(Run& run, std::size_t l, const Motion<typename Run::Value>& motion) {
+  if (run.lists[l].rebased) return;  // the motion before the rebase is not known any more
+  CandidateCache& cache = run.batch->candidates;
+  const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
+  const double farthest = run.scales.reach + cache.skin[rve] - run.scales.skin;
+  cache.spending[rve] = cache.spent[rve] + 2.0 * std::sqrt(static_cast<double>(motion.largest[l])) +
+                        run.lanes[l].f_minus_i.norm() * farthest;
+}
+
 /// Writes the group's reports and trial states. An RVE that failed keeps its committed state as trial state.
 template <class Run>
 VOUSSOIR_OWN_SYMBOL void finish(Run& run, std::span<RveReport> reports) {
@@ -101,12 +114,14 @@ VOUSSOIR_OWN_SYMBOL void finish(Run& run, std::span<RveReport> reports) {
   }
   if (run.settings.tangent != TangentKind::contact) replace_tangents(run, answers);
   std::array<bool, Run::width> stored{};
+  const auto motion = motion_of(run.group);
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0) continue;
     RveReport& report = answers[l];
     if (!is_failure(report.status) && !store(run, l, report)) report.status = RveStatus::neighbour_overflow;
     const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
     stored[l] = !is_failure(report.status);
+    if (stored[l]) note_motion(run, l, motion);
     if (!stored[l]) copy_state(run.batch->committed, run.batch->trial, rve, run.group.grains.size());
     reports[rve] = report;
   }

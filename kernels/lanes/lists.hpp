@@ -35,6 +35,7 @@ struct ListedPair {
 /// One lane between two rebases. It is the same beside many lanes and beside none.
 template <class real, std::size_t numbers>
 struct LaneList {
+  bool rebased = false;          ///< whether there was a rebase since the committed state
   std::vector<double> position;  ///< (grain, 2) at the last rebase [m]
   Mat2 cell = identity2;         ///< at the last rebase
   std::vector<ListedPair<real, numbers>> pairs;
@@ -45,10 +46,11 @@ using ListedPairOf = ListedPair<real_of<typename Law::Value>, static_cast<std::s
 template <class Law>
 using LaneListOf = LaneList<real_of<typename Law::Value>, static_cast<std::size_t>(history_size<Law>)>;
 
-/// Lists the pairs `keys` of a lane. Branches and gaps are computed in double and rounded once; histories come from
-/// `kept`, whose keys ascend. A kept contact that is no candidate has opened by more than the skin and is dropped.
+/// Lists those of the pairs `keys` of a lane that are closer than the skin [m]. Branches and gaps are computed in
+/// double and rounded once; histories come from `kept`, whose keys ascend. A kept contact that is not listed has opened
+/// by more than the skin and is dropped.
 template <class Law>
-void list_pairs(LaneListOf<Law>& lane, std::span<const double> radii, std::span<const std::uint32_t> keys,
+void list_pairs(LaneListOf<Law>& lane, std::span<const double> radii, double skin, std::span<const std::uint32_t> keys,
                 const std::vector<KeptContact<Law>>& kept) {
   using real = real_of<typename Law::Value>;
   const Cell cell(lane.cell);
@@ -57,9 +59,10 @@ void list_pairs(LaneListOf<Law>& lane, std::span<const double> radii, std::span<
   auto from = kept.begin();
   for (const std::uint32_t key : keys) {
     const auto i = static_cast<std::size_t>(first_of(key)), j = static_cast<std::size_t>(second_of(key));
+    const double sum = radii[i] + radii[j];
     const PairReference at = pair_reference(lane.position[2 * j] - lane.position[2 * i],
-                                            lane.position[2 * j + 1] - lane.position[2 * i + 1], radii[i] + radii[j],
-                                            cell);
+                                            lane.position[2 * j + 1] - lane.position[2 * i + 1], sum, cell);
+    if (at.gap >= skin * (2.0 * sum + skin)) continue;  // |b| >= R + skin
     ListedPairOf<Law> pair{
         key, static_cast<real>(at.branch_x), static_cast<real>(at.branch_y), static_cast<real>(at.gap), {}};
     while (from != kept.end() && from->key < key) ++from;

@@ -46,7 +46,8 @@ void rebase(Run& run, std::size_t l) {
   for (auto& g : run.group.grains) g.u_x[l] = g.u_y[l] = 0;
   if (!reduce_cell(run, list)) return discard(run, l, RveStatus::neighbour_overflow);
   find_candidates(list.position, run.packing->radii, Cell(list.cell), run.scales.skin, run.keys);
-  list_pairs<typename Run::Law>(list, run.packing->radii, run.keys, run.kept);
+  list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, run.keys, run.kept);
+  list.rebased = true;
 }
 
 /// Renews the lists of the stale lanes, and the union of all lists.

@@ -8,6 +8,23 @@
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
+/// The candidates of an RVE, which are looked for anew where grains may have come too near since they were found.
+template <class Run>
+[[nodiscard]] const std::vector<std::uint32_t>& candidates_of(Run& run, const LaneListOf<typename Run::Law>& list,
+                                                              std::size_t rve) {
+  constexpr double widening = 1.5;  // lists then hold over some increments, and a tenth more pairs is looked at
+  CandidateCache& cache = run.batch->candidates;
+  const double skin = run.scales.skin;
+  if (cache.skin[rve] < 0 || cache.spent[rve] > cache.skin[rve] - skin) {
+    const Cell cell(list.cell);
+    const bool has_room = wide_enough(cell, run.scales.largest_radius, widening * skin);
+    cache.skin[rve] = has_room ? widening * skin : skin;
+    cache.spent[rve] = 0;
+    find_candidates(list.position, run.packing->radii, cell, cache.skin[rve], cache.keys[rve]);
+  }
+  return cache.keys[rve];
+}
+
 /// Makes the committed state of the lane's RVE the lane's reference. False, with the reason as status, for a lane that
 /// cannot run, which then stays empty.
 template <class Run>
@@ -28,18 +45,15 @@ template <class Run>
     lane.status = RveStatus::neighbour_overflow;
     return false;
   }
-  auto& cached = run.batch->candidates.keys[rve];
-  if (run.batch->candidates.skin[rve] != run.scales.skin) {
-    find_candidates(list.position, run.packing->radii, Cell(list.cell), run.scales.skin, cached);
-    run.batch->candidates.skin[rve] = run.scales.skin;
-  }
+  const std::vector<std::uint32_t>& candidates = candidates_of(run, list, rve);
   run.kept.clear();
   for (std::size_t c = 0; c < static_cast<std::size_t>(from.contact_count(rve)); ++c) {
     auto& kept = run.kept.emplace_back();
     kept.key = from.contact_key(rve, c);
     for (std::size_t k = 0; k < kept.history.size(); ++k) kept.history[k] = from.contact_history(rve, c, k);
   }
-  list_pairs<typename Run::Law>(list, run.packing->radii, cached, run.kept);
+  list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, candidates, run.kept);
+  list.rebased = false;
   set_rate(lane, 0);
   return true;
 }

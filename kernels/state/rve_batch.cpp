@@ -127,9 +127,17 @@ RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of, 
 
 void commit(RveBatch& batch) {
   std::swap(batch.committed, batch.trial);
-  forget_candidates(batch);
+  CandidateCache& c = batch.candidates;
+  for (std::size_t k = 0; k < batch.size(); ++k) {
+    if (c.spending[k] < 0) c.skin[k] = -1.0;
+    c.spent[k] = c.spending[k];
+    c.spending[k] = -1.0;
+  }
 }
 
-void forget_candidates(RveBatch& batch) { batch.candidates.skin.assign(batch.size(), -1.0); }
+void forget_candidates(RveBatch& batch) {
+  CandidateCache& c = batch.candidates;
+  for (auto* numbers : {&c.skin, &c.spent, &c.spending}) numbers->assign(batch.size(), -1.0);
+}
 
 }  // namespace voussoir::kernels

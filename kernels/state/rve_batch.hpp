@@ -112,11 +112,14 @@ struct RveReport {
   [[nodiscard]] KOKKOS_INLINE_FUNCTION double pressure() const { return -0.5 * (stress[0] + stress[3]); }
 };
 
-/// Candidate contacts of a committed state, kept between evaluations. They follow from the state, so no file stores
-/// them.
+/// Candidate contacts, kept between evaluations and over commits. They are found with a wider skin than an evaluation
+/// needs, and hold until grains may have come nearer by the difference. An evaluation lists those of them that are near
+/// in its committed state, so that its list, and with it every bit, follows from that state alone: no file stores them.
 struct CandidateCache {
   std::vector<std::vector<std::uint32_t>> keys;
-  std::vector<double> skin;  ///< the skin they were found with [m]; negative: none
+  std::vector<double> skin;      ///< the skin that they were found with [m]; negative: none
+  std::vector<double> spent;     ///< most by which two grains have come nearer since then, in the committed state [m]
+  std::vector<double> spending;  ///< the same in the trial state [m]; negative: not known
 };
 
 struct RveBatch {

@@ -52,9 +52,10 @@ def refused(sentence, *words):
 fresh("refused")
 refused("pack/case.toml:[0-9]+: kind: is pack: an ensemble needs a kind", str(ROOT / "cases/pack/case.toml"), "-n", "4")
 refused("case.toml:[0-9]+: material: ", str(ROOT / "cases/tunnel_elastic/case.toml"), "-n", "4")
-refused("--set packing.seeds: names the seeds", str(CASE), "-n", "4", "--set", "packing.seeds=[1, 2]")
+ONE = ["-n", "4", "--set", "packing.variety=1"]
+refused("--set packing.seeds: names the seeds", str(CASE), *ONE, "--set", "packing.seeds=[1, 2]")
 packing = next((ROOT / "tests/data/packings").glob("*_particles.csv"))
-refused("--set packing.file: names the packings", str(CASE), "-n", "4", "--set", f"packing.file={packing}")
+refused("--set packing.file: names the packings", str(CASE), *ONE, "--set", f"packing.file={packing}")
 refused("-n: Value 1 not in range", str(CASE), "-n", "1")
 refused("needs the number of members", str(CASE))
 refused('--until: "5 m" is a length', str(CASE), "--until", "5 m")
