@@ -27,6 +27,9 @@
 /// without motion changes neither forces nor history: lanes that have come to rest, `finish` and `committed_contacts`
 /// repeat the call.
 ///
+/// A law's members are values of type V and nothing else, and V is the first argument of its template: an RVE that is
+/// spread over the lanes gives each lane the law of another pair (lanes/spread_rve.hpp).
+///
 /// Overlaps are given over R = r_i + r_j, because the sweep has that number at no cost: a law that is not linear in
 /// delta takes its powers from overlap and keeps the power of R in its Pair.
 
