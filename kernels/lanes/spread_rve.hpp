@@ -61,6 +61,14 @@ void set_lane(Law& law, std::size_t l, const Law& from) {
   std::memcpy(static_cast<void*>(&law), to.data(), sizeof(Law));
 }
 
+/// Copies the history of a contact from a lane of one law to a lane of the same law over other lanes.
+template <class From, class To>
+void copy_history(const typename From::History& from, std::size_t l, typename To::History& to, std::size_t to_lane) {
+  std::array<real_of<typename From::Value>, most_history_numbers> numbers{};
+  write_history<From>(from, l, [&](int k, const auto& number) { numbers[static_cast<std::size_t>(k)] = number; });
+  read_history<To>(to, to_lane, [&](int k) { return numbers[static_cast<std::size_t>(k)]; });
+}
+
 /// The pairs and grains of the RVE of a group of one lane, between two of its lists. @tparam Law over the vector;
 /// @tparam Single the same law over one lane
 template <class Law, class Single>
@@ -96,10 +104,7 @@ class SpreadRve {
   void give(GroupState<Single>& group) {
     give_grains(group);
     for (std::size_t p = 0; p < pair_count(); ++p) {
-      std::array<real, most_history_numbers> numbers{};
-      write_history<Law>(pairs_[p / width].history, p % width,
-                         [&](int k, const auto& number) { numbers[static_cast<std::size_t>(k)] = number; });
-      read_history<Single>(group.pairs[p].history, 0, [&](int k) { return numbers[static_cast<std::size_t>(k)]; });
+      copy_history<Law, Single>(pairs_[p / width].history, p % width, group.pairs[p].history, 0);
     }
     holds_ = false;
   }
@@ -173,9 +178,8 @@ class SpreadRve {
   void take_pairs(const GroupState<Single>& group) {
     const std::size_t n = pair_count(), blocks = (n + width - 1) / width;
     const V zero(0), one(1);
-    const PairShape<Single>& any = group.pair_shapes[0];
     pairs_.assign(blocks, {zero, zero, one, no_history<Law>()});
-    pair_shapes_.assign(blocks, {zero, zero, zero, zero, zero, Law(typename Law::Pair(law_of(any)))});
+    pair_shapes_.assign(blocks, {zero, zero, zero, zero, zero, Law(law_of(group.pair_shapes[0]))});
     motions_.resize(blocks);
     actions_.resize(blocks);
     other_.resize(n);
@@ -192,10 +196,7 @@ class SpreadRve {
     to.branch_x[l] = from.branch_x[0];
     to.branch_y[l] = from.branch_y[0];
     to.gap[l] = from.gap[0];
-    std::array<real, most_history_numbers> numbers{};
-    write_history<Single>(from.history, 0,
-                          [&](int k, const auto& number) { numbers[static_cast<std::size_t>(k)] = number; });
-    read_history<Law>(to.history, l, [&](int k) { return numbers[static_cast<std::size_t>(k)]; });
+    copy_history<Single, Law>(from.history, 0, to.history, l);
     const PairShape<Single>& shape = group.pair_shapes[p];
     SpreadShapes<Law>& spread = pair_shapes_[b];
     spread.inverse_sum[l] = shape.inverse_sum;
