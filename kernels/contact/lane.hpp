@@ -114,6 +114,7 @@ template <class Mask>
 [[nodiscard]] inline unsigned bits_of(const Mask& mask) {
 #if defined(VOUSSOIR_AVX512)
   if constexpr (std::is_same_v<Mask, Doubles8::mask_type>) return static_cast<__mmask8>(mask);
+  if constexpr (std::is_same_v<Mask, Floats16::mask_type>) return static_cast<__mmask16>(mask);
 #endif
   unsigned bits = 0;
   for (unsigned l = 0; l < Mask::size(); ++l) bits |= (mask[l] ? 1U : 0U) << l;

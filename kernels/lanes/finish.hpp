@@ -2,7 +2,10 @@
 /// The end of a group: stress, tangent and report of each lane, and its trial state.
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <span>
 
 #include "kernels/contact/resting_pair.hpp"
@@ -38,11 +41,25 @@ template <class Run>
   return std::isfinite(all);
 }
 
+/// Where a lane's contacts go, one after another.
+struct ContactPlace {
+  std::uint32_t* key = nullptr;
+  double* history = nullptr;
+};
+
 /// Stores the contacts at the final positions with their histories, for the lanes that are `stored`.
 template <class Run>
 void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) {
-  RveStates& to = run.batch->trial;
-  std::array<int, Run::width> count{};
+  using V = typename Run::Value;
+  const RveStates& to = run.batch->trial;
+  const auto rve_of = [&run](std::size_t l) { return static_cast<std::size_t>(run.lanes[l].rve); };
+  std::array<ContactPlace, Run::width> place{};
+  unsigned wanted = 0;
+  for (std::size_t l = 0; l < Run::width; ++l) {
+    if (!stored[l]) continue;
+    wanted |= 1U << l;
+    place[l] = {&to.contact_key(rve_of(l), 0), to.histories_of(rve_of(l))};
+  }
   for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
     const auto& gi = run.group.grains[i];
     for (auto p = static_cast<std::size_t>(run.group.row[i]); p < static_cast<std::size_t>(run.group.row[i + 1]); ++p) {
@@ -50,19 +67,16 @@ void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) 
       const auto& gj = run.group.grains[static_cast<std::size_t>(j)];
       const auto& pair = run.group.pairs[p];
       const auto at = geometry_of(pair, run.group.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
-      for (std::size_t l = 0; l < Run::width; ++l) {
-        if (!stored[l] || !(at.gap[l] < 0)) continue;
-        const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
-        const int c = count[l]++;
-        to.contact_key(rve, c) = pair_key(static_cast<int>(i), j);
-        write_history<typename Run::Law>(pair.history, l, [&](int k, const auto& number) {
-          to.contact_history(rve, c, k) = static_cast<double>(number);
-        });
+      for (unsigned touching = bits_of(at.gap < V(0)) & wanted; touching != 0; touching &= touching - 1) {
+        const auto l = static_cast<std::size_t>(std::countr_zero(touching));
+        *place[l].key++ = pair_key(static_cast<int>(i), j);
+        write_history<typename Run::Law>(
+            pair.history, l, [&](int, const auto& number) { *place[l].history++ = static_cast<double>(number); });
       }
     }
   }
   for (std::size_t l = 0; l < Run::width; ++l) {
-    if (stored[l]) to.contact_count(static_cast<std::size_t>(run.lanes[l].rve)) = count[l];
+    if (stored[l]) to.contact_count(rve_of(l)) = static_cast<int>(place[l].key - &to.contact_key(rve_of(l), 0));
   }
 }
 

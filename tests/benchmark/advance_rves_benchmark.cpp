@@ -71,6 +71,17 @@ Scene clones(const host::PackedRve& rve, std::size_t n, Precision precision) {
 
 Scene alike(Precision precision) { return clones(sand(), groups * lanes_of(precision), precision); }
 
+/// Every RVE has a packing of its own, so that it is spread over the lanes.
+Scene alone(Precision precision) {
+  constexpr std::size_t n = 8;
+  std::vector<int> own(n);
+  std::iota(own.begin(), own.end(), 0);
+  Scene scene = clones(sand(), n, precision);
+  scene.batch = make_batch(std::vector<Packing>(n, sand().packing), std::move(own));
+  for (std::size_t k = 0; k < n; ++k) host::store_rve(sand(), scene.batch, k);
+  return scene;
+}
+
 Scene grading(Precision precision) { return clones(gravel(), groups * lanes_of(precision), precision); }
 
 Scene without_rolling(Precision precision) {
@@ -199,6 +210,7 @@ void add(const std::string& name, int iterations, Scene (*make)(Precision)) {
 [[maybe_unused]] const bool added = [] {
   add("alike", 8, alike);
   add("apart", 8, apart);
+  add("alone", 8, alone);
   add("without_rolling", 8, without_rolling);
   add("three_classes", 8, three_classes);
   add("grading", 4, grading);
