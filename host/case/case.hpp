@@ -85,13 +85,16 @@ struct EngineCase {
   std::string preset = "standard";  ///< fast, standard or reference; only its values are part of the fingerprint
   kernels::Precision precision = kernels::Precision::float32;  ///< value type of the pair loop
   double inertial_number = 3.0e-4;                             ///< target inertial number of an increment [-]
-  double hold_tolerance = 3.0e-4;                              ///< unbalanced force ratio that ends the hold [-]
+  double hold_tolerance = 1.0e-3;                              ///< unbalanced force ratio that ends the hold [-]
   kernels::Backend backend = kernels::Backend::automatic;      ///< one SIMD lane or one team of threads per RVE
   InstructionSetChoice isa = {};                               ///< of the lanes; no bit of a result depends on it
   int hold_cap = 4000;                                         ///< most steps of a hold
   double skin = 0.1;                                           ///< neighbour skin over the mean grain diameter [-]
-  int minimum_steps = 50;                                      ///< fewest strain steps of an increment
+  int minimum_steps = 20;                                      ///< fewest strain steps of an increment
   int maximum_steps = 2000;                                    ///< most strain steps of an increment
+  /// Error of the stress over the pressure that is asked for, from which each RVE gets its inertial number [-]; 0: the
+  /// numbers above count.
+  double accuracy = 0;
   double defer = 0;  ///< change of stress over pressure up to which an RVE answers by its tangent [-]; 0: never
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "host/case/accuracy.hpp"
 #include "host/case/keys.hpp"
 #include "kernels/advance_rves.hpp"
 #include "kernels/isa/choose_lanes.hpp"
@@ -24,7 +25,7 @@ const std::array<Preset, 3>& presets() {
         .inertial_number = 1e-3,
         .hold_tolerance = 1e-3,
         .hold_cap = 500,
-        .minimum_steps = 30,
+        .minimum_steps = 10,
         .maximum_steps = 1000,
         .defer = 1e-3},
        "the stress is off by 3 % of p at 1 kPa, 0.6 % at 100 kPa, 0.1 % at 800 kPa (rms of 8 packings)"},
@@ -66,6 +67,19 @@ std::string overridden(const EngineCase& engine, const EngineCase& preset) {
   return names;
 }
 
+/// Reads `accuracy`, which decides keys that must not be set beside it.
+void read_accuracy(const io::Table& table, EngineCase& engine) {
+  read_quantity(table, "accuracy", io::Dimension::none, engine.accuracy, {.at_least = "0", .at_most = "0.1"});
+  if (engine.accuracy == 0) return;
+  if (engine.accuracy < finest_accuracy)
+    throw table.error("accuracy",
+                      fmt::format("must be 0 (off) or at least {:g}: nothing finer was measured", finest_accuracy));
+  for (const char* key : {"inertial_number", "hold_tolerance", "minimum_steps", "maximum_steps"}) {
+    if (table.has(key)) throw table.error(key, "is decided by engine.accuracy");
+  }
+  apply_accuracy(engine);
+}
+
 /// The processor of this command decides what the key may be: a set that cannot be taken here is a fault of the input.
 InstructionSetChoice read_instruction_set(const io::Table& table) {
   const auto isa = kernels::find_instruction_set(table.choice("isa", {"auto", "scalar", "v3", "v4"}, "auto"));
@@ -88,6 +102,7 @@ EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
                    : backend == "teams" ? kernels::Backend::teams
                                         : kernels::Backend::automatic;
   engine.isa = read_instruction_set(table);
+  read_accuracy(table, engine);
   read_quantity(table, "inertial_number", io::Dimension::none, engine.inertial_number,
                 {.at_least = "1e-6", .at_most = "1e-2"});
   read_quantity(table, "hold_tolerance", io::Dimension::none, engine.hold_tolerance,
@@ -125,11 +140,13 @@ std::vector<std::string> engine_preset_names() {
 
 EngineCase engine_preset(const std::string& name) { return find(name).values; }
 
-std::string engine_note(const EngineCase& engine) {
+std::string engine_note(const EngineCase& engine, const SoilCase& soil) {
   const Preset& preset = find(engine.preset);
   const std::string others = overridden(engine, preset.values);
   std::string note = "engine preset " + engine.preset;
-  if (others.empty())
+  if (engine.accuracy > 0)
+    note = accuracy_note(engine.accuracy, soil);
+  else if (others.empty())
     note += fmt::format(": {} (docs/trade.md)", preset.error);
   else
     note += fmt::format(", with other values of {}: the measured error of the preset may not hold (docs/trade.md)",

@@ -22,8 +22,9 @@ namespace voussoir::host {
 /// The values of a preset. Throws std::logic_error where no preset has this name.
 [[nodiscard]] EngineCase engine_preset(const std::string& name);
 
-/// One line for a log: the preset of an engine and its measured error, or the keys whose values differ from the preset.
-[[nodiscard]] std::string engine_note(const EngineCase& engine);
+/// One line for a log: the preset of an engine and its measured error, or the keys whose values differ from the preset,
+/// or what `accuracy` means for grains of this soil.
+[[nodiscard]] std::string engine_note(const EngineCase& engine, const SoilCase& soil);
 
 /// The kernels' settings as far as [engine] decides them. A caller that wants tangents adds the settings of these.
 [[nodiscard]] kernels::EngineSettings engine_settings(const EngineCase& engine);

@@ -33,7 +33,8 @@ struct ResultField {
   bool kernels::MicrostructureRequest::* request = nullptr;
   /// Takes the value from the kernels' report of a contact network; nullptr where the field is no part of this report.
   double (*of_network)(const kernels::Microstructure&) = nullptr;
-  bool of_mix = false;  ///< the field exists only where the points hold several packings
+  bool of_mix = false;       ///< the field exists only where the points hold several packings
+  bool of_accuracy = false;  ///< the field exists only where `engine.accuracy` is asked for
 };
 
 namespace result_field_rows {
@@ -66,6 +67,7 @@ constexpr auto table = std::to_array<ResultField>({
     {"inertial_number", "-", 1, gauss, true},
     {"steps", "-", 1, gauss, true},
     {.name = "packing", .unit = "-", .components = 1, .of_grains = true, .of_mix = true},
+    {.name = "expected_error", .unit = "-", .components = 1, .of_grains = true, .of_accuracy = true},
     {"fabric_anisotropy", "-", 1, gauss, true, none, &Request::fabric,
      [](const Network& n) { return n.fabric_anisotropy; }},
     {"fabric_direction", "rad", 1, gauss, true, axis_from_x, &Request::fabric,

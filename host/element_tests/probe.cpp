@@ -225,7 +225,7 @@ std::vector<PackedRve> packings_to_probe(const SoilCase& soil, PackingCase recip
 }  // namespace
 
 Outcome run_probe(const Case& input, const RunOptions& options) {
-  std::printf("%s\n", engine_note(input.engine).c_str());
+  std::printf("%s\n", engine_note(input.engine, input.soil).c_str());
   say_remarks(input);
   std::vector<PackedRve> rves = packings_to_probe(input.soil, input.packing, input.probe.pressure);
   if (!options.lock) std::filesystem::create_directories(options.folder);

@@ -26,29 +26,30 @@ bool is_wanted(const OutputCase& output, const ResultField& field) {
 
 /// Size of a result file, with the copies for ParaView: vectors with a third component, and the means over the four
 /// points of an element.
-double result_file_bytes(MaterialKind material, const PackingCase& recipe, const OutputCase& output, double points,
-                         double nodes) {
+double result_file_bytes(const Case& input, double points, double nodes) {
   double bytes = file_overhead;
   for (const ResultField& field : result_field_table) {
-    if (!is_wanted(output, field) || (field.of_grains && material != MaterialKind::grains)) continue;
-    if (field.of_mix && recipe.variety == 1) continue;
+    if (!is_wanted(input.output, field) || (field.of_grains && input.material != MaterialKind::grains)) continue;
+    if (field.of_mix && input.packing.variety == 1) continue;
+    if (field.of_accuracy && input.engine.accuracy == 0) continue;
     bytes += 8.0 * field.components * (field.location == io::FieldLocation::node ? 2.5 * nodes : 1.25 * points);
   }
   const double snapshot = 32.0 + 48.0 * contacts_a_grain;  // bytes a grain
-  return bytes + static_cast<double>(output.rves.size()) * recipe.grains * snapshot;
+  return bytes + static_cast<double>(input.output.rves.size()) * input.packing.grains * snapshot;
 }
 
 }  // namespace
 
-void add_storage(CaseSize& size, MaterialKind material, const PackingCase& recipe, const OutputCase& output) {
+void add_storage(CaseSize& size, const Case& input) {
+  const PackingCase& recipe = input.packing;
   const auto points = static_cast<double>(size.points);
   const auto made = static_cast<double>(count_of_packings(recipe));
   // Packings are made side by side in one batch, and so are tests. A mesh has its own matrix and its factors.
-  const bool grains = material == MaterialKind::grains;
+  const bool grains = input.material == MaterialKind::grains;
   const double side_by_side = grains ? recipe.grains * std::max(made, static_cast<double>(size.tests)) : 0.0;
   size.memory = process_bytes + memory_a_grain * std::max(size.grains, side_by_side) + memory_a_point * points;
   if (size.points == 0) return;
-  size.result_file = result_file_bytes(material, recipe, output, points, nodes_a_point * points);
+  size.result_file = result_file_bytes(input, points, nodes_a_point * points);
   // A checkpoint holds committed RVEs (position and rotation, key and history of each contact) and the mesh's state.
   size.checkpoint = size.grains * (24.0 + 20.0 * contacts_a_grain) + 300.0 * points;
 }

@@ -7,7 +7,7 @@
 namespace voussoir::host {
 
 /// Sets memory, result files and checkpoints of a size whose points, grains and tests are known.
-void add_storage(CaseSize& size, MaterialKind material, const PackingCase& packing, const OutputCase& output);
+void add_storage(CaseSize& size, const Case& input);
 
 /// The least memory that a mesh of so many Gauss points takes, without its grains [bytes].
 [[nodiscard]] double mesh_memory(double points);

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "host/case/accuracy.hpp"
 #include "host/element_tests/calibration.hpp"
 #include "host/estimate/storage.hpp"
 #include "host/packing/packings.hpp"
 #include "host/stages/ground_loads.hpp"
 #include "host/stages/tunnel.hpp"
-#include "kernels/contact/engine_law.hpp"
-#include "kernels/state/mobility.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -29,23 +28,19 @@ constexpr double loss_evaluations = 4.5;
 constexpr double gravity_strain = 0.014;  ///< mean strain of an RVE over the load factor's step
 constexpr double loss_strain = 0.2;       ///< mean strain of an RVE over the volume loss of an increment
 constexpr double hold_steps = 30;
-constexpr double specimen_evaluations = 5.0;  ///< cases/biaxial_bvp took 7, most of them with few steps
+constexpr double specimen_evaluations = 2.5;  ///< cases/biaxial_bvp took 7, most of them with few steps
 constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the strain of the specimen, without change of
                                          ///< volume
 
-/// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)). The mass m is the scaled one that
-/// the engine's law gives a grain of the mean radius.
+/// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)).
 double inertial_steps(const SoilCase& soil, double strain, double pressure, double inertial_number) {
-  const kernels::GrainMaterial grain{.modulus = soil.modulus, .stiffness_ratio = soil.stiffness_ratio};
-  const double mean_radius = 0.25 * (soil.size_minimum + soil.size_maximum);
-  const kernels::Mobility mobility = kernels::mobility_of<kernels::PlainEngineLaw>(
-      grain, mean_radius, 0.5 * soil.size_maximum, kernels::EngineSettings{}.overlap_limit);
-  return strain / inertial_number * kernels::inertial_time(mobility.translation, soil.thickness, pressure);
+  return strain / inertial_number * inertial_time_of(soil, pressure);
 }
 
 /// Steps of one evaluation of one RVE.
 double steps_per_evaluation(const SoilCase& soil, const EngineCase& engine, double strain, double pressure) {
-  const double steps = inertial_steps(soil, strain, pressure, engine.inertial_number);
+  const double steps = inertial_steps(soil, strain, pressure,
+                                      inertial_number_at(inertial_time_of(soil, pressure), engine));
   return std::clamp(steps, static_cast<double>(engine.minimum_steps), static_cast<double>(engine.maximum_steps)) +
          std::min(hold_steps, static_cast<double>(engine.hold_cap));
 }
@@ -148,7 +143,7 @@ CaseSize case_size(const Case& input) {
     size = specimen_size(input.biaxial_bvp, input.material, input.soil, input.packing, input.engine);
   if (input.kind == CaseKind::calibrate) size = search_size(input.calibrate, input.biaxial, input.soil, input.packing);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) size = ground_size(input);
-  add_storage(size, input.material, input.packing, input.output);
+  add_storage(size, input);
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) add_curves(size, input.biaxial);
   size.packings = count_of_packings(input.packing) *
                   (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "host/case/accuracy.hpp"
 #include "host/case/engine.hpp"
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
@@ -83,14 +84,19 @@ void RvePool::begin_increment() {
   deferral_.begin_increment();
 }
 
+/// At the RVE's committed pressure [steps].
+double RvePool::inertial_time_of(std::size_t rve) const {
+  const double p = std::max(committed_reports_[rve].pressure(), settings_.pressure_floor);
+  return kernels::inertial_time(mobilities_[static_cast<std::size_t>(batch_.packing_of[rve])],
+                                batch_.packing(rve).thickness, p);
+}
+
 /// The number of steps with the target inertial number at the RVE's committed pressure. A pure rotation needs no steps,
 /// since it does not strain the grains.
 int RvePool::steps_for(std::size_t rve, const kernels::Mat2& f_rel) const {
   const double strain = kernels::symmetric_norm(kernels::log_of(f_rel));
-  const double p = std::max(committed_reports_[rve].pressure(), settings_.pressure_floor);
-  const double time = kernels::inertial_time(mobilities_[static_cast<std::size_t>(batch_.packing_of[rve])],
-                                             batch_.packing(rve).thickness, p);
-  const double steps = strain / engine_.inertial_number * time;
+  const double time = inertial_time_of(rve);
+  const double steps = strain / inertial_number_at(time, engine_) * time;
   if (!std::isfinite(steps)) return engine_.minimum_steps;
   const double most = engine_.maximum_steps;
   return std::clamp(round_up(std::clamp(steps, 1.0, most)), engine_.minimum_steps, engine_.maximum_steps);
@@ -189,6 +195,10 @@ std::vector<fem::PointField> RvePool::fields() const {
   add(result_field("steps"), [&](std::size_t k) { return static_cast<double>(reports[k].steps); });
   if (batch_.packings.size() > 1) {
     add(result_field("packing"), [&](std::size_t k) { return static_cast<double>(batch_.packing_of[k]); });
+  }
+  if (engine_.accuracy > 0) {
+    add(result_field("expected_error"),
+        [&](std::size_t k) { return choose_inertial_number(engine_.accuracy, inertial_time_of(k)).error; });
   }
   if (!microstructure_.any()) return out;
   std::vector<kernels::Microstructure> all(size());

@@ -77,6 +77,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<kernels::RveStates> all_states_;       ///< committed, trial and held ones
   std::vector<std::weak_ptr<const HeldRves>> held_;  ///< those that somebody holds, and such as were held
 
+  [[nodiscard]] double inertial_time_of(std::size_t rve) const;
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
   void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);
   kernels::Work advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings);

@@ -85,7 +85,7 @@ Outcome command_check(const std::filesystem::path& case_file, const std::vector<
   const auto [input, size, range] = accept_case(case_file, overrides);
   refuse_too_large(input, size, rank_count());
   std::string answer = input.resolved + "\n";
-  if (uses_engine(input.kind, input.material)) answer += "# " + engine_note(input.engine) + "\n";
+  if (uses_engine(input.kind, input.material)) answer += "# " + engine_note(input.engine, input.soil) + "\n";
   answer += "# " + kernels::lanes_sentence(kernels::choose_lanes(input.engine.isa)) + "\n";
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";

@@ -88,12 +88,12 @@ template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
   auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure] = options;
   auto& [preset, precision, inertial_number, hold_tolerance, backend, isa, hold_cap, skin, minimum_steps, maximum_steps,
-         defer] = engine;
+         accuracy, defer] = engine;
   static_cast<void>(preset);
   static_cast<void>(isa);
   transfer(&precision, 1);
   transfer(&backend, 1);
-  for (auto* number : {&inertial_number, &hold_tolerance, &skin, &defer}) transfer(number, 1);
+  for (auto* number : {&inertial_number, &hold_tolerance, &skin, &accuracy, &defer}) transfer(number, 1);
   for (auto* count : {&hold_cap, &minimum_steps, &maximum_steps}) transfer(count, 1);
   transfer(&tangent, 1);
   transfer(&tangent_tolerance, 1);

@@ -31,7 +31,7 @@ void tell_circumstances(const RunOptions& options, RunLog& log) {
 
 void log_engine(const Case& input, RunLog& log) {
   if (!uses_engine(input.kind, input.material)) return;
-  log.line(engine_note(input.engine));
+  log.line(engine_note(input.engine, input.soil));
   log.line(kernels::lanes_sentence(kernels::chosen_lanes()));
 }
 

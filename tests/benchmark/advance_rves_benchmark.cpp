@@ -2,8 +2,6 @@
 // steps, hold, stress and eq. (4) included). Dense coarse sand and dense gravel at 100 kPa; README.md says how to run
 // and what it gave.
 
-#include "kernels/advance_rves.hpp"
-
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -16,36 +14,12 @@
 #include <vector>
 
 #include "host/case/load_case.hpp"
-#include "host/packing/packings.hpp"
-#include "kernels/isa/choose_lanes.hpp"
+#include "tests/benchmark/scenes.hpp"
 
 namespace voussoir::kernels {
 namespace {
 
-constexpr double pressure = 1.0e5;    ///< [Pa]
-constexpr double increment = 1.0e-3;  ///< shear strain eps_q of an evaluation [-]
-constexpr int strain_steps = 400;
 constexpr int groups = 4;  ///< more than one, so that a group finds the caches as in a run
-
-/// What is advanced again and again: never committed, so that every repetition does the same work.
-struct Scene {
-  RveBatch batch;
-  std::vector<StrainRequest> requests;
-  EngineSettings settings;
-};
-
-host::PackedRve packed(host::Case input) {
-  input.packing.pressure = pressure;
-  input.packing.folder = "out/benchmark";  // where tools/bench_peers looks for it
-  const std::int64_t seed[] = {1};
-  return host::obtain_packings(input.soil, input.packing, seed).front();
-}
-
-/// CPS_D: 700 grains.
-const host::PackedRve& sand() {
-  static const host::PackedRve rve = packed({});
-  return rve;
-}
 
 /// CPG_D: 1500 grains of three classes, size ratio 20.
 const host::PackedRve& gravel() {
@@ -53,34 +27,10 @@ const host::PackedRve& gravel() {
   return rve;
 }
 
-std::size_t lanes_of(Precision precision) { return static_cast<std::size_t>(chosen_lanes().lanes->width(precision)); }
-
-/// Pure shear of eps_q = `shear` whose major axis stands at `angle` to x, with `dilation` of every length.
-Mat2 sheared(double angle, double shear, double dilation) {
-  const double c = 0.5 * shear * std::cos(2.0 * angle), s = 0.5 * shear * std::sin(2.0 * angle);
-  return identity2 + exp_minus_identity({dilation + c, s, s, dilation - c});
-}
-
-Scene clones(const host::PackedRve& rve, std::size_t n, Precision precision) {
-  Scene scene{
-      .batch = make_batch({rve.packing}, std::vector<int>(n, 0)), .requests = {}, .settings = {.precision = precision}};
-  for (std::size_t k = 0; k < n; ++k) host::store_rve(rve, scene.batch, k);
-  scene.requests.assign(n, {.f_rel = sheared(0.0, increment, 0.0), .strain_steps = strain_steps, .hold_cap = 1000});
-  return scene;
-}
-
 Scene alike(Precision precision) { return clones(sand(), groups * lanes_of(precision), precision); }
 
 /// Every RVE has a packing of its own, so that it is spread over the lanes.
-Scene alone(Precision precision) {
-  constexpr std::size_t n = 8;
-  std::vector<int> own(n);
-  std::iota(own.begin(), own.end(), 0);
-  Scene scene = clones(sand(), n, precision);
-  scene.batch = make_batch(std::vector<Packing>(n, sand().packing), std::move(own));
-  for (std::size_t k = 0; k < n; ++k) host::store_rve(sand(), scene.batch, k);
-  return scene;
-}
+Scene alone(Precision precision) { return clones(sand(), 8, precision, 8); }
 
 Scene grading(Precision precision) { return clones(gravel(), groups * lanes_of(precision), precision); }
 

@@ -60,7 +60,7 @@ FAST = {
     "engine.preset": "fast",
     "engine.inertial_number": 1e-3,
     "engine.hold_tolerance": 1e-3,
-    "engine.minimum_steps": 30,
+    "engine.minimum_steps": 10,
     "engine.maximum_steps": 1000,
 }
 REFERENCE = {

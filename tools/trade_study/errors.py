@@ -19,7 +19,7 @@ TANGENT_NORM = np.sqrt(
     np.array([1.0, 2.0, 4.0, 1.0, 4.0, 4.0])
 )  # xxxx xxyy xxxy yyyy yyxy xyxy: the number of times that each occurs in the sum
 TANGENT = tuple(f"tangent_after_{name}_Pa" for name in ("xxxx", "xxyy", "xxxy", "yyyy", "yyxy", "xyxy"))
-STRAINS = 0.005 * np.arange(1, 6)  # axial strains that the increments of every size in the plan reach
+STRAINS = 0.00499 * np.arange(1, 6)  # axial strains that the increments of every size in the plan reach, either way
 
 
 def read(file):
@@ -141,7 +141,7 @@ def path_of(table, seed):
     curves, volumes, steps = [], [], []
     for replica in np.unique(table["replica"]):
         rows = (table["seed"] == seed) & (table["replica"] == replica)
-        axial = -table["strain_yy"][rows]
+        axial = np.maximum(np.abs(table["strain_yy"]), 2 * np.abs(table["strain_xy"]))[rows]
         curves.append(np.interp(STRAINS, axial, ratio[rows], right=np.nan))
         volumes.append(np.interp(STRAINS, axial, volume[rows], right=np.nan))
         steps.append(np.sum((table["steps"] * table["evaluations"])[rows]))

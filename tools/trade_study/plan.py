@@ -15,8 +15,9 @@ REPLICAS = {
     True: 8,
     False: 2,
 }  # True: of a path, which may be chaotic; False: of a single evaluation, which is hardly so
-PRESSURES = {1: "1 kPa", 100: "100 kPa", 800: "800 kPa"}
-PROBE_STRAIN = {1: 1e-4, 100: 1e-3, 800: 1e-3}
+PRESSURES = {kpa: f"{kpa} kPa" for kpa in (1, 3, 10, 20, 30, 100, 200, 300, 800)}
+USUAL_PRESSURES = (1, 100, 800)
+PROBE_STRAIN = {kpa: 1e-4 if kpa == 1 else 1e-3 for kpa in PRESSURES}
 PATH_STRAIN = 0.025  # axial, at constant lateral stress: a shear strain of 4 to 6 %
 INCREMENTS = 25
 # The reference solution is far more exact than the preset `reference`, which is one of the measured settings.
@@ -28,7 +29,16 @@ REFERENCE = {
     "minimum_steps": 500,
     "maximum_steps": 1000000,
 }
-REFERENCE_AT = {1: {"inertial_number": 3e-5}}  # a path at 1 kPa needs ten times the steps
+REFERENCE_AT = {
+    1: {"inertial_number": 3e-5},
+    3: {"inertial_number": 3e-5},
+    10: {"inertial_number": 3e-5},
+    20: {"inertial_number": 3e-5},
+    30: {"inertial_number": 3e-5},
+}  # a path at 1 kPa needs ten times the steps
+# What `engine.accuracy` follows: the inertial number alone, with bounds on the steps that do not bind.
+CURVE = {"preset": "standard", "minimum_steps": 10, "maximum_steps": 1000000}
+CURVE_VALUES = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
 
 
 @dataclass(frozen=True)
@@ -47,7 +57,7 @@ class Setting:
     @property
     def is_of_the_engine(self):
         """True where single evaluations depend on the setting and the packings do not."""
-        return self.knob not in ("increments", "modulus", "grains")
+        return self.knob not in ("curve", "accuracy", "increments", "modulus", "grains")
 
 
 def settings():
@@ -74,6 +84,19 @@ def settings():
         Setting("maximum_steps", str(n), {"preset": "standard", "maximum_steps": n}, 5)
         for n in (500, 1000, 2000, 10000)
     ]
+    every += [
+        Setting(
+            "floor_and_hold",
+            f"{n} {hold:g} in {parts}",
+            {"preset": "standard", "minimum_steps": n, "hold_tolerance": hold},
+            parts,
+        )
+        for parts in (25, 100, 400)
+        for n in (10, 20, 50)
+        for hold in (1e-3, 3e-4)
+    ]
+    every += [Setting("curve", f"{value:g}", {**CURVE, "inertial_number": value}) for value in CURVE_VALUES]
+    every += [Setting("accuracy", f"{value} %", {"accuracy": f"{value} %"}) for value in (3, 1, 0.3)]
     every += [Setting("increments", str(n), {"preset": "standard"}, n) for n in (5, 10, 25, 100)]
     every += [
         Setting("modulus", text, {"preset": "standard", "soil.modulus": text})
@@ -87,7 +110,11 @@ def toml(value):
     return json.dumps(value)
 
 
-def case_text(setting, kpa, seed, packings, *, path, file=None):
+# Velocity gradients of the paths, for an axial strain or shear strain of 1; sigma_xx stays constant.
+PATHS = {"compression": (0, 0, 0, -1), "extension": (0, 0, 0, 1), "shear": (0, 1, 0, 0)}
+
+
+def case_text(setting, kpa, seed, packings, *, path, file=None, way="compression"):
     tables = {
         "packing": {"grains": 300, "folder": str(packings)},
         "engine": {},
@@ -102,10 +129,8 @@ def case_text(setting, kpa, seed, packings, *, path, file=None):
     for name, keys in tables.items():
         text += f"\n[{name}]\n" + "".join(f"{key} = {toml(value)}\n" for key, value in keys.items())
     if path:
-        text += (
-            f"\n[[probe.path]]\ngradient = [0, 0, 0, {-PATH_STRAIN / setting.increments:.9g}]\n"
-            f"increments = {setting.increments}\nconstant_xx = true\n"
-        )
+        gradient = ", ".join(f"{part * PATH_STRAIN / setting.increments:.9g}" for part in PATHS[way])
+        text += f"\n[[probe.path]]\ngradient = [{gradient}]\nincrements = {setting.increments}\nconstant_xx = true\n"
     return text
 
 
@@ -113,15 +138,15 @@ class Study:
     """Runs cases below one folder, several at a time. A case whose results are there with the same text is not
     repeated."""
 
-    def __init__(self, program, folder, seeds, pressures, processes):
-        self.program, self.folder = Path(program), Path(folder)
+    def __init__(self, program, folder, seeds, pressures, processes, *, way="compression"):
+        self.program, self.folder, self.way = Path(program), Path(folder), way
         self.seeds, self.pressures, self.processes = seeds, pressures, processes
 
     def reference(self, kpa):
         return Setting("reference", "solution", {**REFERENCE, **REFERENCE_AT.get(kpa, {})})
 
     def seeds_of(self, setting, kpa):
-        every = 1 if setting.knob in ("reference", "preset") else FEWER_SEEDS_AT.get(kpa, 1)
+        every = 1 if setting.knob in ("reference", "preset", "curve") else FEWER_SEEDS_AT.get(kpa, 1)
         return self.seeds[: max(1, len(self.seeds) // every)]
 
     def seeds_needed(self, chosen, kpa):
@@ -194,4 +219,4 @@ class Study:
         return [(setting, kpa) for kpa in self.pressures for setting in (self.reference(kpa), *chosen)]
 
     def text(self, setting, kpa, seed, **what):
-        return case_text(setting, kpa, seed, (self.folder / "packings").resolve(), **what)
+        return case_text(setting, kpa, seed, (self.folder / "packings").resolve(), way=self.way, **what)

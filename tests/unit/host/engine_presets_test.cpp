@@ -69,11 +69,11 @@ TEST(EnginePresets, CountForTheFingerprintThroughTheirValues) {
 
 TEST(EnginePresets, TheirErrorIsOnlyClaimedForTheirValues) {
   for (const std::string& name : engine_preset_names()) {
-    const std::string note = engine_note(engine_preset(name));
+    const std::string note = engine_note(engine_preset(name), SoilCase{});
     EXPECT_NE(note.find(name), std::string::npos);
     EXPECT_NE(note.find('%'), std::string::npos) << note;
   }
-  const std::string note = engine_note(probe_case({"engine.preset=fast", "engine.hold_cap=7"}).engine);
+  const std::string note = engine_note(probe_case({"engine.preset=fast", "engine.hold_cap=7"}).engine, SoilCase{});
   EXPECT_EQ(note.find('%'), std::string::npos) << note;
   EXPECT_NE(note.find("hold_cap"), std::string::npos) << note;
 }
@@ -89,10 +89,10 @@ TEST(EnginePresets, DeferOnAMeshOnlyAndNotWhereItIsSwitchedOff) {
 }
 
 TEST(EnginePresets, WhatDeferralCostsIsSaidWhereItIsOn) {
-  EXPECT_EQ(engine_note(probe_case({}).engine).find("deferred"), std::string::npos);
+  EXPECT_EQ(engine_note(probe_case({}).engine, SoilCase{}).find("deferred"), std::string::npos);
   EngineCase deferring;
   deferring.defer = 2e-3;
-  const std::string note = engine_note(deferring);
+  const std::string note = engine_note(deferring, SoilCase{});
   EXPECT_NE(note.find("deferred up to 0.002"), std::string::npos) << note;
   EXPECT_NE(note.find("standard: "), std::string::npos) << "its error is still that of the grains: " << note;
 }
