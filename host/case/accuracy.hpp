@@ -1,10 +1,10 @@
 #pragma once
 /// `engine.accuracy`: from an error of the stress to the settings of the grain engine, by measured curves.
 ///
-/// The error is that of q/p along a path to 5 % of shear strain, root mean square over packings (docs/trade.md,
-/// "Accuracy"). It follows the inertial number I. What I does at another pressure, modulus or thickness depends on one
-/// number, the inertial time sqrt(m/(p t)) [steps] (kernels/state/rve_batch.hpp), because this time is all that tells
-/// two scenes of equal grains apart.
+/// The error is that of q/p along a path to 5 % of shear strain, root mean square over packings, with a margin for
+/// other paths (docs/trade.md, "Accuracy"). It follows the inertial number I. What I does at another pressure, modulus
+/// or thickness depends on one number, the inertial time sqrt(m/(p t)) [steps] (kernels/state/rve_batch.hpp), because
+/// this time is all that tells two scenes of equal grains apart.
 
 #include "host/case/case.hpp"
 
@@ -18,7 +18,7 @@ struct AccuracyChoice {
   double error = 0;            ///< expected, over the pressure [-]; above the accuracy where that cannot be met
 };
 
-/// The error that the curves expect at an inertial number, which is taken to be within the measured ones, over the
+/// The error to expect at an inertial number, which is taken to be within the measured ones, over the
 /// pressure [-]. @param inertial_time [steps]
 [[nodiscard]] double expected_error(double inertial_number, double inertial_time);
 

@@ -12,14 +12,16 @@ namespace {
 
 constexpr double measured_grains = 300;
 
-/// A row of the table in docs/trust.md, of which those with 24 draws are taken.
+/// A row of the table in docs/trust.md.
 struct Row {
   double variety;
   std::array<double, 3> settlement;  ///< at the volume losses below [-]
   double reaction, k0;
 };
 constexpr std::array losses{0.01, 0.05, 0.10};
-constexpr std::array rows{Row{1, {0.014, 0.071, 0.114}, 0.136, 0.054}, Row{8, {0.007, 0.044, 0.065}, 0.109, 0.015}};
+constexpr std::array rows{Row{1, {0.014, 0.071, 0.114}, 0.136, 0.054}, Row{2, {0.011, 0.050, 0.102}, 0.131, 0.038},
+                          Row{4, {0.008, 0.046, 0.088}, 0.130, 0.024}, Row{8, {0.007, 0.044, 0.065}, 0.109, 0.015},
+                          Row{16, {0.006, 0.033, 0.052}, 0.146, 0.014}};
 
 double between(double a, double b, double share) { return a + share * (b - a); }
 

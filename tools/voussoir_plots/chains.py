@@ -51,7 +51,13 @@ def draw(result: Result, path: Path) -> None:
         *(result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]),
     ]
     found = rows(result, chosen[-1])
-    figure, axes = plt.subplots(len(found), len(chosen), figsize=(3.6 * len(chosen), 3.9 * len(found)), squeeze=False)
+    figure, axes = plt.subplots(
+        len(found),
+        len(chosen),
+        figsize=(3.6 * len(chosen), 3.9 * len(found)),
+        squeeze=False,
+        layout="constrained",
+    )
     for row, (label, name) in zip(axes, found):
         for axis, increment in zip(row, chosen):
             _draw_rve(axis, increment.snapshot(name))
@@ -61,7 +67,6 @@ def draw(result: Result, path: Path) -> None:
         "Force chains: width of a bar by normal force;\nred from the RVE's mean on, dark red from twice the mean on",
         fontsize=12,
     )
-    figure.tight_layout()
     save(figure, path)
 
 

@@ -51,6 +51,7 @@ def set_note(text: str) -> None:
 
 def save(figure: Figure, path: Path) -> None:
     for note in _notes:
+        figure.draw_without_rendering()  # a layout that is computed moves the axes only then
         width, height = figure.get_size_inches()
         lines = textwrap.fill(note, int(width * LETTERS_AN_INCH))
         below = figure.get_tightbbox().y0 / height - 0.1 / height  # under all that is drawn, legends too
