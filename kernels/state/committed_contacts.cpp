@@ -41,7 +41,7 @@ void committed_contacts(const RveBatch& batch, std::size_t rve, std::vector<Comm
     contact.branch_x = s.position(rve, contact.j, 0) - s.position(rve, contact.i, 0);
     contact.branch_y = s.position(rve, contact.j, 1) - s.position(rve, contact.i, 1);
     cell.nearest(contact.branch_x, contact.branch_y);
-    const double length = std::hypot(contact.branch_x, contact.branch_y);
+    const double length = std::sqrt(contact.branch_x * contact.branch_x + contact.branch_y * contact.branch_y);
     contact.normal_x = contact.branch_x / length;
     contact.normal_y = contact.branch_y / length;
     add_forces(batch.packing(rve), s.histories_of(rve) + c * s.history_size(), contact, length);

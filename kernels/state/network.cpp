@@ -28,10 +28,10 @@ double mechanical_coordination(std::span<const NetworkContact> contacts, double 
   std::fill(contacts_of.begin(), contacts_of.end(), 0);
   int total = 0;
   for (const NetworkContact& c : contacts) {
-    if (!(c.normal_force >= least)) continue;
-    ++total;
-    ++contacts_of[static_cast<std::size_t>(c.i)];
-    ++contacts_of[static_cast<std::size_t>(c.j)];
+    const int counts = c.normal_force >= least ? 1 : 0;  // no branch, because half of its predictions would be wrong
+    total += counts;
+    contacts_of[static_cast<std::size_t>(c.i)] += counts;
+    contacts_of[static_cast<std::size_t>(c.j)] += counts;
   }
   const auto one = std::count(contacts_of.begin(), contacts_of.end(), 1);
   const auto none = std::count(contacts_of.begin(), contacts_of.end(), 0);
