@@ -53,7 +53,7 @@ const std::vector<IdleRule>& rules() {
       {"elastic", {}, [](const Case& c) { return on_a_mesh(c) && !is_elastic(c); }, "material is \"grains\""},
       {"engine", {}, is_pack, "packings are made with settings of their own"},
       {"engine",
-       {"accuracy", "inertial_number", "hold_cap", "minimum_steps", "maximum_steps"},
+       {"inertial_number", "hold_cap", "minimum_steps", "maximum_steps"},
        runs_tests,
        "tests have the rate of biaxial.inertial_number and no hold"},
       {"packing",

@@ -37,6 +37,10 @@ void read_grain_tables(const io::Table& root, Case& input) {
   input.soil = read_soil(root.table("soil"));
   input.packing = read_packing(root.table("packing"), runs_on_a_mesh(input.kind));
   input.engine = read_engine(root.table("engine"), runs_on_a_mesh(input.kind));
+  if (input.engine.accuracy > 0 && (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate)) {
+    throw root.table("engine").error(
+        "accuracy", "is for RVEs that are strained in increments; tests have the rate of biaxial.inertial_number");
+  }
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
   if (input.kind != CaseKind::probe && input.packing.has_state()) {
     throw root.table("packing").error(

@@ -49,9 +49,9 @@ TEST(Accuracy, CannotBeMetAtTheLowestPressure) {
   EXPECT_NE(note.find("at 1 kPa (which leaves"), std::string::npos) << note;
 }
 
-Case case_with(const std::vector<std::string>& overrides) {
+Case case_with(const std::vector<std::string>& overrides, const char* kind = "probe") {
   const std::filesystem::path file = "accuracy_under_test.toml";
-  std::ofstream(file) << "kind = 'probe'\n";
+  std::ofstream(file) << "kind = '" << kind << "'\n";
   return load_case(file, overrides);
 }
 
@@ -67,9 +67,9 @@ TEST(Accuracy, DecidesTheBoundsOfTheStepsToo) {
 }
 
 TEST(Accuracy, IsNotSaidTwice) {
-  const auto complaint = [](const std::vector<std::string>& overrides) -> std::string {
+  const auto complaint = [](const std::vector<std::string>& overrides, const char* kind = "probe") -> std::string {
     try {
-      (void)case_with(overrides);
+      (void)case_with(overrides, kind);
       return "";
     } catch (const io::InputError& error) {
       return error.what();
@@ -85,6 +85,10 @@ TEST(Accuracy, IsNotSaidTwice) {
   EXPECT_NE(complaint({"engine.accuracy=0.01 %"}).find("nothing finer was measured"), std::string::npos);
   EXPECT_NE(complaint({"engine.accuracy=20 %"}), "");
   EXPECT_NE(complaint({"engine.accuracy=-1 %"}), "");
+  for (const char* kind : {"biaxial", "calibrate"}) {
+    EXPECT_NE(complaint({"engine.accuracy=1 %"}, kind).find("tests have the rate of"), std::string::npos) << kind;
+  }
+  EXPECT_EQ(complaint({"engine.accuracy=1 %"}, "tunnel"), "");
 }
 
 }  // namespace
