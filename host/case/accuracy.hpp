@@ -18,8 +18,8 @@ struct AccuracyChoice {
   double error = 0;            ///< expected, over the pressure [-]; above the accuracy where that cannot be met
 };
 
-/// The error to expect at an inertial number, which is taken to be within the measured ones, over the
-/// pressure [-]. @param inertial_time [steps]
+/// The error to expect at an inertial number, which is taken to be within the measured ones, over the pressure [-].
+/// @param inertial_time [steps]
 [[nodiscard]] double expected_error(double inertial_number, double inertial_time);
 
 /// The largest inertial number whose expected error is at most `accuracy` [-], or the smallest measured one where none
@@ -29,14 +29,14 @@ struct AccuracyChoice {
 /// The inertial number of an engine for an RVE of this inertial time [steps].
 [[nodiscard]] double inertial_number_at(double inertial_time, const EngineCase& engine);
 
-/// The inertial time of a grain of the soil's mean radius, whose mass is the scaled one that the engine's law gives it
-/// [steps]. @param pressure [Pa]
+/// The inertial time of a grain of the soil's mean radius and material, which classes of grains and grading curves
+/// differ from, whose mass is the scaled one that the engine's law gives it [steps]. @param pressure [Pa]
 [[nodiscard]] double inertial_time_of(const SoilCase& soil, double pressure);
 
 /// Sets what an accuracy decides for all RVEs alike: the end of the hold and the bounds of the steps.
 void apply_accuracy(EngineCase& engine);
 
-/// One sentence for a log: what the accuracy costs at some pressures, and where it cannot be met.
-[[nodiscard]] std::string accuracy_note(double accuracy, const SoilCase& soil);
+/// One sentence for a log: the inertial numbers at some pressures, and where the accuracy cannot be met.
+[[nodiscard]] std::string accuracy_note(const EngineCase& engine, const SoilCase& soil);
 
 }  // namespace voussoir::host

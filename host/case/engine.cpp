@@ -71,17 +71,26 @@ std::string overridden(const EngineCase& engine, const EngineCase& preset) {
   return names;
 }
 
-/// Reads `accuracy`, which decides keys that must not be set beside it.
-void read_accuracy(const io::Table& table, EngineCase& engine) {
+/// Reads `accuracy`, or the keys that it decides, which must not be set beside it.
+void read_rates(const io::Table& table, EngineCase& engine) {
   read_quantity(table, "accuracy", io::Dimension::none, engine.accuracy, {.at_least = "0", .at_most = "0.1"});
-  if (engine.accuracy == 0) return;
-  if (engine.accuracy < finest_accuracy)
-    throw table.error("accuracy",
-                      fmt::format("must be 0 (off) or at least {:g}: nothing finer was measured", finest_accuracy));
-  for (const char* key : {"inertial_number", "hold_tolerance", "minimum_steps", "maximum_steps"}) {
-    if (table.has(key)) throw table.error(key, "is decided by engine.accuracy");
+  if (engine.accuracy > 0) {
+    if (engine.accuracy < finest_accuracy) {
+      throw table.error("accuracy",
+                        fmt::format("must be 0 (off) or at least {:g}: nothing finer was measured", finest_accuracy));
+    }
+    for (const char* key : {"inertial_number", "hold_tolerance", "minimum_steps", "maximum_steps"}) {
+      if (table.has(key)) throw table.error(key, "is decided by engine.accuracy");
+    }
+    return apply_accuracy(engine);
   }
-  apply_accuracy(engine);
+  read_quantity(table, "inertial_number", io::Dimension::none, engine.inertial_number,
+                {.at_least = "1e-6", .at_most = "1e-2"});
+  read_quantity(table, "hold_tolerance", io::Dimension::none, engine.hold_tolerance,
+                {.at_least = "1e-6", .at_most = "0.1"});
+  read_integer(table, "minimum_steps", engine.minimum_steps, {.at_least = 1, .at_most = 10'000'000});
+  read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
+  if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
 }
 
 /// The processor of this command decides what the key may be: a set that cannot be taken here is a fault of the input.
@@ -106,20 +115,13 @@ EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
                    : backend == "teams" ? kernels::Backend::teams
                                         : kernels::Backend::automatic;
   engine.isa = read_instruction_set(table);
-  read_accuracy(table, engine);
-  read_quantity(table, "inertial_number", io::Dimension::none, engine.inertial_number,
-                {.at_least = "1e-6", .at_most = "1e-2"});
-  read_quantity(table, "hold_tolerance", io::Dimension::none, engine.hold_tolerance,
-                {.at_least = "1e-6", .at_most = "0.1"});
+  read_rates(table, engine);
   read_integer(table, "hold_cap", engine.hold_cap, {.at_least = 0, .at_most = 10'000'000});
   read_quantity(table, "skin", io::Dimension::none, engine.skin, {.at_least = "0.005", .at_most = "1"});
-  read_integer(table, "minimum_steps", engine.minimum_steps, {.at_least = 1, .at_most = 10'000'000});
-  read_integer(table, "maximum_steps", engine.maximum_steps, {.at_least = 1, .at_most = 10'000'000});
   if (!on_a_mesh) engine.defer = 0;  // even where the preset defers
   read_quantity(table, "defer", io::Dimension::none, engine.defer, {.at_least = "0", .at_most = "0.1"});
   if (!on_a_mesh && engine.defer > 0)
     throw table.error("defer", "is for kinds with a mesh only: in all other kinds the grains of every RVE have to run");
-  if (engine.maximum_steps < engine.minimum_steps) throw table.error("maximum_steps", "is smaller than minimum_steps");
   return engine;
 }
 
@@ -149,7 +151,7 @@ std::string engine_note(const EngineCase& engine, const SoilCase& soil) {
   const std::string others = overridden(engine, preset.values);
   std::string note = "engine preset " + engine.preset;
   if (engine.accuracy > 0)
-    note = accuracy_note(engine.accuracy, soil);
+    note = accuracy_note(engine, soil);
   else if (others.empty())
     note += fmt::format(": {} (docs/trade.md)", preset.error);
   else

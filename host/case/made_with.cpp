@@ -162,8 +162,10 @@ KeyTexts soil_keys(const SoilCase& soil) {
 
 KeyTexts engine_keys(const EngineCase& engine) {
   const bool is_float = engine.precision == kernels::Precision::float32;
+  const bool by_accuracy = engine.accuracy > 0;  // each state then has an inertial number of its own
   return {{"engine.precision", is_float ? "float" : "double"},
-          {"engine.inertial_number", io::format_quantity(engine.inertial_number, Dimension::none)},
+          {by_accuracy ? "engine.accuracy" : "engine.inertial_number",
+           io::format_quantity(by_accuracy ? engine.accuracy : engine.inertial_number, Dimension::none)},
           {"engine.hold_tolerance", io::format_quantity(engine.hold_tolerance, Dimension::none)}};
 }
 

@@ -14,21 +14,16 @@
 namespace voussoir::host {
 namespace {
 
-// Calibrated on the column `particle_steps` of run.h5 (evaluations an increment, steps an evaluation):
-//   cases/tunnel_quick, I = 3e-4      column 1.7, 132; gravity 1.8, 131; volume loss 4.9, 146
-//   the same, coarser, 1e-4, V_l 5 %  column 1.7, 218; gravity 1.9, 206; volume loss 3.0, 160
-//   cases/column, I = 2e-4            column 1.7, 144
-// With the constants below the estimates are 1.1, 1.4 and 0.95 of the work that these runs took. For tunnel_quick with
-// two other packings (packing.seed = 20, 40), whose equilibrium was harder to find, they are 0.76 and 0.67. Relaxed
-// increments (fem/README.md) have later evaluations of few steps; the constants count evaluations of the full number of
-// steps. tunnel_quick to V_l = 20 % in 80 increments took 2.0 evaluations an increment in gravity, 3.5 up to V_l = 10
-// %, 4.8 beyond.
+// Calibrated on the column `particle_steps` of run.h5. Relaxed increments (fem/README.md) have later evaluations of few
+// steps; the constants count evaluations of the full number of steps. With them the estimates are 0.95 of the work of
+// cases/tunnel_quick, 1.25 of that of cases/tunnel_cps_d_cd3 and 1.6 of that of cases/biaxial_bvp (2026-11-26).
+// Packings whose equilibrium is harder to find take up to 1.5 times as much.
 constexpr double gravity_evaluations = 1.2;
 constexpr double loss_evaluations = 4.5;
 constexpr double gravity_strain = 0.014;  ///< mean strain of an RVE over the load factor's step
 constexpr double loss_strain = 0.2;       ///< mean strain of an RVE over the volume loss of an increment
 constexpr double hold_steps = 30;
-constexpr double specimen_evaluations = 2.5;  ///< cases/biaxial_bvp took 7, most of them with few steps
+constexpr double specimen_evaluations = 2.5;  ///< of the full number of steps; cases/biaxial_bvp took 7 in all
 constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the strain of the specimen, without change of
                                          ///< volume
 

@@ -3,6 +3,7 @@
 // it gave.
 
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <fstream>
 #include <map>
@@ -37,6 +38,7 @@ double memory_in_use() {
 
 void measure(benchmark::State& state, std::size_t n, int grains, std::size_t packings) {
   const host::PackedRve& rve = sand_of(grains);
+  malloc_trim(0);  // gives back what the scene before has freed
   const double before = memory_in_use();
   Scene scene = clones(rve, n, Precision::float32, packings);
   for (StrainRequest& request : scene.requests) request.strain_steps = 100;

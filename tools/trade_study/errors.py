@@ -6,7 +6,7 @@ The error of an evaluation (one increment from a given state) is e = |sigma - si
 tensor's norm and P the larger pressure of before and after, so that an isotropic error of P is 100 %. sigma_ref is the
 mean of the reference solution's replicas, the same seed, state and direction. The error of the tangent of eq. (4) after
 the evaluation is |D - D_ref| / |D_ref|, with the norm of fourth-order tensors (`TANGENT_NORM`). The error of a path is
-e = q/p - (q/p)_ref at the same axial strain, as the mean of replicas.
+e = q/p - (q/p)_ref at the same axial strain (of a path of shear: shear strain), as the mean of replicas.
 """
 
 import csv
@@ -19,7 +19,7 @@ TANGENT_NORM = np.sqrt(
     np.array([1.0, 2.0, 4.0, 1.0, 4.0, 4.0])
 )  # xxxx xxyy xxxy yyyy yyxy xyxy: the number of times that each occurs in the sum
 TANGENT = tuple(f"tangent_after_{name}_Pa" for name in ("xxxx", "xxyy", "xxxy", "yyyy", "yyxy", "xyxy"))
-STRAINS = 0.00499 * np.arange(1, 6)  # axial strains that the increments of every size in the plan reach, either way
+STRAINS = 0.004987 * np.arange(1, 6)  # axial strains that the increments of every size in the plan reach, either way
 
 
 def read(file):

@@ -35,7 +35,7 @@ REFERENCE_AT = {
     10: {"inertial_number": 3e-5},
     20: {"inertial_number": 3e-5},
     30: {"inertial_number": 3e-5},
-}  # a path at 1 kPa needs ten times the steps
+}  # paths at low pressures need up to ten times the steps
 # What `engine.accuracy` follows: the inertial number alone, with bounds on the steps that do not bind.
 CURVE = {"preset": "standard", "minimum_steps": 10, "maximum_steps": 1000000}
 CURVE_VALUES = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)

@@ -197,11 +197,29 @@ def table_of_noise(findings):
     return text
 
 
+def table_of_paths(findings, knob):
+    """Errors of paths: root mean square, median and worst over packings, and the steps of an increment."""
+    text = head([f"`{knob}`", *(PRESSURES[kpa] for kpa in findings.study.pressures)])
+    for setting in (s for s in findings.chosen if s.knob == knob):
+        cells = [setting.label]
+        for kpa in findings.study.pressures:
+            way = findings.paths[kpa].get(setting.name, {})
+            errors = ", ".join(figure_of(way.get(key, np.nan)) for key in ("error", "median", "worst"))
+            cells.append(f"{errors}; {figure_of(way.get('steps', np.nan) / setting.increments)}")
+        text += row(cells)
+    return text
+
+
 def tables(findings):
     """All tables of the settings that were run."""
     done = {s.knob for s in findings.chosen if any(s.name in findings.paths[kpa] for kpa in findings.study.pressures)}
     parts = [("Presets", table_of_presets(findings))] if "preset" in done else []
     parts.append(("Scatter", table_of_scatter(findings)))
+    parts += [
+        (f"{knob}: paths, rms, median, worst; steps", table_of_paths(findings, knob))
+        for knob in ("curve", "accuracy", "floor_and_hold")
+        if knob in done
+    ]
     parts += [
         (knob, table_of_knob(findings, knob))
         for knob in (

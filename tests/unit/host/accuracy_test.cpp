@@ -25,7 +25,7 @@ TEST(Accuracy, TheErrorGrowsWithTheInertialNumberAndTheInertialTime) {
   }
 }
 
-TEST(Accuracy, IsNotLessThanAskedForWhereItIsNotSaid) {
+TEST(Accuracy, TheExpectedErrorIsAtMostWhatIsAskedForUnlessTheSmallestInertialNumberHasMore) {
   for (const double time : times) {
     for (const double asked : {1e-3, 3e-3, 1e-2, 3e-2, 1e-1}) {
       const AccuracyChoice choice = choose_inertial_number(asked, time);
@@ -39,14 +39,30 @@ TEST(Accuracy, IsNotLessThanAskedForWhereItIsNotSaid) {
   }
 }
 
+TEST(Accuracy, FollowsTheMeasuredCurves) {
+  constexpr double margin = 1.7;
+  EXPECT_NEAR(expected_error(1e-3, 42.0), margin * 0.0122, 1e-9) << "100 kPa";
+  EXPECT_NEAR(expected_error(3e-4, 132.9), margin * 0.0081, 1e-9) << "10 kPa";
+  EXPECT_NEAR(inertial_time_of(SoilCase{}, 1e5), 42.0, 1.5) << "the curves count on the mobility that the law gives";
+  EXPECT_GT(expected_error(1e-4, 1000), expected_error(1e-4, 420.3)) << "below 1 kPa it goes on growing";
+  EXPECT_EQ(expected_error(1e-4, 5), expected_error(1e-4, 14.9)) << "above 800 kPa it stays";
+}
+
 TEST(Accuracy, CannotBeMetAtTheLowestPressure) {
   const double near_the_surface = inertial_time_of(SoilCase{}, 1e3), at_depth = inertial_time_of(SoilCase{}, 8e5);
   EXPECT_NEAR(near_the_surface / at_depth, std::sqrt(800.0), 1e-9);
   EXPECT_GT(choose_inertial_number(0.01, near_the_surface).error, 0.01);
   EXPECT_LE(choose_inertial_number(0.01, at_depth).error, 0.01);
-  const std::string note = accuracy_note(0.01, SoilCase{});
+  EngineCase engine;
+  engine.accuracy = 0.01;
+  const std::string note = accuracy_note(engine, SoilCase{});
   EXPECT_NE(note.find("1 %"), std::string::npos) << note;
   EXPECT_NE(note.find("at 1 kPa (which leaves"), std::string::npos) << note;
+  SoilCase graded;
+  graded.classes.resize(2);
+  EXPECT_EQ(accuracy_note(engine, graded).find("kPa"), std::string::npos) << "their inertial time is not known here";
+  engine.hold_cap = 0;
+  EXPECT_NE(accuracy_note(engine, SoilCase{}).find("measured with holds"), std::string::npos);
 }
 
 Case case_with(const std::vector<std::string>& overrides, const char* kind = "probe") {
@@ -63,7 +79,7 @@ TEST(Accuracy, DecidesTheBoundsOfTheStepsToo) {
   EXPECT_LT(coarse.minimum_steps, fine.minimum_steps);
   EXPECT_GT(coarse.maximum_steps, EngineCase{}.maximum_steps) << "a bound that binds is an error that no curve knows";
   EXPECT_NE(case_with({"engine.accuracy=3 %"}).fingerprint, case_with({"engine.accuracy=2 %"}).fingerprint);
-  EXPECT_EQ(engine_note(coarse, SoilCase{}), accuracy_note(0.03, SoilCase{}));
+  EXPECT_EQ(engine_note(coarse, SoilCase{}), accuracy_note(coarse, SoilCase{}));
 }
 
 TEST(Accuracy, IsNotSaidTwice) {

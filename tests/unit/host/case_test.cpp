@@ -132,6 +132,8 @@ TEST(Case, ResolvedCaseGivesTheSameCase) {
   EXPECT_EQ(input.ground.cover_ratio, again.ground.cover_ratio);
   EXPECT_EQ(input.engine.inertial_number, again.engine.inertial_number);
   EXPECT_EQ(input.packing.pressure, again.packing.pressure);
+  const Case accurate = load_case(write("kind = 'tunnel'\n"), {"engine.accuracy=1 %"});
+  EXPECT_EQ(load_case(write(accurate.resolved)).engine.accuracy, 0.01);
 }
 
 TEST(Case, WrongValuesAreRefusedAtTheirPlace) {

@@ -8,17 +8,15 @@
 #include <memory>
 #include <vector>
 
+#include "host/case/accuracy.hpp"
 #include "tests/host_support.hpp"
 
 namespace voussoir::host {
 namespace {
 
 /// The steps are the smallest number of the series ceil(1.25^k) that is not below the wanted number.
-TEST(RvePool, StepsAreTheNextOfTheirSeries) {
+void expect_steps_of_the_series(const EngineCase& engine) {
   const PackedRve rve = small_packing();
-  EngineCase engine;
-  engine.hold_cap = 0;
-  engine.minimum_steps = 1;
   RvePool pool(rve, {.engine = engine}, 1);
   const double time = rve.packing.inertial_time(pool.committed_reports()[0].pressure());
   std::vector<fem::Stress> stress(1);
@@ -27,12 +25,23 @@ TEST(RvePool, StepsAreTheNextOfTheirSeries) {
     h(0, 0) = -strain;
     pool.begin_increment();
     ASSERT_TRUE(pool.evaluate({&h, 1}, stress, {}).usable);
-    const double wanted = -std::log1p(-strain) / engine.inertial_number * time;
+    const double wanted = -std::log1p(-strain) / inertial_number_at(time, engine) * time;
     double power = 1;
     while (power < wanted) power *= 1.25;
     // The engine looks at the forces once more where the hold would begin, which counts as a step.
     EXPECT_EQ(pool.trial_reports()[0].steps, static_cast<int>(std::ceil(power)) + 1) << strain;
   }
+}
+
+TEST(RvePool, StepsAreTheNextOfTheirSeries) {
+  EngineCase engine;
+  engine.hold_cap = 0;
+  engine.minimum_steps = 1;
+  expect_steps_of_the_series(engine);
+  engine.accuracy = 0.002;  // finer than the preset at this pressure
+  ASSERT_LT(inertial_number_at(small_packing().packing.inertial_time(small_packing().pressure), engine),
+            0.9 * engine.inertial_number);
+  expect_steps_of_the_series(engine);
 }
 
 TEST(RvePool, TellsTheTimeOfTheTangentsThatAreWanted) {
