@@ -93,7 +93,9 @@ std::vector<int> list_increments(const std::filesystem::path& folder) {
 
 ResultWriter::ResultWriter(std::filesystem::path folder, Provenance provenance, MeshData mesh)
     : folder_(std::move(folder)), provenance_(std::move(provenance)), mesh_(std::move(mesh)) {
-  fs::create_directories(folder_ / "increments");
+  // The folder itself is there, and where somebody has just moved it away, it must not come up again under its old
+  // name.
+  fs::create_directory(folder_ / "increments");
   remove_leftovers(folder_ / "increments");
   remove_leftovers(folder_);
 }

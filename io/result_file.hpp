@@ -15,7 +15,8 @@ namespace voussoir::io {
 /// Writes the results of one run. All members throw std::runtime_error naming file and reason.
 class ResultWriter {
  public:
-  /// Starts a new result: removes earlier results in `folder`, then writes run.h5 and result.xdmf without increments.
+  /// Starts a new result: removes earlier results in `folder`, which must be there, then writes run.h5 and result.xdmf
+  /// without increments.
   /// Element tests have an empty `mesh`; no XDMF file is written for them.
   [[nodiscard]] static ResultWriter create(const std::filesystem::path& folder, Provenance provenance, MeshData mesh);
 

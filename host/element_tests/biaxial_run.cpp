@@ -181,6 +181,7 @@ Outcome run_biaxial(const Case& input, const RunOptions& options) {
   const std::vector<PackedRve> rves = packings_of(input.soil, input.packing, test.pressures, note);
   const auto curves = biaxial_tests(rves, test.strain, test.inertial_number, test.samples,
                                     engine_settings(input.engine), input.output.microstructure);
+  make_folder(options);
   confirm_lock(options, note);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});
   Summary summary;

@@ -190,6 +190,7 @@ Outcome run_calibrate(const Case& input, const RunOptions& options) {
   const CalibrateCase& targets = input.calibrate;
   const TestProgram program{input.soil, input.packing, input.engine, input.biaxial};
   const SearchBox box(targets, program.soil);
+  make_folder(options);
   confirm_lock(options, note);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "calibrate"), {});
   Search search;

@@ -228,7 +228,7 @@ Outcome run_probe(const Case& input, const RunOptions& options) {
   std::printf("%s\n", engine_note(input.engine, input.soil).c_str());
   say_remarks(input);
   std::vector<PackedRve> rves = packings_to_probe(input.soil, input.packing, input.probe.pressure);
-  if (!options.lock) std::filesystem::create_directories(options.folder);
+  make_folder(options);
   io::remove_leftovers(options.folder);
   confirm_lock(options, print);
   Tables tables;

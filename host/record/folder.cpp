@@ -110,6 +110,10 @@ std::string difference(const io::Provenance& theirs, const CaseIdentity& wanted)
 
 }  // namespace
 
+void make_folder(const RunOptions& options) {
+  if (!options.lock) std::filesystem::create_directories(options.folder);
+}
+
 void confirm_lock(const RunOptions& options, const std::function<void(const std::string&)>& note) {
   const std::string changed = options.lock ? options.lock->confirm() : std::string();
   if (!changed.empty()) note(changed);

@@ -22,6 +22,10 @@ struct RunOptions {
   std::shared_ptr<RunLock> lock = {};  ///< held while the run lasts; none where nobody else can come, as in tests
 };
 
+/// Makes the folder of a run without a lock. A lock has made its own, and where that was moved since, it must not be
+/// made once more.
+void make_folder(const RunOptions& options);
+
 /// To be called before something is written into the folder: RunLock::confirm, whose sentence goes to `note`, or
 /// nothing where there is no lock.
 void confirm_lock(const RunOptions& options, const std::function<void(const std::string&)>& note);

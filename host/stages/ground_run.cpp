@@ -18,8 +18,7 @@ StageSettings stage_settings(const Case& input) {
 }
 
 RunLog open_log(const RunOptions& options) {
-  // A folder that was moved since it was locked must not be made once more.
-  if (!options.lock) std::filesystem::create_directories(options.folder);
+  make_folder(options);
   confirm_lock(options, [](const std::string&) {});  // the log does not exist yet
   return {options.folder / "run.log", options.resume};
 }

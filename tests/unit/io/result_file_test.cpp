@@ -21,7 +21,10 @@ namespace fs = std::filesystem;
 
 class ResultFileTest : public testing::Test {
  protected:
-  ResultFileTest() { fs::remove_all(folder_); }
+  ResultFileTest() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
 
   /// Two elements side by side.
   static MeshData mesh() {
@@ -309,6 +312,12 @@ TEST_F(ResultFileTest, WhatDoesNotFitIsRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(fs::exists(increment_path(folder_, 1)));
   writer.write(info(2), {});
   expect_throws<std::invalid_argument>([&] { writer.write(info(2), {}); }, "increment 2 does not follow");
+}
+
+TEST_F(ResultFileTest, AFolderThatWasMovedDoesNotComeUpAgain) {
+  fs::remove_all(folder_);
+  EXPECT_THROW(static_cast<void>(ResultWriter::create(folder_, provenance_, mesh())), std::runtime_error);
+  EXPECT_FALSE(fs::exists(folder_));
 }
 
 TEST_F(ResultFileTest, DamagedFilesAreErrors) {

@@ -131,6 +131,7 @@ std::vector<Field> fields(const MeshData& mesh, double volume_loss) {
 /// Gravity in 6 increments, the state at rest that the loss starts from, then a volume loss of 20 % in 8.
 void write_result(const fs::path& folder) {
   const MeshData mesh = ring_mesh(18, 6);
+  fs::create_directories(folder);
   ResultWriter writer = ResultWriter::create(folder, {.case_kind = "tunnel"}, mesh);
   for (int k = 1; k <= 15; ++k) {
     const bool gravity = k <= 6;
