@@ -24,7 +24,6 @@ const std::array<Preset, 3>& presets() {
       {{.preset = "fast",
         .inertial_number = 1e-3,
         .hold_tolerance = 1e-3,
-        .hold_cap = 500,
         .minimum_steps = 10,
         .maximum_steps = 1000,
         .defer = 1e-3},
