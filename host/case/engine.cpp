@@ -21,15 +21,9 @@ struct Preset {
 
 const std::array<Preset, 3>& presets() {
   static const std::array<Preset, 3> all{{
-      {{.preset = "fast",
-        .inertial_number = 1e-3,
-        .hold_tolerance = 1e-3,
-        .minimum_steps = 10,
-        .maximum_steps = 1000,
-        .defer = 1e-3},
+      {{.preset = "fast", .inertial_number = 1e-3, .minimum_steps = 10, .maximum_steps = 1000, .defer = 1e-3},
        "along a path the stress is off by 3 % of p at 1 kPa, 2 % at 10 kPa, 1.2 % at 100 kPa, 0.4 % at 800 kPa (rms "
-       "over "
-       "packings)"},
+       "over packings)"},
       {{.preset = "standard"},
        "along a path the stress is off by 3 % of p at 1 kPa, 0.8 % at 10 kPa, 0.3 % at 100 kPa, 0.1 % at 800 kPa (rms "
        "over packings)"},
@@ -41,8 +35,7 @@ const std::array<Preset, 3>& presets() {
         .minimum_steps = 300,
         .maximum_steps = 200000},
        "along a path the stress is off by 1 % of p at 1 kPa (repeated runs differ as much), 0.02 % at 100 kPa, 0.03 % "
-       "at "
-       "800 kPa (rms over packings, under compression)"},
+       "at 800 kPa (rms over packings, under compression)"},
   }};
   return all;
 }

@@ -23,8 +23,8 @@ namespace {
 ColumnResult run_own_column(const Case& input, const RunOptions& options, RunLog& log) {
   RunOptions own = options;
   own.folder /= "column";
-  std::filesystem::create_directory(own.folder);  // not the folder of the run, which may have been moved since it was
-                                                  // locked
+  // Not the folder of the run as well, which may have been moved since it was locked.
+  std::filesystem::create_directory(own.folder);
   ColumnSetup setup = column_setup(input);
   setup.settings.output.rves.clear();  // these numbers are points of the tunnel's mesh
   return measure_k0(setup, own, provenance_of(own, input, "column"), log);

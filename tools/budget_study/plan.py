@@ -77,7 +77,7 @@ KNOBS: dict[str, dict[str, object]] = {
     "700 grains": {"packing.grains": 700},
 }
 MOST_DRAWS = {"preset reference": 1}  # twenty times the work of the base
-# At full size only a few knobs, because a run takes 9 min.
+# At full size only a few knobs, because a run takes minutes.
 KNOBS_OF_FULL_SIZE = ("base", "20 increments", "preset fast", "variety 1")
 
 

@@ -29,13 +29,8 @@ REFERENCE = {
     "minimum_steps": 500,
     "maximum_steps": 1000000,
 }
-REFERENCE_AT = {
-    1: {"inertial_number": 3e-5},
-    3: {"inertial_number": 3e-5},
-    10: {"inertial_number": 3e-5},
-    20: {"inertial_number": 3e-5},
-    30: {"inertial_number": 3e-5},
-}  # paths at low pressures need up to ten times the steps
+# Paths at low pressures need up to ten times the steps.
+REFERENCE_AT = {kpa: {"inertial_number": 3e-5} for kpa in PRESSURES if kpa <= 30}
 # What `engine.accuracy` follows: the inertial number alone, with bounds on the steps that do not bind.
 CURVE = {"preset": "standard", "minimum_steps": 10, "maximum_steps": 1000000}
 CURVE_VALUES = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
