@@ -7,7 +7,8 @@
 ///
 ///   Value, has_rolling      V, and whether contacts transmit moments; if not, the sweep leaves moments out
 ///   Pair                    the law's constants for two given grains, in V's real type and the same in all lanes
-///   combine(m1, r1, m2, r2) the Pair of two grains (materials, radii [m]), computed in double and rounded once
+///   combine(m1, r1, m2, r2) the Pair of two grains (materials, radii [m]), computed in the numbers' own precision, and
+///                           rounded once
 ///   History                 the memory of a contact: at most four numbers of type V, 0 before the first touch
 ///   history_names           their names in the order in which packings and checkpoints store them
 ///   for_each_number(h, f)   calls f(k, number k) of a History, in that order
@@ -40,14 +41,17 @@
 
 namespace voussoir::kernels {
 
-/// The material of a grain, one class of Table 1. A law reads the numbers that it needs.
-struct GrainMaterial {
-  double modulus = 3.0e9;          ///< contact modulus E [Pa]
-  double stiffness_ratio = 0.5;    ///< k_t/k_n [-]
-  double friction = 0.466307658;   ///< tan(friction angle) [-]
-  double rolling_stiffness = 1.0;  ///< beta in k_r = beta k_t r1 r2 [-]
-  double rolling_limit = 0.6;      ///< eta in |m| <= eta r f_n [-]
+/// The material of a grain, one class of Table 1. A law reads the numbers that it needs. @tparam Number double, but
+/// where a device makes a pair's constants anew at each step: there it is the sweep's own precision
+template <class Number>
+struct GrainMaterialOf {
+  Number modulus = Number(3.0e9);                ///< contact modulus E [Pa]
+  Number stiffness_ratio = Number(0.5);          ///< k_t/k_n [-]
+  Number friction = Number(0.466307658);         ///< tan(friction angle) [-]
+  Number rolling_stiffness = Number(1.0);        ///< beta in k_r = beta k_t r1 r2 [-]
+  Number rolling_limit = Number(0.6);            ///< eta in |m| <= eta r f_n [-]
 };
+using GrainMaterial = GrainMaterialOf<double>;
 
 /// One number of a material, and its name in the recipes of stored packings.
 using MaterialMember = double GrainMaterial::*;

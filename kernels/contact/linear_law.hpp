@@ -7,34 +7,44 @@
 namespace voussoir::kernels {
 
 /// Constants of one pair in contact.
-struct PairConstants {
-  double normal_stiffness;      ///< k_n [N/m]
-  double tangential_stiffness;  ///< k_t [N/m]
-  double rolling_stiffness;     ///< k_r [N m/rad]
-  double friction;              ///< mu [-]
-  double rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
+template <class Number>
+struct PairConstantsOf {
+  Number normal_stiffness;      ///< k_n [N/m]
+  Number tangential_stiffness;  ///< k_t [N/m]
+  Number rolling_stiffness;     ///< k_r [N m/rad]
+  Number friction;              ///< mu [-]
+  Number rolling_arm;           ///< min(eta_1 r_1, eta_2 r_2) [m]
 };
+using PairConstants = PairConstantsOf<double>;
 
 /// Caps of the springs, divided by overlap/R.
-struct PairCaps {
-  double tangential;  ///< mu k_n R [N]
-  double moment;      ///< [N m]
+template <class Number>
+struct PairCapsOf {
+  Number tangential;  ///< mu k_n R [N]
+  Number moment;      ///< [N m]
 };
+using PairCaps = PairCapsOf<double>;
 
-[[nodiscard]] KOKKOS_INLINE_FUNCTION PairCaps caps_of(const PairConstants& k, double sum_radii) {
-  const double fn = k.normal_stiffness * sum_radii;
+template <class Number>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION PairCapsOf<Number> caps_of(const PairConstantsOf<Number>& k, Number sum_radii) {
+  const Number fn = k.normal_stiffness * sum_radii;
   return {k.friction * fn, k.rolling_arm * fn};
 }
 
 /// Harmonic mean 2 a b / (a + b), of two springs in series; 0 if either is 0.
-KOKKOS_INLINE_FUNCTION double harmonic_mean(double a, double b) { return a + b > 0 ? 2.0 * a * b / (a + b) : 0.0; }
+template <class Number>
+KOKKOS_INLINE_FUNCTION Number harmonic_mean(Number a, Number b) {
+  return a + b > 0 ? Number(2) * a * b / (a + b) : Number(0);
+}
 
 /// Constants of a contact of two grains of radii r1, r2 [m]; kernels/README.md, "One step", 3.
-KOKKOS_INLINE_FUNCTION PairConstants combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2, double r2) {
-  const double kt = harmonic_mean(m1.modulus * m1.stiffness_ratio * r1, m2.modulus * m2.stiffness_ratio * r2);
-  const double beta = harmonic_mean(m1.rolling_stiffness, m2.rolling_stiffness);
-  const double arm1 = m1.rolling_limit * r1;
-  const double arm2 = m2.rolling_limit * r2;
+template <class Number>
+KOKKOS_INLINE_FUNCTION PairConstantsOf<Number> combine(const GrainMaterialOf<Number>& m1, Number r1,
+                                                       const GrainMaterialOf<Number>& m2, Number r2) {
+  const Number kt = harmonic_mean(m1.modulus * m1.stiffness_ratio * r1, m2.modulus * m2.stiffness_ratio * r2);
+  const Number beta = harmonic_mean(m1.rolling_stiffness, m2.rolling_stiffness);
+  const Number arm1 = m1.rolling_limit * r1;
+  const Number arm2 = m2.rolling_limit * r2;
   return {.normal_stiffness = harmonic_mean(m1.modulus * r1, m2.modulus * r2),
           .tangential_stiffness = kt,
           .rolling_stiffness = beta * kt * r1 * r2,
@@ -72,11 +82,12 @@ struct LinearContactLaw {
     if constexpr (Rolling) history.moment = changed.moment;
   }
 
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION static Pair combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2,
-                                                           double r2) {
-    const PairConstants c = kernels::combine(m1, r1, m2, r2);
-    const PairCaps caps = caps_of(c, r1 + r2);
-    const auto rounded = [](double x) { return static_cast<real_of<V>>(x); };
+  template <class Number>
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static Pair combine(const GrainMaterialOf<Number>& m1, Number r1,
+                                                           const GrainMaterialOf<Number>& m2, Number r2) {
+    const PairConstantsOf<Number> c = kernels::combine(m1, r1, m2, r2);
+    const PairCapsOf<Number> caps = caps_of(c, r1 + r2);
+    const auto rounded = [](Number x) { return static_cast<real_of<V>>(x); };
     return {.normal_stiffness = rounded(c.normal_stiffness),
             .tangential_stiffness = rounded(c.tangential_stiffness),
             .rolling_stiffness = rounded(c.rolling_stiffness),

@@ -19,17 +19,18 @@ struct PairReference {
   return {dx, dy, dx * dx + dy * dy - sum_radii * sum_radii};
 }
 
-/// Constants of a pair i < j, combined in double and rounded once. @param ri, rj radii [m]
-template <class Law>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION PairShape<Law> pair_shape(int j, const GrainMaterial& of_i, double ri,
-                                                               const GrainMaterial& of_j, double rj) {
-  const auto r = [](double x) { return static_cast<real_of<typename Law::Value>>(x); };
+/// Constants of a pair i < j, combined in the precision of the numbers given and rounded once. @param ri, rj radii [m]
+template <class Law, class Number>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION PairShape<Law> pair_shape(int j, const GrainMaterialOf<Number>& of_i, Number ri,
+                                                               const GrainMaterialOf<Number>& of_j, Number rj) {
+  const auto r = [](Number x) { return static_cast<real_of<typename Law::Value>>(x); };
+  const Number one(1), half(0.5);
   return {.other = j,
           .other_bytes = 0,
           .active = 1,
-          .inverse_sum = r(1.0 / (ri + rj)),
-          .minus_inverse_sum_squared = r(-1.0 / ((ri + rj) * (ri + rj))),
-          .minus_half_sum = r(-0.5 * (ri + rj)),
+          .inverse_sum = r(one / (ri + rj)),
+          .minus_inverse_sum_squared = r(-one / ((ri + rj) * (ri + rj))),
+          .minus_half_sum = r(-half * (ri + rj)),
           .radius_other = r(rj),
           .law = Law::combine(of_i, ri, of_j, rj)};
 }

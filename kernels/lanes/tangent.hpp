@@ -6,25 +6,9 @@
 #include <chrono>
 
 #include "kernels/lanes/group_run.hpp"
+#include "kernels/tangents/found_tangent.hpp"
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
-
-/// Whether a static tangent `d` [Pa] is at most as stiff as the contact tangent. In exact arithmetic every static
-/// tangent is softer; a stiffer one shows that rounding has spoilt the iterations. False for NaN. The slack covers the
-/// factor y (kernels/README.md, "Static tangent").
-[[nodiscard]] inline bool is_softer(const double* d, const double* contact) {
-  constexpr double slack = 1.05;
-  return d[0] <= slack * contact[0] && d[3] <= slack * contact[3] && d[5] <= slack * contact[5];
-}
-
-/// A tangent that may take the place of eq. (4) in a report.
-struct FoundTangent {
-  TangentKind kind;
-  double tangent[6];  ///< [Pa]
-  double skew[3];     ///< [Pa]
-  int iterations;
-  bool converged;
-};
 
 /// Lane l of a symmetric tangent. @param v volume of its cell [m^3]
 template <class V>
@@ -50,14 +34,6 @@ template <class V>
           {0.5 * (d[0][1] - d[1][0]), 0.5 * (d[0][2] - d[2][0]), 0.5 * (d[1][2] - d[2][1])},
           result.iterations[l],
           result.converged[l]};
-}
-
-/// Writes `found` into the report if it is usable. @param contact tangent of eq. (4) [Pa]
-inline void replace_tangent(RveReport& report, const FoundTangent& found, const double* contact) {
-  if (!is_softer(found.tangent, contact)) return;
-  std::copy_n(found.tangent, 6, report.tangent);
-  std::copy_n(found.skew, 3, report.tangent_skew);
-  report.tangent_kind = found.kind;
 }
 
 /// Writes the static tangents into the reports of the lanes that have an answer. Eq. (4) stays where a static tangent

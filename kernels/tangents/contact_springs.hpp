@@ -144,7 +144,18 @@ KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull(const SpringLanes<V>& s, const Spr
 }
 
 /// Share of its cap at which a spring counts as yielded; above 1, no spring does.
-[[nodiscard]] inline double elastic_share(TangentKind kind) { return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0; }
+[[nodiscard]] KOKKOS_INLINE_FUNCTION double elastic_share(TangentKind kind) { return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0; }
+
+/// A contact at rest as springs; a pair that does not touch has springs without stiffness. @param share elastic_share
+template <class Law, class Shape, class V>
+KOKKOS_FORCEINLINE_FUNCTION SpringLanes<V> spring_of(const PairLanes<Law>& pair, const Shape& shape,
+                                                     const PairGeometry<V>& at, const PairDistance<V>& distance,
+                                                     const V& share) {
+  const V to_unit = distance.inverse_length;
+  const ContactStiffness<V> k = Law(shape.law).stiffness(distance.overlap, pair.history, share);
+  const V y = V(1) + distance.excess;
+  return {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling};
+}
 
 /// Collects the springs of every pair that touches in at least one lane.
 template <class Law, class V>
@@ -167,11 +178,7 @@ void collect_springs(const GroupState<Law>& group, TangentKind kind, SpringSyste
       const auto at = geometry_of(pair, group.motion, gj.u_x - group.grains[i].u_x, gj.u_y - group.grains[i].u_y);
       if (!Kokkos::Experimental::any_of(at.gap < zero)) continue;
       const PairDistance<V> distance = distance_of(at.gap, shape);
-      const V to_unit = distance.inverse_length;
-      const ContactStiffness<V> k = Law(shape.law).stiffness(distance.overlap, pair.history, share);
-      const V y = V(1) + distance.excess;
-      system.springs.push_back(
-          {at.branch_x * to_unit, at.branch_y * to_unit, V(1) / to_unit, y, k.normal, k.tangential / y, k.rolling});
+      system.springs.push_back(spring_of(pair, shape, at, distance, share));
       system.shapes.push_back({shape.other, shape.radius_other, static_cast<int>(p)});
       system.overlaps.push_back(distance.overlap);
     }
@@ -225,6 +232,19 @@ VOUSSOIR_LANES_INLINE SpringStrain<V> strain_of(const SpringLanes<V>& s, std::si
   return spring_strain(s, dx, dy, ri, gi.motion[a].spin, rj, gj.motion[a].spin);
 }
 
+/// Adds twice the mixed energies of a contact in the three motions to the upper triangle `tangent`. @param e by unit
+/// strain
+template <class V>
+KOKKOS_FORCEINLINE_FUNCTION void add_mixed_energies(const SpringLanes<V>& s, const SpringStrain<V>* e, V* tangent) {
+  int entry = 0;
+  for (int a = 0; a < unit_strains; ++a) {
+    const V fn = s.normal * e[a].normal, ft = s.tangential * e[a].sliding, m = s.rolling * e[a].rolling;
+    for (int b = a; b < unit_strains; ++b, ++entry) {
+      tangent[entry] = fused(fn, e[b].normal, fused(ft, e[b].sliding, fused(m, e[b].rolling, tangent[entry])));
+    }
+  }
+}
+
 /// Adds twice the mixed energies of the three motions to the upper triangle `tangent`.
 template <class V>
 void add_energies(SpringSystem<V>& system, V* tangent) {
@@ -234,13 +254,7 @@ void add_energies(SpringSystem<V>& system, V* tangent) {
         std::array<SpringStrain<V>, unit_strains> e;
         V dx, dy;
         for (std::size_t a = 0; a < unit_strains; ++a) e[a] = strain_of(s, a, gi, gj, ri, rj, dx, dy);
-        std::size_t entry = 0;
-        for (std::size_t a = 0; a < unit_strains; ++a) {
-          const V fn = s.normal * e[a].normal, ft = s.tangential * e[a].sliding, m = s.rolling * e[a].rolling;
-          for (std::size_t b = a; b < unit_strains; ++b, ++entry) {
-            tangent[entry] = fused(fn, e[b].normal, fused(ft, e[b].sliding, fused(m, e[b].rolling, tangent[entry])));
-          }
-        }
+        add_mixed_energies(s, e.data(), tangent);
       });
 }
 

@@ -16,13 +16,13 @@ namespace voussoir::kernels {
 /// A contact's changes of length by the motion of one of its grains: (x, y, spin) of the sliding spring. The normal
 /// spring has the normal, the rolling spring has the spin alone.
 template <class V>
-VOUSSOIR_LANES_INLINE GrainDofs<V> sliding_of(const SpringLanes<V>& s, const V& radius) {
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> sliding_of(const SpringLanes<V>& s, const V& radius) {
   return {-(s.ratio * s.normal_y), s.ratio * s.normal_x, radius};
 }
 
 /// Adds a contact's part of the block of one of its grains. @param radius positive for i, negative for j
 template <class V>
-VOUSSOIR_LANES_INLINE void add_block(const SpringLanes<V>& s, const V& radius, Triangle<V>& block) {
+KOKKOS_FORCEINLINE_FUNCTION void add_block(const SpringLanes<V>& s, const V& radius, Triangle<V>& block) {
   const GrainDofs<V> along = sliding_of(s, radius);
   const V nx = s.normal * s.normal_x, ny = s.normal * s.normal_y;
   const V tx = s.tangential * along.x, ty = s.tangential * along.y, ts = s.tangential * along.spin;
@@ -42,14 +42,14 @@ VOUSSOIR_LANES_INLINE V inverse_or_zero(const V& x) {
 /// 1 / sqrt(pivot), or 0 where the pivot is nothing but the rounding of `whole`: such a motion has no stiffness, or the
 /// grain's other motions have it too, and it is left out.
 template <class V>
-VOUSSOIR_LANES_INLINE V inverse_root(const V& pivot, const V& whole) {
+KOKKOS_FORCEINLINE_FUNCTION V inverse_root(const V& pivot, const V& whole) {
   constexpr real_of<V> resolution = 64 * std::numeric_limits<real_of<V>>::epsilon();
   return Kokkos::Experimental::condition(V(resolution) * whole < pivot, V(1) / Kokkos::sqrt(pivot), V(0));
 }
 
 /// The inverse of the Cholesky factor of a grain's block.
 template <class V>
-VOUSSOIR_LANES_INLINE Triangle<V> scale_of(const Triangle<V>& block) {
+KOKKOS_FORCEINLINE_FUNCTION Triangle<V> scale_of(const Triangle<V>& block) {
   Triangle<V> m;
   m.xx = inverse_root(block.xx, block.xx);
   const V yx = block.yx * m.xx, sx = block.sx * m.xx;
@@ -64,13 +64,13 @@ VOUSSOIR_LANES_INLINE Triangle<V> scale_of(const Triangle<V>& block) {
 
 /// m a
 template <class V>
-VOUSSOIR_LANES_INLINE GrainDofs<V> scaled(const Triangle<V>& m, const GrainDofs<V>& a) {
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> scaled(const Triangle<V>& m, const GrainDofs<V>& a) {
   return {m.xx * a.x, fused(m.yx, a.x, m.yy * a.y), fused(m.sx, a.x, fused(m.sy, a.y, m.ss * a.spin))};
 }
 
 /// m^T a
 template <class V>
-VOUSSOIR_LANES_INLINE GrainDofs<V> unscaled(const Triangle<V>& m, const GrainDofs<V>& a) {
+KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> unscaled(const Triangle<V>& m, const GrainDofs<V>& a) {
   return {fused(m.xx, a.x, fused(m.yx, a.y, m.sx * a.spin)), fused(m.yy, a.y, m.sy * a.spin), m.ss * a.spin};
 }
 

@@ -125,9 +125,9 @@ template <class V>
 
 /// The part of the energy that is still to be lost, if the losses go on as those between the last three looks (the sum
 /// of a geometric series); at least the last loss.
-[[nodiscard]] inline double loss_to_come(double before, double last) {
+[[nodiscard]] KOKKOS_INLINE_FUNCTION double loss_to_come(double before, double last) {
   if (!(last > 0)) return last;  // NaN too
-  return before > last ? last * std::max(1.0, last / (before - last)) : std::numeric_limits<double>::infinity();
+  return before > last ? last * Kokkos::max(1.0, last / (before - last)) : std::numeric_limits<double>::infinity();
 }
 
 /// Freezes the solutions whose diagonal entry is off by less than the square of the tolerance, as its last changes let

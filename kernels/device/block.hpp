@@ -1,0 +1,87 @@
+#pragma once
+/// A block: the threads that advance one RVE together. The engine of GPUs is a template over it, so that the same code
+/// runs on a GPU (cuda/) and on a host, where one thread is a block (`SerialBlock`) or, in tests, several threads are.
+///
+/// A block has the functions thread(), threads() and barrier(). After a barrier, every thread sees what the others
+/// wrote before it.
+
+#include <Kokkos_Core.hpp>
+#include <cstddef>
+
+namespace voussoir::kernels::device {
+
+/// One thread that is a block by itself.
+struct SerialBlock {
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION static constexpr int thread() { return 0; }
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION static constexpr int threads() { return 1; }
+  KOKKOS_FORCEINLINE_FUNCTION static void barrier() {}
+};
+
+/// How many pairs and grains a thread keeps in registers. With 0 they stand in memory, as many as there are.
+template <int PairSlots, int GrainSlots>
+struct BlockPlan {
+  static constexpr int pair_slots = PairSlots, grain_slots = GrainSlots;
+  static constexpr bool in_registers = PairSlots > 0;
+};
+using InMemory = BlockPlan<0, 0>;
+
+/// The items of a thread: number k of thread t is item k * threads + t of the block, so that neighbouring threads have
+/// neighbouring items.
+template <class T, int count>
+class Slots {
+ public:
+  KOKKOS_FORCEINLINE_FUNCTION Slots(T*, int, int, int) {}
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION static constexpr int size() { return count; }
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION T& operator[](int k) { return items_[k]; }
+
+ private:
+  T items_[count];
+};
+
+/// The same in memory.
+template <class T>
+class Slots<T, 0> {
+ public:
+  /// @param memory with room for `items` items of the block
+  KOKKOS_FORCEINLINE_FUNCTION Slots(T* memory, int items, int thread, int threads)
+      : first_(memory + thread), stride_(threads), size_((items - thread + threads - 1) / threads) {}
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int size() const { return size_; }
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION T& operator[](int k) { return first_[k * stride_]; }
+
+ private:
+  T* first_;
+  int stride_, size_;
+};
+
+/// Four or two numbers that are loaded and stored at once.
+template <class real>
+struct alignas(4 * sizeof(real)) Four {
+  real x, y, z, w;
+};
+template <class real>
+struct alignas(2 * sizeof(real)) Two {
+  real x, y;
+};
+
+/// Gives out pieces of a memory, one after another. With a null pointer it only counts their bytes.
+class Carver {
+ public:
+  KOKKOS_INLINE_FUNCTION explicit Carver(char* memory) : memory_(memory) {}
+
+  template <class T>
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION T* take(int count) {
+    constexpr std::size_t least = 16;
+    constexpr std::size_t alignment = alignof(T) > least ? alignof(T) : least;
+    used_ = (used_ + alignment - 1) / alignment * alignment;
+    T* const out = memory_ == nullptr ? nullptr : reinterpret_cast<T*>(memory_ + used_);
+    used_ += sizeof(T) * static_cast<std::size_t>(count);
+    return out;
+  }
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION std::size_t used() const { return used_; }
+
+ private:
+  char* memory_;
+  std::size_t used_ = 0;
+};
+
+}  // namespace voussoir::kernels::device

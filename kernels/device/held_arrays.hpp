@@ -1,0 +1,210 @@
+#pragma once
+/// Packings and states of a batch in a device's memory. @tparam Backend has that memory (host_backend.hpp says what a
+/// backend must have)
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "kernels/device/block_batch.hpp"
+#include "kernels/device/resident_rves.hpp"
+
+namespace voussoir::kernels::device {
+
+/// An array in a device's memory.
+template <class T, class Backend>
+class DeviceArray {
+ public:
+  DeviceArray() = default;
+  explicit DeviceArray(std::size_t count)
+      : data_(static_cast<T*>(Backend::allocate(sizeof(T) * std::max<std::size_t>(count, 1)))), count_(count) {}
+  DeviceArray(const DeviceArray&) = delete;
+  DeviceArray& operator=(const DeviceArray&) = delete;
+  DeviceArray(DeviceArray&& from) noexcept : data_(std::exchange(from.data_, nullptr)), count_(from.count_) {}
+  DeviceArray& operator=(DeviceArray&& from) noexcept {
+    std::swap(data_, from.data_);
+    std::swap(count_, from.count_);
+    return *this;
+  }
+  ~DeviceArray() {
+    if (data_ != nullptr) Backend::release(data_);
+  }
+
+  [[nodiscard]] T* data() const { return data_; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] std::size_t bytes() const { return sizeof(T) * count_; }
+  /// Makes room for `count` numbers; what was there is lost.
+  void at_least(std::size_t count) {
+    if (count > count_) *this = DeviceArray(count);
+  }
+  std::size_t write(std::span<const T> from, std::size_t at = 0) {
+    Backend::copy_up(data_ + at, from.data(), from.size_bytes());
+    return from.size_bytes();
+  }
+  std::size_t read(std::span<T> to, std::size_t at = 0) const {
+    Backend::copy_down(to.data(), data_ + at, to.size_bytes());
+    return to.size_bytes();
+  }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+/// The packings of a batch on the device.
+template <class Law, class Backend>
+class HeldPackings {
+ public:
+  using real = real_of<typename Law::Value>;
+
+  explicit HeldPackings(const RveBatch& batch) {
+    for (const Packing& p : batch.packings) {
+      grains_ = std::max(grains_, p.size());
+      materials_ = std::max(materials_, static_cast<int>(p.materials.size()));
+      classes_ = classes_ || !p.class_of.empty();
+    }
+  }
+
+  /// Writes what depends on the settings.
+  void write(const RveBatch& batch, const EngineSettings& settings) {
+    const std::size_t n = batch.packings.size(), grains = static_cast<std::size_t>(grains_);
+    scales_.clear();
+    std::vector<double> radii(n * grains, 0.0);
+    std::vector<GrainShape<real>> shapes(n * grains);
+    std::vector<std::uint8_t> class_of(classes_ ? n * grains : 0, 0);
+    std::vector<GrainMaterialOf<real>> materials(n * static_cast<std::size_t>(materials_));
+    for (std::size_t k = 0; k < n; ++k) {
+      const Packing& packing = batch.packings[k];
+      scales_.push_back(scales_of<Law>(packing, settings));
+      for (std::size_t i = 0; i < packing.radii.size(); ++i) {
+        radii[k * grains + i] = packing.radii[i];
+        shapes[k * grains + i] = grain_shape<Law>(packing, i, scales_[k].largest_radius, settings.overlap_limit);
+        if (!packing.class_of.empty()) class_of[k * grains + i] = packing.class_of[i];
+      }
+      for (std::size_t c = 0; c < packing.materials.size(); ++c)
+        materials[k * static_cast<std::size_t>(materials_) + c] = rounded(packing.materials[c]);
+    }
+    store(scales_of_, std::span<const RunScales>(scales_));
+    store(radii_, std::span<const double>(radii));
+    store(shapes_, std::span<const GrainShape<real>>(shapes));
+    store(class_of_, std::span<const std::uint8_t>(class_of));
+    store(of_classes_, std::span<const GrainMaterialOf<real>>(materials));
+  }
+
+  [[nodiscard]] DevicePackings<real> view() const {
+    return {scales_of_.data(),  radii_.data(), shapes_.data(), classes_ ? class_of_.data() : nullptr,
+            of_classes_.data(), grains_,       materials_};
+  }
+  [[nodiscard]] int grains() const { return grains_; }
+  [[nodiscard]] bool classes() const { return classes_; }
+  [[nodiscard]] const RunScales& scales(int packing) const { return scales_[static_cast<std::size_t>(packing)]; }
+
+ private:
+  int grains_ = 0, materials_ = 1;
+  bool classes_ = false;
+  std::vector<RunScales> scales_;
+  DeviceArray<RunScales, Backend> scales_of_;
+  DeviceArray<double, Backend> radii_;
+  DeviceArray<GrainShape<real>, Backend> shapes_;
+  DeviceArray<std::uint8_t, Backend> class_of_;
+  DeviceArray<GrainMaterialOf<real>, Backend> of_classes_;
+
+  [[nodiscard]] static GrainMaterialOf<real> rounded(const GrainMaterial& m) {
+    const auto r = [](double x) { return static_cast<real>(x); };
+    return {r(m.modulus), r(m.stiffness_ratio), r(m.friction), r(m.rolling_stiffness), r(m.rolling_limit)};
+  }
+  template <class T>
+  static void store(DeviceArray<T, Backend>& to, std::span<const T> from) {
+    to.at_least(from.size());
+    to.write(from);
+  }
+};
+
+/// The states of a batch on the device.
+template <class Backend>
+class HeldStates {
+ public:
+  HeldStates(int rves, int grains, int contacts, int history)
+      : rves_(rves),
+        grains_(grains),
+        contacts_(contacts),
+        history_(history),
+        position_(both(2 * grains)),
+        rotation_(both(grains)),
+        cell_(both(4)),
+        contact_count_(both(1)),
+        contact_key_(both(contacts)),
+        contact_history_(both(contacts * history)),
+        committed_slot_(static_cast<std::size_t>(rves)),
+        evaluated_(static_cast<std::size_t>(rves)),
+        slots_(static_cast<std::size_t>(rves), 0) {}
+
+  [[nodiscard]] DeviceStates view() const {
+    return {position_.data(),    rotation_.data(),        cell_.data(),           contact_count_.data(),
+            contact_key_.data(), contact_history_.data(), committed_slot_.data(), evaluated_.data(),
+            rves_,               grains_,                 contacts_,              history_};
+  }
+
+  void upload(const HostStates& from) {
+    const auto n = static_cast<std::size_t>(rves_);
+    slots_.assign(n, 0);
+    committed_slot_.write(slots_);
+    evaluated_.write(std::vector<std::uint8_t>(n, 0));
+    each_array(from, [&](auto& array, const auto* numbers, int count) {
+      array.write({numbers, n * static_cast<std::size_t>(count)});
+    });
+  }
+
+  void download(const HostStates& to, std::span<const int> rves, bool trial) {
+    const std::vector<std::uint8_t> evaluated = trial ? flags() : std::vector<std::uint8_t>();
+    for (const int rve : rves) {
+      const auto k = static_cast<std::size_t>(rve);
+      const int committed = slots_[k];
+      const std::size_t at = view().place(trial && evaluated[k] != 0 ? 1 - committed : committed, rve);
+      each_array(to, [&](auto& array, auto* numbers, int count) {
+        const auto c = static_cast<std::size_t>(count);
+        array.read({numbers + k * c, c}, at * c);
+      });
+    }
+  }
+
+  /// Makes trial states committed ones. Returns whether the state of each RVE changed.
+  std::vector<std::uint8_t> commit(std::span<const int> kept) {
+    std::vector<std::uint8_t> changes = flags();
+    for (const int rve : kept) changes[static_cast<std::size_t>(rve)] = 0;
+    for (std::size_t k = 0; k < slots_.size(); ++k) slots_[k] ^= changes[k];
+    committed_slot_.write(slots_);
+    evaluated_.write(std::vector<std::uint8_t>(slots_.size(), 0));
+    return changes;
+  }
+
+ private:
+  int rves_, grains_, contacts_, history_;
+  DeviceArray<double, Backend> position_, rotation_, cell_;
+  DeviceArray<int, Backend> contact_count_;
+  DeviceArray<std::uint32_t, Backend> contact_key_;
+  DeviceArray<double, Backend> contact_history_;
+  DeviceArray<std::uint8_t, Backend> committed_slot_, evaluated_;
+  std::vector<std::uint8_t> slots_;  ///< committed_slot_, as the host knows it
+
+  [[nodiscard]] std::size_t both(int count) const {
+    return 2 * static_cast<std::size_t>(rves_) * static_cast<std::size_t>(count);
+  }
+  [[nodiscard]] std::vector<std::uint8_t> flags() const {
+    std::vector<std::uint8_t> out(slots_.size());
+    evaluated_.read(out);
+    return out;
+  }
+  template <class Body>
+  void each_array(const HostStates& host, const Body& body) {
+    body(position_, host.position, 2 * grains_);
+    body(rotation_, host.rotation, grains_);
+    body(cell_, host.cell, 4);
+    body(contact_count_, host.contact_count, 1);
+    body(contact_key_, host.contact_key, contacts_);
+    if (history_ > 0) body(contact_history_, host.contact_history, contacts_ * history_);
+  }
+};
+
+}  // namespace voussoir::kernels::device

@@ -1,0 +1,71 @@
+#pragma once
+/// The device that is no device: blocks on the cores of the host, in its memory. It is the engine of a GPU without a
+/// GPU, for tests; the lanes do the same work much faster.
+///
+/// A backend has
+///   allocate(bytes), release(p), copy_up(to, from, bytes), copy_down(to, from, bytes)   the device's memory
+///   levels, first_level(grains)     how many instances with ever more room there are, and the first that fits
+///   room<Law, Drive>(level, grains) pairs for which a block of a level has room
+///   launch<Law, Drive, classes>(batch, settings, level, blocks, pairs)   advances the RVEs order[0 .. blocks - 1], and
+///                                   returns when all have ended
+
+#include <cstring>
+#include <new>
+#include <vector>
+
+#include "kernels/device/block_advance.hpp"
+
+namespace voussoir::kernels::device {
+
+struct HostBackend {
+  static constexpr std::align_val_t line{64};
+  static constexpr int levels = 3;
+
+  [[nodiscard]] static void* allocate(std::size_t bytes) { return ::operator new(bytes, line); }
+  static void release(void* p) { ::operator delete(p, line); }
+  static void copy_up(void* to, const void* from, std::size_t bytes) {
+    if (bytes > 0) std::memcpy(to, from, bytes);
+  }
+  static void copy_down(void* to, const void* from, std::size_t bytes) { copy_up(to, from, bytes); }
+
+  [[nodiscard]] static int first_level(int) { return 0; }
+  /// A list with a skin of usual size has 2 to 4 pairs for each grain; the last level has room for all pairs.
+  template <class Law, class Drive>
+  [[nodiscard]] static int room(int level, int grains) {
+    const int of_all = std::max(grains * (grains - 1) / 2, 2 * grains);
+    const int few = level == 0 ? 8 * grains : 64 * grains;
+    return std::max(level == 2 ? of_all : std::min(few, of_all), 64);
+  }
+
+  template <class Law, class Drive, bool classes>
+  static void launch(const BlockBatch<real_of<typename Law::Value>, Drive>& batch, const EngineSettings& settings,
+                     int, int blocks, int pairs) {
+    using Memory = BlockMemory<Law, Drive, InMemory>;
+    const Memory sizes(nullptr, nullptr, batch.packings.stride, pairs, 1);
+    using Space = Kokkos::DefaultHostExecutionSpace;
+    Kokkos::parallel_for("voussoir::device::host", Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(0, blocks).set_chunk_size(1),
+                         [&](int number) {
+                           const HostMemory fast(sizes.fast_bytes), slow(sizes.slow_bytes);
+                           BlockRun<Law, Drive, SerialBlock, InMemory, classes> run(SerialBlock(), batch, settings,
+                                                                                    number, fast.data(), slow.data(),
+                                                                                    pairs);
+                           advance_block(run);
+                         });
+    Space().fence("voussoir::device::host");
+  }
+
+  /// The memory of one block.
+  class HostMemory {
+   public:
+    explicit HostMemory(std::size_t bytes) : data_(static_cast<char*>(allocate(bytes))) {}
+    HostMemory(const HostMemory&) = delete;
+    HostMemory& operator=(const HostMemory&) = delete;
+    ~HostMemory() { release(data_); }
+    [[nodiscard]] char* data() const { return data_; }
+
+   private:
+    char* data_;
+  };
+};
+
+}  // namespace voussoir::kernels::device

@@ -1,0 +1,247 @@
+#pragma once
+/// The RVEs that a device holds, whatever the device is. @tparam Backend has the device's memory and its launches
+/// (host_backend.hpp says what it must have)
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "kernels/course/choose_instance.hpp"
+#include "kernels/device/held_arrays.hpp"
+
+namespace voussoir::kernels::device {
+
+/// Requests, answers and scratch of one call on the device.
+template <class Drive, class Backend>
+struct CallArrays {
+  DeviceArray<int, Backend> order;
+  DeviceArray<Drive, Backend> drives;
+  DeviceArray<RveReport, Backend> reports;
+  DeviceArray<ServoSample, Backend> samples;
+  DeviceArray<int, Backend> sample_count;
+  int sample_room = 0;
+};
+
+/// Makes room for the traces that requests ask for.
+template <class Arrays>
+void make_sample_room(Arrays& to, std::span<const ServoRequest> requests) {
+  to.sample_room = 0;
+  for (const ServoRequest& r : requests) {
+    if (r.microstructure.any()) throw std::invalid_argument("a device records no microstructure along a path");
+    if (r.trace != nullptr) to.sample_room = std::max(to.sample_room, (r.max_steps - 1) / r.trace_interval + 1);
+  }
+  to.samples.at_least(requests.size() * static_cast<std::size_t>(to.sample_room));
+  to.sample_count.at_least(requests.size());
+  to.sample_count.write(std::vector<int>(requests.size(), 0));
+}
+template <class Arrays>
+void make_sample_room(Arrays&, std::span<const StrainRequest>) {}
+
+template <class Arrays>
+std::size_t append_samples(const Arrays& from, std::span<const ServoRequest> requests) {
+  if (from.sample_room == 0) return 0;
+  std::vector<int> counts(requests.size());
+  std::size_t bytes = from.sample_count.read(counts);
+  std::vector<ServoSample> samples;
+  for (std::size_t k = 0; k < requests.size(); ++k) {
+    samples.resize(static_cast<std::size_t>(counts[k]));
+    bytes += from.samples.read(samples, k * static_cast<std::size_t>(from.sample_room));
+    if (requests[k].trace != nullptr) requests[k].trace->insert(requests[k].trace->end(), samples.begin(), samples.end());
+  }
+  return bytes;
+}
+template <class Arrays>
+std::size_t append_samples(const Arrays&, std::span<const StrainRequest>) {
+  return 0;
+}
+
+template <class Law, class Backend>
+class ResidentBatch final : public ResidentRves {
+ public:
+  using real = real_of<typename Law::Value>;
+
+  explicit ResidentBatch(const RveBatch& batch)
+      : batch_{batch.packings, batch.packing_of, {}, {}, {}},
+        packings_(batch_),
+        states_(static_cast<int>(batch.size()), packings_.grains(), batch.committed.contact_capacity(),
+                static_cast<int>(batch.committed.history_size())),
+        packing_of_(batch.size()),
+        overflown_(batch.size()),
+        candidate_count_(batch.size()),
+        candidate_skin_(batch.size()),
+        candidate_spent_(batch.size()),
+        candidate_spending_(batch.size()) {
+    if (batch.committed.history_size() != static_cast<std::size_t>(history_size<Law>))
+      throw std::invalid_argument("the batch holds the histories of another law");
+    packing_of_.write(batch_.packing_of);
+    upload(plain(batch.committed));
+  }
+
+  void upload(const HostStates& from) override {
+    states_.upload(from);
+    forget_candidates();
+  }
+  void download(const HostStates& to, std::span<const int> rves, bool trial) override {
+    states_.download(to, rves, trial);
+  }
+  DeviceWork advance(std::span<const StrainRequest> requests, const EngineSettings& settings,
+                     std::span<RveReport> reports, std::span<const int> rves) override {
+    return advance_with<StrainDrive>(requests, settings, reports, rves);
+  }
+  DeviceWork advance(std::span<const ServoRequest> requests, const EngineSettings& settings,
+                     std::span<RveReport> reports, std::span<const int> rves) override {
+    return advance_with<ServoControl>(requests, settings, reports, rves);
+  }
+  void commit(std::span<const int> kept) override {
+    const std::vector<std::uint8_t> changes = states_.commit(kept);
+    const std::size_t n = changes.size();
+    std::vector<double> skin(n), spent(n), spending(n);
+    candidate_skin_.read(skin);
+    candidate_spent_.read(spent);
+    candidate_spending_.read(spending);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (changes[k] == 0) continue;
+      if (spending[k] < 0) skin[k] = -1;
+      spent[k] = spending[k];
+    }
+    candidate_skin_.write(skin);
+    candidate_spent_.write(spent);
+  }
+
+ private:
+  RveBatch batch_;  ///< packings and numbers; its states are on the device
+  HeldPackings<Law, Backend> packings_;
+  HeldStates<Backend> states_;
+  double skin_ = -1, overlap_limit_ = -1;  ///< of the settings for which the packings are written
+  DeviceArray<int, Backend> packing_of_;
+  DeviceArray<std::uint8_t, Backend> overflown_;
+  DeviceArray<std::uint32_t, Backend> candidate_key_;
+  DeviceArray<int, Backend> candidate_count_;
+  DeviceArray<double, Backend> candidate_skin_, candidate_spent_, candidate_spending_;
+  int candidate_capacity_ = 0;
+  CallArrays<StrainDrive, Backend> strain_;
+  CallArrays<ServoControl, Backend> servo_;
+
+  [[nodiscard]] auto& arrays_of(const StrainDrive*) { return strain_; }
+  [[nodiscard]] auto& arrays_of(const ServoControl*) { return servo_; }
+
+  void forget_candidates() { candidate_skin_.write(std::vector<double>(batch_.size(), -1.0)); }
+
+  void grow_candidates(int pairs) {
+    const int wanted = candidates_per_pair * pairs;
+    if (wanted <= candidate_capacity_) return;
+    candidate_capacity_ = wanted;
+    candidate_key_ = DeviceArray<std::uint32_t, Backend>(batch_.size() * static_cast<std::size_t>(wanted));
+    forget_candidates();
+  }
+
+  void write_packings(const EngineSettings& settings) {
+    if (settings.skin == skin_ && settings.overlap_limit == overlap_limit_) return;
+    packings_.write(batch_, settings);
+    forget_candidates();
+    skin_ = settings.skin;
+    overlap_limit_ = settings.overlap_limit;
+  }
+
+  /// Writes the requests of the RVEs `rves`, in their order.
+  template <class Drive>
+  std::size_t write_requests(CallArrays<Drive, Backend>& to, std::span<const typename Drive::Request> requests,
+                             const EngineSettings& settings, std::span<const int> rves) {
+    std::vector<Drive> drives;
+    for (const int rve : rves) {
+      const auto k = static_cast<std::size_t>(rve);
+      drives.emplace_back(requests[k], packings_.scales(batch_.packing_of[k]), settings);
+    }
+    to.drives.at_least(drives.size());
+    to.order.at_least(rves.size());
+    to.reports.at_least(rves.size());
+    return to.drives.write(drives) + to.order.write(rves);
+  }
+
+  template <class Drive>
+  [[nodiscard]] BlockBatch<real, Drive> view(CallArrays<Drive, Backend>& of) {
+    return {packings_.view(),
+            states_.view(),
+            {candidate_key_.data(), candidate_count_.data(), candidate_skin_.data(), candidate_spent_.data(),
+             candidate_spending_.data(), candidate_capacity_},
+            packing_of_.data(),
+            of.order.data(),
+            of.drives.data(),
+            of.reports.data(),
+            of.samples.data(),
+            of.sample_count.data(),
+            of.sample_room,
+            overflown_.data()};
+  }
+
+  /// Runs the RVEs of the call in blocks of one level of room.
+  template <class Drive>
+  void launch(CallArrays<Drive, Backend>& arrays, const EngineSettings& settings, int level, int blocks) {
+    const int pairs = Backend::template room<Law, Drive>(level, packings_.grains());
+    grow_candidates(pairs);
+    const BlockBatch<real, Drive> batch = view(arrays);
+    if (packings_.classes()) {
+      Backend::template launch<Law, Drive, true>(batch, settings, level, blocks, pairs);
+    } else {
+      Backend::template launch<Law, Drive, false>(batch, settings, level, blocks, pairs);
+    }
+  }
+
+  template <class Drive>
+  DeviceWork advance_with(std::span<const typename Drive::Request> requests, const EngineSettings& settings,
+                          std::span<RveReport> reports, std::span<const int> rves) {
+    if (settings.tangent == TangentKind::loading)
+      throw std::invalid_argument("a device finds no loading tangents: engine.backend = \"lanes\" does");
+    DeviceWork work;
+    if (rves.empty()) return work;
+    write_packings(settings);
+    auto& arrays = arrays_of(static_cast<const Drive*>(nullptr));
+    make_sample_room(arrays, requests);
+    std::vector<int> order(rves.begin(), rves.end());
+    const auto steps = [&](int rve) {
+      const auto k = static_cast<std::size_t>(rve);
+      return predicted_steps(requests[k], reports[k].steps);
+    };
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return steps(a) > steps(b); });
+    for (int level = Backend::first_level(packings_.grains()); !order.empty(); ++level) {
+      const bool last = level + 1 == Backend::levels;
+      work.bytes_up += write_requests<Drive>(arrays, requests, settings, order);
+      launch<Drive>(arrays, settings, level, static_cast<int>(order.size()));
+      order = take_answers(arrays, reports, order, last, work);
+      work.enlarged += order.size();
+    }
+    work.bytes_down += append_samples(arrays, requests);
+    return work;
+  }
+
+  /// Reads the reports of a launch. Returns the RVEs that need more room.
+  template <class Drive>
+  [[nodiscard]] std::vector<int> take_answers(CallArrays<Drive, Backend>& arrays, std::span<RveReport> reports,
+                                              const std::vector<int>& order, bool last, DeviceWork& work) {
+    std::vector<RveReport> answers(order.size());
+    std::vector<std::uint8_t> overflown(batch_.size());
+    work.bytes_down += arrays.reports.read(answers) + overflown_.read(overflown);
+    std::vector<int> again;
+    for (std::size_t q = 0; q < order.size(); ++q) {
+      const auto k = static_cast<std::size_t>(order[q]);
+      if (overflown[k] != 0 && !last) {
+        again.push_back(order[q]);
+        continue;
+      }
+      reports[k] = answers[q];
+      work.particle_steps += static_cast<std::size_t>(batch_.packing(k).size()) *
+                             static_cast<std::size_t>(std::max(reports[k].steps, 0));
+    }
+    return again;
+  }
+};
+
+/// Holds a batch by the instance that its law, its precision and its grains ask for.
+template <class Backend>
+[[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveBatch& batch, Precision precision) {
+  return choose_instance<SingleLane>(batch, precision, [&]<class Law>(Instance<Law>) -> std::unique_ptr<ResidentRves> {
+    return std::make_unique<ResidentBatch<Law, Backend>>(batch);
+  });
+}
+
+}  // namespace voussoir::kernels::device

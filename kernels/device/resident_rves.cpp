@@ -1,0 +1,17 @@
+#include "kernels/device/resident_rves.hpp"
+
+namespace voussoir::kernels::device {
+
+HostStates plain(const RveStates& states) {
+  return {.position = states.position.data(),
+          .rotation = states.rotation.data(),
+          .cell = states.cell.data(),
+          .contact_count = states.contact_count.data(),
+          .contact_key = states.contact_key.data(),
+          .contact_history = states.contact_history.data(),
+          .grains = static_cast<int>(states.rotation.extent(1)),
+          .contacts = states.contact_capacity(),
+          .history = static_cast<int>(states.history_size())};
+}
+
+}  // namespace voussoir::kernels::device
