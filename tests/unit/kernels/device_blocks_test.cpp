@@ -33,7 +33,7 @@ TEST_F(DeviceBlocks, Try) {
     settings.tangent_tolerance = 1e-3;
     settings.backend = Backend::lanes;
     const auto expected = run(lanes, motions(6), settings);
-    auto held = device::hold<device::HostBackend>(blocks, precision);
+    auto held = device::hold<device::HostBackend>(device::plain(blocks), precision);
     std::vector<RveReport> got(6);
     std::vector<int> all{0, 1, 2, 3, 4, 5};
     const auto requests = motions(6);
