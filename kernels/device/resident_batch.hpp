@@ -61,7 +61,7 @@ class ResidentBatch final : public ResidentRves {
   using real = real_of<typename Law::Value>;
 
   explicit ResidentBatch(const RveSet& rves)
-      : batch_{rves.packings, rves.packing_of, {}, {}, {}},
+      : batch_{rves.packings, rves.packing_of, {}, {}, {}, {}},
         packings_(batch_),
         states_(static_cast<int>(batch_.size()), packings_.grains(), rves.committed.contacts, rves.committed.history),
         packing_of_(batch_.size()),
@@ -238,7 +238,7 @@ class ResidentBatch final : public ResidentRves {
 /// Holds a batch by the instance that its law, its precision and its grains ask for.
 template <class Backend>
 [[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) {
-  const RveBatch batch{rves.packings, rves.packing_of, {}, {}, {}};
+  const RveBatch batch{rves.packings, rves.packing_of, {}, {}, {}, {}};
   return choose_instance<SingleLane>(batch, precision, [&]<class Law>(Instance<Law>) -> std::unique_ptr<ResidentRves> {
     return std::make_unique<ResidentBatch<Law, Backend>>(rves);
   });
