@@ -76,7 +76,10 @@ KOKKOS_INLINE_FUNCTION void finish(Run& run) {
   const double volume = report.cell_area * run.scales().thickness;
   const CellMotion<typename Run::V> last = cell;
   const bool stored = store(run, report.contacts, last);
-  if (!stored) return alone(run, [&] { report.status = RveStatus::neighbour_overflow; });
+  if (!stored) {
+    run.block.barrier();  // all threads have read the status
+    return alone(run, [&] { report.status = RveStatus::neighbour_overflow; });
+  }
   if (run.settings.tangent != TangentKind::contact) find_tangent(run, last, volume);
 }
 

@@ -138,6 +138,24 @@ Answer crowded(const reference::Rve& rve) {
   return answer;
 }
 
+/// Grains pressed into each other until they have more contacts than a state has room for.
+template <class real>
+Answer squeezed(const reference::Rve& rve) {
+  const RveBatch batch = clones(rve, 2);
+  EngineSettings settings = eventful();
+  settings.skin = 0.05;
+  settings.overlap_limit = 0.95;
+  const std::vector<StrainRequest> requests(2, {.f_rel = {0.6, 0, 0, 0.6}, .strain_steps = 40, .hold_cap = 1});
+  device::ResidentBatch<Law<real>, InMemory> held(batch);
+  Answer answer{std::vector<RveReport>(2), {}};
+  held.advance(std::span<const StrainRequest>(requests), settings, answer.reports, all_of(2));
+  if (answer.reports[0].status != RveStatus::neighbour_overflow) {
+    ++faults;
+    std::printf("  %s, although there are too many contacts\n", name_of(answer.reports[0].status));
+  }
+  return answer;
+}
+
 /// One increment of a large packing, and a second one.
 template <class real, class Backend>
 Answer large(const reference::Rve& rve) {
@@ -167,6 +185,7 @@ void run_all(const reference::Rve& small, const reference::Rve& tile) {
   on_threads<InRegisters>("servos, float, in registers", {3}, in_float,
                           [&] { return servos<float, InRegisters>(small, 60); });
   on_threads<InMemory>("too little room, double", {4}, in_double, [&] { return crowded<double>(small); });
+  on_threads<InMemory>("too many contacts, double", {4}, in_double, [&] { return squeezed<double>(small); });
   const std::array<std::array<int, 2>, 3> tiles{{{2, 3}, {2, 7}, {5, 6}}};
   for (const auto& [columns, rows] : tiles) {
     const reference::Rve rve = reference::tiled(tile, columns, rows);
