@@ -25,11 +25,13 @@ namespace voussoir::kernels::device {
 /// name outlives changes of the lines above it.
 class BarrierPlaces {
  public:
-  static inline bool noting = false;  ///< to be switched on for blocks of one thread alone
+  static inline bool noting = false;    ///< to be switched on for blocks of one thread alone
   static inline unsigned left_out = 0;  ///< line; 0: none
   static inline std::string file_left_out;
 
-  static void note(const std::source_location& from) { lines_[function_of(from)].insert({from.line(), from.file_name()}); }
+  static void note(const std::source_location& from) {
+    lines_[function_of(from)].insert({from.line(), from.file_name()});
+  }
   [[nodiscard]] static bool is_left_out(const std::source_location& from) {
     return left_out == from.line() && file_left_out == from.file_name();
   }
@@ -79,7 +81,8 @@ class ThreadBarrier {
 /// One thread of a block.
 class ThreadBlock {
  public:
-  ThreadBlock(ThreadBarrier& barrier, int thread, int threads) : barrier_(&barrier), thread_(thread), threads_(threads) {}
+  ThreadBlock(ThreadBarrier& barrier, int thread, int threads)
+      : barrier_(&barrier), thread_(thread), threads_(threads) {}
   [[nodiscard]] int thread() const { return thread_; }
   [[nodiscard]] int threads() const { return threads_; }
   void barrier(const std::source_location& from = std::source_location::current()) const {
@@ -102,7 +105,8 @@ struct ThreadBackend {
   static inline int blocks_run = 0;   ///< of all launches so far
 
   static constexpr int levels = 1 + HostBackend::levels;
-  static constexpr int rubbish = 0xfe;  ///< in each byte: a negative integer, a negative number of 1e303 or NaN-like float
+  static constexpr int rubbish = 0xfe;  ///< in each byte: a negative integer, a negative number of 1e303 or NaN-like
+                                        ///< float
 
   [[nodiscard]] static void* allocate(std::size_t bytes) {
     void* const p = HostBackend::allocate(bytes);

@@ -12,9 +12,9 @@ namespace voussoir::kernels {
 
 /// By how much answers may differ.
 struct Tolerance {
-  double stress;         ///< over the pressure; a tangent of eq. (4), over its largest entry, is allowed the same
-  double position;       ///< over the mean diameter
-  bool counts = true;    ///< steps and contacts are the same
+  double stress;       ///< over the pressure; a tangent of eq. (4), over its largest entry, is allowed the same
+  double position;     ///< over the mean diameter
+  bool counts = true;  ///< steps and contacts are the same
 };
 
 /// The largest difference of the stresses, over the pressure.
@@ -73,7 +73,8 @@ inline void expect_near_state(const RveStates& a, const RveStates& b, const Pack
   ASSERT_EQ(a.contact_count(rve), b.contact_count(rve)) << rve;
   for (int c = 0; c < a.contact_count(rve); ++c) {
     ASSERT_EQ(a.contact_key(rve, c), b.contact_key(rve, c)) << rve << " " << c;
-    ASSERT_NEAR(a.contact_history(rve, c, 0), b.contact_history(rve, c, 0), 10 * most.stress * force) << rve << " " << c;
+    ASSERT_NEAR(a.contact_history(rve, c, 0), b.contact_history(rve, c, 0), 10 * most.stress * force)
+        << rve << " " << c;
     ASSERT_NEAR(a.contact_history(rve, c, 1), b.contact_history(rve, c, 1), 10 * most.stress * force * d)
         << rve << " " << c;
   }

@@ -95,8 +95,8 @@ Answer strains(const reference::Rve& rve, bool lost) {
   RveBatch batch = clones(rve, 5);
   batch.committed.position(4, 3, 0) = nan;
   EngineSettings settings = eventful();
-  std::vector<StrainRequest> requests(
-      5, {.f_rel = {1.0002, 0.0006, -0.0002, 0.9996}, .strain_steps = 24, .hold_cap = 8});
+  std::vector<StrainRequest> requests(5,
+                                      {.f_rel = {1.0002, 0.0006, -0.0002, 0.9996}, .strain_steps = 24, .hold_cap = 8});
   if (lost) {
     settings.skin = 0.05;
     requests[0] = {.f_rel = {0.7, 0, 0, 0.7}, .strain_steps = 40, .hold_cap = 1};
@@ -181,7 +181,8 @@ void run_all(const reference::Rve& small, const reference::Rve& tile) {
     on_threads<InRegisters>(lost ? "lost RVEs, float, in registers" : "rebases, float, in registers", {2, 8}, in_float,
                             [&] { return strains<float, InRegisters>(small, lost); });
   }
-  on_threads<InMemory>("servos, double, in memory", {4}, in_double, [&] { return servos<double, InMemory>(small, 60); });
+  on_threads<InMemory>("servos, double, in memory", {4}, in_double,
+                       [&] { return servos<double, InMemory>(small, 60); });
   on_threads<InRegisters>("servos, float, in registers", {3}, in_float,
                           [&] { return servos<float, InRegisters>(small, 60); });
   on_threads<InMemory>("too little room, double", {4}, in_double, [&] { return crowded<double>(small); });
@@ -191,7 +192,8 @@ void run_all(const reference::Rve& small, const reference::Rve& tile) {
     const reference::Rve rve = reference::tiled(tile, columns, rows);
     std::printf("%zu grains\n", rve.radii.size());
     // One thread has no room for so many in registers, and answers from memory.
-    on_threads<InRegisters>("large, float, in registers", {8}, in_float, [&] { return large<float, InRegisters>(rve); });
+    on_threads<InRegisters>("large, float, in registers", {8}, in_float,
+                            [&] { return large<float, InRegisters>(rve); });
     on_threads<InMemory>("large, double, in memory", {4}, in_double, [&] { return large<double, InMemory>(rve); });
   }
 }

@@ -48,7 +48,8 @@ std::vector<RveReport> run_lanes(RveBatch& batch, const std::vector<ServoRequest
 /// Largest force of the contacts that a state remembers, which is at least that of 100 Pa.
 double force_scale(const RveStates& states, const Packing& packing, std::size_t rve) {
   double most = 100.0 * packing.mean_diameter() * packing.thickness;
-  for (int c = 0; c < states.contact_count(rve); ++c) most = std::max(most, std::abs(states.contact_history(rve, c, 0)));
+  for (int c = 0; c < states.contact_count(rve); ++c)
+    most = std::max(most, std::abs(states.contact_history(rve, c, 0)));
   return most;
 }
 
@@ -125,7 +126,8 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesThroughManyRebases) {
 }
 
 TEST_F(DeviceBlocks, AgreesWithTheLanesInTheNextIncrementsToo) {
-  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
+  for (const auto& [settings, tolerance] :
+       {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
     RveBatch lanes = clones(dense, 3);
     const RveBatch batch = clones(dense, 3);
     std::vector<RveReport> expected;
@@ -208,11 +210,12 @@ TEST_F(DeviceBlocks, EndsWithTheLanesStatuses) {
                                             general,
                                             {.f_rel = {1.0001, 0, 0, 1}, .strain_steps = 100, .hold_cap = 2000},
                                             general};
-  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
+  for (const auto& [settings, tolerance] :
+       {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
     const auto reports = expect_lanes_answers(make, requests, settings, tolerance);
-    const RveStatus expected[] = {RveStatus::not_finite,    RveStatus::not_finite, RveStatus::overlap_limit,
-                                  RveStatus::open,          RveStatus::overlap_limit, RveStatus::step_limit,
-                                  RveStatus::not_finite,    RveStatus::converged,  RveStatus::not_finite};
+    const RveStatus expected[] = {RveStatus::not_finite, RveStatus::not_finite,    RveStatus::overlap_limit,
+                                  RveStatus::open,       RveStatus::overlap_limit, RveStatus::step_limit,
+                                  RveStatus::not_finite, RveStatus::converged,     RveStatus::not_finite};
     for (std::size_t k = 0; k < std::size(expected); ++k)
       EXPECT_EQ(reports[k].status, expected[k]) << k << " " << name_of(reports[k].status);
   }
@@ -227,10 +230,10 @@ TEST_F(DeviceBlocks, TooNarrowACellIsReportedAsByTheLanes) {
 TEST_F(DeviceBlocks, MoreContactsThanAStateHoldsAreReportedAsByTheLanes) {
   EngineSettings settings = in_double();
   settings.overlap_limit = 0.95;
-  const auto reports =
-      expect_lanes_answers([&] { return clones(dense, 2); },
-                           std::vector(2, StrainRequest{.f_rel = {0.6, 0, 0, 0.6}, .strain_steps = 400, .hold_cap = 1}),
-                           settings, in_double_);
+  const auto reports = expect_lanes_answers(
+      [&] { return clones(dense, 2); },
+      std::vector(2, StrainRequest{.f_rel = {0.6, 0, 0, 0.6}, .strain_steps = 400, .hold_cap = 1}), settings,
+      in_double_);
   EXPECT_EQ(reports[0].status, RveStatus::neighbour_overflow) << name_of(reports[0].status);
 }
 
@@ -251,8 +254,8 @@ TEST_F(DeviceBlocks, AListWithoutRoomRunsAgainWithMoreOfIt) {
     expect_lanes_answers([&] { return clones(t.rve, 2); }, requests, settings, in_double_, {{}, blocks});
     const RveBatch batch = clones(t.rve, 2);
     std::vector<RveReport> reports(2);
-    const auto work =
-        advance_held(*hold(batch, Precision::float64, blocks), requests, settings, reports, first_rves(2));
+    const auto work = advance_held(*hold(batch, Precision::float64, blocks), requests, settings, reports,
+                                   first_rves(2));
     EXPECT_GE(work.enlarged, 2U);
   }
 }
@@ -262,7 +265,8 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesUnderAServo) {
   const ServoRequest biaxial{
       .x = {true, -1e5}, .y = {false, -1e-6}, .max_rate = 1e-5, .max_steps = 3000, .end_strain_y = 2e-4};
   const std::vector requests{squeeze, biaxial};
-  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
+  for (const auto& [settings, tolerance] :
+       {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
     const auto reports = expect_lanes_answers([&] { return clones(dense, 2); }, requests, settings, tolerance);
     EXPECT_EQ(reports[0].status, RveStatus::step_limit);
     EXPECT_EQ(reports[1].status, RveStatus::converged);
@@ -354,8 +358,8 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesOnLargePackings) {
   for (const Size& s : {Size{2, 3, 7}, Size{2, 7, 16}, Size{5, 6, 32}}) {
     SCOPED_TRACE(testing::Message() << 50 * s.columns * s.rows << " grains");
     const reference::Rve rve = reference::tiled(tile, s.columns, s.rows);
-    const auto reports = expect_lanes_answers([&] { return clones(rve, 1); }, std::vector{short_one}, settings, in_double_,
-                                              {{}, {BlockKind::in_registers, s.threads}});
+    const auto reports = expect_lanes_answers([&] { return clones(rve, 1); }, std::vector{short_one}, settings,
+                                              in_double_, {{}, {BlockKind::in_registers, s.threads}});
     EXPECT_GT(reports[0].contacts, 75 * s.columns * s.rows);
   }
 }
@@ -364,10 +368,12 @@ TEST_F(DeviceBlocks, RefusesWhatItCannotDo) {
   const RveBatch batch = clones(dense, 1);
   const auto held = hold(batch, Precision::float32, {});
   EngineSettings settings{.tangent = TangentKind::loading};
-  expect_throws<std::invalid_argument>([&] { advance_held(*held, std::vector{general}, settings); }, "no loading tangents");
+  expect_throws<std::invalid_argument>([&] { advance_held(*held, std::vector{general}, settings); },
+                                       "no loading tangents");
   ServoRequest recorded;
   recorded.microstructure.fabric = true;
-  expect_throws<std::invalid_argument>([&] { advance_held(*held, std::vector{recorded}, EngineSettings{}); }, "no microstructure");
+  expect_throws<std::invalid_argument>([&] { advance_held(*held, std::vector{recorded}, EngineSettings{}); },
+                                       "no microstructure");
 }
 
 }  // namespace

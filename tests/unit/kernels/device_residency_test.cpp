@@ -153,8 +153,8 @@ void expect_bits_of_new_candidates(device::ResidentRves& resident, device::Resid
 }
 
 TEST_P(DeviceResidency, CandidatesThatHoldOverCommitsGiveTheBitsOfNewOnes) {
-  // Increments so small that candidates hold over several, others with rebases that overwrite them on their way, and one
-  // in which grains fly through the cell.
+  // Increments so small that candidates hold over several, others with rebases that overwrite them on their way, and
+  // one in which grains fly through the cell.
   const RveBatch batch = unlike(3);
   std::vector<StrainRequest> requests(3);
   requests[0] = {.f_rel = {1.004, 0.006, -0.002, 0.997}, .strain_steps = 40, .hold_cap = 8};
