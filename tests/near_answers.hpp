@@ -51,7 +51,7 @@ inline void expect_near_report(const RveReport& a, const RveReport& b, const Tol
   EXPECT_NEAR(a.inertial_number, b.inertial_number, most.stress * b.inertial_number) << rve;
   EXPECT_NEAR(a.largest_overlap, b.largest_overlap, most.stress * b.largest_overlap) << rve;
   EXPECT_NEAR(a.mean_overlap, b.mean_overlap, most.stress * b.mean_overlap) << rve;
-  EXPECT_NEAR(a.cell_area, b.cell_area, 1e-12 * b.cell_area) << rve;
+  EXPECT_NEAR(a.cell_area, b.cell_area, most.position * b.cell_area) << rve;
   // The ratio is small against the forces that it is the rest of.
   EXPECT_NEAR(a.unbalanced, b.unbalanced, 10 * most.stress) << rve;
 }
@@ -60,7 +60,7 @@ inline void expect_near_report(const RveReport& a, const RveReport& b, const Tol
 inline void expect_near_state(const RveStates& a, const RveStates& b, const Packing& packing, const Tolerance& most,
                               double force, std::size_t rve) {
   const double d = packing.mean_diameter();
-  for (std::size_t k = 0; k < 4; ++k) ASSERT_NEAR(a.cell(rve, k), b.cell(rve, k), 1e-12 * d) << rve;
+  for (std::size_t k = 0; k < 4; ++k) ASSERT_NEAR(a.cell(rve, k), b.cell(rve, k), most.position * d) << rve;
   const Mat2 h{b.cell(rve, 0), b.cell(rve, 1), b.cell(rve, 2), b.cell(rve, 3)};
   for (std::size_t i = 0; i < packing.radii.size(); ++i) {
     const double x = a.position(rve, i, 0) - b.position(rve, i, 0), y = a.position(rve, i, 1) - b.position(rve, i, 1);

@@ -206,7 +206,7 @@ TEST_F(DeviceBlocks, EndsWithTheLanesStatuses) {
                                             {.f_rel = {0.7, 0, 0, 0.7}, .strain_steps = 200, .hold_cap = 1},
                                             {.f_rel = {1.2, 0, 0, 1.2}, .strain_steps = 400, .hold_cap = 32},
                                             {.f_rel = {0.3, 0, 0, 0.3}, .strain_steps = 2000, .hold_cap = 16},
-                                            {.f_rel = {1.0001, 0, 0, 1}, .strain_steps = 100, .hold_cap = 1},
+                                            {.f_rel = {1.001, 0.003, 0, 0.998}, .strain_steps = 20, .hold_cap = 1},
                                             general,
                                             {.f_rel = {1.0001, 0, 0, 1}, .strain_steps = 100, .hold_cap = 2000},
                                             general};
@@ -238,14 +238,14 @@ TEST_F(DeviceBlocks, MoreContactsThanAStateHoldsAreReportedAsByTheLanes) {
 }
 
 TEST_F(DeviceBlocks, AListWithoutRoomRunsAgainWithMoreOfIt) {
-  // At first with room for fewer pairs than touch; then with a skin for which all levels but the last are too small.
-  const reference::Rve loose = gas(150, 1e-3, 1e-3);
+  // There is room for fewer pairs than are near, then for fewer than touch, then for fewer than a wide skin lists.
+  const reference::Rve loose = gas(400, 1e-3, 1e-3);
   struct Try {
     const reference::Rve& rve;
     double skin;
     int first_pairs;
   };
-  for (const Try& t : {Try{dense, 0.08, 64}, Try{dense, 0.0005, 82}, Try{loose, 2.5, 0}}) {
+  for (const Try& t : {Try{dense, 0.08, 64}, Try{dense, 0.0005, 82}, Try{loose, 4, 0}}) {
     EngineSettings settings = in_double();
     settings.skin = t.skin;
     settings.list_interval = t.skin < 0.01 ? 1 : 8;
@@ -289,8 +289,10 @@ TEST_F(DeviceBlocks, KeepsTheLanesTraceUnderAServo) {
   RveBatch batch = clones(dense, 2);
   run_lanes(batch, requests, settings);
   const std::vector<ServoSample> lanes = samples;
+  const int one_too_few = batch.trial.contact_count(1) - 1;
+  ASSERT_GT(one_too_few, static_cast<int>(dense.histories.size())) << "the list is too full from the start";
   ASSERT_EQ(lanes.size(), 30U);
-  for (const Blocks& blocks : {Blocks{}, Blocks{BlockKind::in_memory, 2, 88}, Blocks{BlockKind::in_registers, 7}}) {
+  for (const Blocks& blocks : {Blocks{}, Blocks{BlockKind::in_memory, 2, one_too_few}, Blocks{BlockKind::in_registers, 7}}) {
     SCOPED_TRACE(name_of(blocks));
     samples.clear();
     const auto held = hold(batch, Precision::float64, blocks);
