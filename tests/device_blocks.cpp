@@ -12,13 +12,13 @@ std::unique_ptr<device::ResidentRves> hold(const RveBatch& batch, Precision prec
   InMemory::first_pairs = blocks.first_pairs;
   switch (blocks.kind) {
     case BlockKind::in_memory:
-      return device::hold<InMemory>(batch, precision);
+      return device::hold<InMemory>(device::plain(batch), precision);
     case BlockKind::in_registers:
-      return device::hold<InRegisters>(batch, precision);
+      return device::hold<InRegisters>(device::plain(batch), precision);
     case BlockKind::serial:
       break;
   }
-  return device::hold<device::HostBackend>(batch, precision);
+  return device::hold<device::HostBackend>(device::plain(batch), precision);
 }
 
 }  // namespace voussoir::kernels

@@ -81,8 +81,9 @@ class ThreadBarrier {
 /// One thread of a block.
 class ThreadBlock {
  public:
-  ThreadBlock(ThreadBarrier& barrier, int thread, int threads)
-      : barrier_(&barrier), thread_(thread), threads_(threads) {}
+  ThreadBlock(ThreadBarrier& barrier, int thread, int threads, char* fast)
+      : barrier_(&barrier), thread_(thread), threads_(threads), fast_(fast) {}
+  [[nodiscard]] char* fast_memory() const { return fast_; }
   [[nodiscard]] int thread() const { return thread_; }
   [[nodiscard]] int threads() const { return threads_; }
   void barrier(const std::source_location& from = std::source_location::current()) const {
@@ -94,6 +95,7 @@ class ThreadBlock {
  private:
   ThreadBarrier* barrier_;
   int thread_, threads_;
+  char* fast_;
 };
 
 /// A device whose blocks are host threads. Its memory is never zero where it was not written to.
@@ -139,18 +141,19 @@ struct ThreadBackend {
   template <class Law, class Drive, class OwnPlan, bool classes>
   static void launch_with(const BlockBatch<real_of<typename Law::Value>, Drive>& batch, const EngineSettings& settings,
                           int blocks, int pairs) {
-    const BlockMemory<Law, Drive, OwnPlan> sizes(nullptr, nullptr, batch.packings.stride, pairs, threads);
+    using Run = BlockRun<Law, Drive, ThreadBlock, OwnPlan, classes>;
+    const int grains = batch.packings.stride;
+    const BlockMemory<Law, Drive, OwnPlan> sizes(no_memory(), no_memory(), grains, pairs, threads);
     ThreadBarrier barrier(threads);
     // One block after another, each with memory of its own, as a block on a GPU finds it: not cleared.
     for (int number = 0; number < blocks; ++number) {
-      void *const fast = allocate(sizes.fast_bytes), *const slow = allocate(sizes.slow_bytes);
+      char *const fast = static_cast<char*>(allocate(sizes.fast_bytes)),
+                 *const slow = static_cast<char*>(allocate(sizes.slow_bytes));
       std::vector<std::thread> all;
       for (int t = 0; t < threads; ++t) {
         all.emplace_back([&, t] {
-          BlockRun<Law, Drive, ThreadBlock, OwnPlan, classes> run(ThreadBlock(barrier, t, threads), batch, settings,
-                                                                  number, static_cast<char*>(fast),
-                                                                  static_cast<char*>(slow), pairs);
-          advance_block(run);
+          advance_block<Run>(
+              {ThreadBlock(barrier, t, threads, fast), &batch, &settings, slow, number, grains, pairs});
         });
       }
       for (std::thread& t : all) t.join();

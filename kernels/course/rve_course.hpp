@@ -53,20 +53,26 @@ KOKKOS_INLINE_FUNCTION void round_motion(const RveCourse<Drive>& course, CellMot
   m.alive[l] = course.running ? real(1) : real(0);
 }
 
-/// Moves the cell, F <- exp(rate) F in double, and rounds its motion for the sweep. The cell of a course that is not
-/// running stands still.
+/// Moves the cell, F <- exp(rate) F in double, while its rate stays as it is, and rounds its motion for the sweep. The
+/// cell of a course that is not running stands still.
 template <class V, class Drive>
-KOKKOS_INLINE_FUNCTION void move_cell(RveCourse<Drive>& course, int step, CellMotion<V>& m, std::size_t l) {
+KOKKOS_INLINE_FUNCTION void carry_cell(RveCourse<Drive>& course, int step, CellMotion<V>& m, std::size_t l) {
   using real = real_of<V>;
   if (!course.running) course.rate = course.e = Mat2{};
   course.f_minus_i = course.e + course.f_minus_i + course.e * course.f_minus_i;
   m.d_xy[l] = static_cast<real>(0.5 * (course.rate.xy + course.rate.yx));
   m.d_difference[l] = static_cast<real>(course.rate.yy - course.rate.xx);
   course.rotation += 0.5 * (course.rate.yx - course.rate.xy);
-  if (course.running) {
-    course.steps = step + 1;
-    set_rate(course, step + 1);
-  }
+  if (course.running) course.steps = step + 1;
+  round_motion(course, m, l);
+}
+
+/// As carry_cell, and sets the rate of the coming motion.
+template <class V, class Drive>
+KOKKOS_INLINE_FUNCTION void move_cell(RveCourse<Drive>& course, int step, CellMotion<V>& m, std::size_t l) {
+  carry_cell(course, step, m, l);
+  if (!course.running) return;
+  set_rate(course, step + 1);
   round_motion(course, m, l);
 }
 

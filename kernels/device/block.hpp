@@ -2,16 +2,28 @@
 /// A block: the threads that advance one RVE together. The engine of GPUs is a template over it, so that the same code
 /// runs on a GPU (cuda/) and on a host, where one thread is a block (`SerialBlock`) or, in tests, several threads are.
 ///
-/// A block has the functions thread(), threads() and barrier(). After a barrier, every thread sees what the others
-/// wrote before it.
+/// A block has the functions thread(), threads(), fast_memory() and barrier(). After a barrier, every thread sees what
+/// the others wrote before it.
 
 #include <Kokkos_Core.hpp>
 #include <cstddef>
+#include <cstdint>
+
+/// Marks functions outside the loop of steps. A GPU's compiler must not inline them, because the loop's own numbers
+/// would have to leave the registers for theirs.
+#if defined(__CUDACC__)
+#define VOUSSOIR_COLD_FUNCTION __host__ __device__ __noinline__
+#else
+#define VOUSSOIR_COLD_FUNCTION inline
+#endif
 
 namespace voussoir::kernels::device {
 
 /// One thread that is a block by itself.
 struct SerialBlock {
+  char* memory;
+
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION char* fast_memory() const { return memory; }
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION static constexpr int thread() { return 0; }
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION static constexpr int threads() { return 1; }
   KOKKOS_FORCEINLINE_FUNCTION static void barrier() {}
@@ -53,6 +65,9 @@ class Slots<T, 0> {
   int stride_, size_;
 };
 
+/// Stands for a memory of which only the size is wanted.
+[[nodiscard]] inline char* no_memory() { return reinterpret_cast<char*>(std::uintptr_t(4096)); }
+
 /// Four or two numbers that are loaded and stored at once.
 template <class real>
 struct alignas(4 * sizeof(real)) Four {
@@ -63,7 +78,7 @@ struct alignas(2 * sizeof(real)) Two {
   real x, y;
 };
 
-/// Gives out pieces of a memory, one after another. With a null pointer it only counts their bytes.
+/// Gives out pieces of a memory, one after another.
 class Carver {
  public:
   KOKKOS_INLINE_FUNCTION explicit Carver(char* memory) : memory_(memory) {}
@@ -73,7 +88,7 @@ class Carver {
     constexpr std::size_t least = 16;
     constexpr std::size_t alignment = alignof(T) > least ? alignof(T) : least;
     used_ = (used_ + alignment - 1) / alignment * alignment;
-    T* const out = memory_ == nullptr ? nullptr : reinterpret_cast<T*>(memory_ + used_);
+    T* const out = reinterpret_cast<T*>(memory_ + used_);
     used_ += sizeof(T) * static_cast<std::size_t>(count);
     return out;
   }

@@ -6,9 +6,15 @@
 
 namespace voussoir::kernels::device {
 
-/// Judges a measuring step and moves the cell on. One thread calls it.
+/// Whether the state is judged in a step.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void judge_step(Run& run, int step, const SweepSums<SingleLane<double>>& sums) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION bool measures_in(const Run& run, int step) {
+  return guards(run.settings, step) || run.course().drive.looks(step);
+}
+
+/// Judges a measuring step. One thread calls it.
+template <class Run>
+KOKKOS_INLINE_FUNCTION void judge_step(const Run& run, int step, const SweepSums<SingleLane<double>>& sums) {
   auto& course = run.course();
   Measurement seen;
   const Outcome outcome = judge(course, step, run.settings, sums, 0, run.at.control->cell, run.scales(), seen);
@@ -22,51 +28,89 @@ KOKKOS_INLINE_FUNCTION void judge_step(Run& run, int step, const SweepSums<Singl
   }
 }
 
-/// One step, after which the cell's next motion is ready.
-template <Sweep mode, class Run>
-KOKKOS_FORCEINLINE_FUNCTION void take_step(Run& run, int step) {
-  auto* const motion = run.at.control->motion;
-  const CellMotion<typename Run::V> now = motion[step & 1];
-  StepSums sums;
-  press_pairs<mode>(run, now, sums);
-  run.block.barrier();
-  if (mode == Sweep::advance && run.block.thread() == run.block.threads() - 1)
-    move_cell(run.course(), step + 1, motion[(step + 1) & 1], 0);
-  move_grains<mode>(run, now, sums);
-  run.block.barrier();
-  if constexpr (mode == Sweep::measure) {
-    const auto all = sums_of_all(run, sums);
-    alone(run, [&] {
-      judge_step(run, step, all);
-      if (run.course().running) move_cell(run.course(), step + 1, motion[(step + 1) & 1], 0);
-    });
+/// The last step of the segment that begins with `step`: the first one that is judged, or after which the list is looked
+/// at or the cell's rate changes. One thread calls it.
+template <class Run>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION int end_of_segment(const Run& run, int step) {
+  const auto& course = run.course();
+  for (int last = step;; ++last) {
+    if (measures_in(run, last) || last + 1 >= course.next_list_check || !(course.drive.rate(last + 2) == course.rate))
+      return last;
   }
 }
 
-/// Advances the RVE until its course ends.
+/// The work before a segment: the list, and where the segment ends. Returns the number of pairs.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void follow_course(Run& run) {
-  auto* const motion = run.at.control->motion;
+[[nodiscard]] VOUSSOIR_COLD_FUNCTION int begin_segment(const typename Run::Seat seat, const int step) {
+  const Run run(seat);
+  int listed = seat.listed;
+  if (step == 0) {
+    alone(run, [&] {
+      if (run.course().running) move_cell(run.course(), 0, run.at.control->motion[0], 0);
+    });
+  }
+  if (run.course().running && step >= run.course().next_list_check) listed = check_list<Run>(seat, step);
   alone(run, [&] {
-    if (run.course().running) move_cell(run.course(), 0, motion[0], 0);
+    if (run.course().running) run.at.control->last = end_of_segment(run, step);
   });
-  for (int step = 0; run.course().running; ++step) {
-    if (step >= run.course().next_list_check) {
-      check_list(run, step, motion[step & 1]);
-      if (!run.course().running) break;
-    }
-    // The course is written to only after the barrier that follows the pairs.
-    if (guards(run.settings, step) || run.course().drive.looks(step)) {
-      take_step<Sweep::measure>(run, step);
-    } else {
-      take_step<Sweep::advance>(run, step);
-    }
+  return listed;
+}
+
+/// The work after a segment's last step: it is judged, and the cell moved on.
+template <class Run>
+VOUSSOIR_COLD_FUNCTION void end_segment(const typename Run::Seat seat, const int step,
+                                        const StepSums<typename Run::real> sums) {
+  const Run run(seat);
+  SweepSums<SingleLane<double>> all;
+  const bool measures = measures_in(run, step);
+  if (measures) all = sums_of_all(run, sums);
+  alone(run, [&] {
+    if (measures) judge_step(run, step, all);
+    if (run.course().running) move_cell(run.course(), step + 1, run.at.control->motion[(step + 1) & 1], 0);
+  });
+}
+
+/// Takes the steps of a segment; returns the last one, to which the sums belong. Nothing is called here, because registers would have to be
+/// emptied for it.
+template <class Run>
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int run_segment(const Run& run, int step,
+                                                          StepSums<typename Run::real>& sums) {
+  BlockSlots<Run> held(run);
+  held.load(run);
+  const int last = run.at.control->last;
+  auto* const motion = run.at.control->motion;
+  for (; step < last; ++step) {
+    press_pairs<Sweep::advance>(run, held, motion[step & 1], sums);
+    run.block.barrier();
+    if (run.block.thread() == run.block.threads() - 1)
+      carry_cell(run.course(), step + 1, motion[(step + 1) & 1], 0);
+    move_grains<Sweep::advance>(run, motion[step & 1], sums);
+    run.block.barrier();
+  }
+  press_pairs<Sweep::measure>(run, held, motion[last & 1], sums);
+  run.block.barrier();
+  move_grains<Sweep::measure>(run, motion[last & 1], sums);
+  held.store(run);
+  return last;
+}
+
+/// Advances the RVE until its course ends, segment by segment.
+template <class Run>
+KOKKOS_FORCEINLINE_FUNCTION void follow_course(typename Run::Seat& seat) {
+  for (int step = 0;; ++step) {
+    seat.listed = begin_segment<Run>(seat, step);
+    const Run run(seat);
+    if (!run.course().running) return;
+    StepSums<typename Run::real> sums;
+    step = run_segment(run, step, sums);
+    end_segment<Run>(seat, step, sums);
   }
 }
 
 /// Writes the RVE's report and trial state. An RVE that failed has no trial state.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void finish(Run& run) {
+VOUSSOIR_COLD_FUNCTION void finish(const typename Run::Seat seat) {
+  Run run(seat);
   RveReport& report = run.batch.reports[run.number];
   CellMotion<typename Run::V>& cell = run.at.control->motion[0];
   alone(run, [&] { begin_report(run.course(), report); });
@@ -74,22 +118,20 @@ KOKKOS_INLINE_FUNCTION void finish(Run& run) {
   answer(run, cell);
   if (is_failure(report.status)) return;
   const double volume = report.cell_area * run.scales().thickness;
-  const CellMotion<typename Run::V> last = cell;
-  const bool stored = store(run, report.contacts, last);
-  if (!stored) {
+  if (!store(run, report.contacts, cell)) {
     run.block.barrier();  // all threads have read the status
     return alone(run, [&] { report.status = RveStatus::neighbour_overflow; });
   }
-  if (run.settings.tangent != TangentKind::contact) find_tangent(run, last, volume);
+  if (run.settings.tangent != TangentKind::contact) find_tangent<Run>(seat, volume);
 }
 
 /// Brings the block's RVE from its committed to its trial state.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void advance_block(Run& run) {
+KOKKOS_FORCEINLINE_FUNCTION void advance_block(typename Run::Seat seat) {
   const FlushSubnormals flush;
-  restore(run);
-  follow_course(run);
-  finish(run);
+  seat.listed = restore<Run>(seat);
+  follow_course<Run>(seat);
+  finish<Run>(seat);
 }
 
 }  // namespace voussoir::kernels::device

@@ -49,7 +49,7 @@ struct DeviceState {
   double* contact_history;
 };
 
-[[nodiscard]] KOKKOS_INLINE_FUNCTION DeviceState state_of(const DeviceStates& all, int slot, int rve) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION DeviceState state_of(const DeviceStates& all, int slot, int rve) {
   const std::size_t k = all.place(slot, rve);
   const auto grains = static_cast<std::size_t>(all.grains), contacts = static_cast<std::size_t>(all.contacts);
   return {all.position + 2 * grains * k,

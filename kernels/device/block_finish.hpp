@@ -9,18 +9,20 @@ namespace voussoir::kernels::device {
 
 /// Computes all pairs at rest, and their sums, which thread 0 alone receives.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION Homogenised<SingleLane<double>> homogenise(Run& run,
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Homogenised<SingleLane<double>> homogenise(Run& run,
                                                                                 const CellMotion<typename Run::V>& cell) {
   using V = typename Run::V;
   using D = SingleLane<double>;
   enum : int { contacts = 4, overlaps = 5, sums = 6 };
   double own[sums] = {}, tangent[6] = {}, largest[1] = {0};
-  each_pair(run, [&](int k, int) {
-    const int i = first_of(run.key[k]), j = second_of(run.key[k]);
+  each_pair(run, [&](int p) {
+    const int i = first_of(run.at.keys[p]), j = second_of(run.at.keys[p]);
     const auto ri = run.at.rim[i].y, rj = run.at.rim[j].y;
-    const PairGeometry<V> at = geometry_in(run, k, cell);
+    const PairGeometry<V> at = geometry_of_pair(run, p, cell);
     Homogenised<V> one;
-    add_pair(one, rest(run.pair[k], shape_of(run, i, j, ri, rj), at, cell, V(ri)), at);
+    PairLanes<typename Run::Law> pair = pair_of(run, p);
+    add_pair(one, rest(pair, shape_of(run, i, j, ri, rj), at, cell, V(ri)), at);
+    set_history(run, p, pair.history);
     own[0] += static_cast<double>(one.sums.stress_xx[0]);
     own[1] += static_cast<double>(one.sums.stress_xy[0]);
     own[2] += static_cast<double>(one.sums.stress_yx[0]);
@@ -47,17 +49,17 @@ template <class Run>
 
 /// Stores the contacts at the final positions with their histories.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void store_contacts(Run& run, const DeviceState& to, const CellMotion<typename Run::V>& cell) {
+KOKKOS_FORCEINLINE_FUNCTION void store_contacts(Run& run, const DeviceState& to, const CellMotion<typename Run::V>& cell) {
   using Law = typename Run::Law;
   int* const place = reinterpret_cast<int*>(run.at.action);
-  each_pair(run, [&](int k, int p) { place[p] = geometry_in(run, k, cell).gap[0] < 0 ? 1 : 0; });
+  each_pair(run, [&](int p) { place[p] = geometry_of_pair(run, p, cell).gap[0] < 0 ? 1 : 0; });
   run.block.barrier();
   const int all = sums_before(run, place, run.listed);
-  each_pair(run, [&](int k, int p) {
+  each_pair(run, [&](int p) {
     const int c = place[p];
     if ((p + 1 < run.listed ? place[p + 1] : all) == c) return;
-    to.contact_key[c] = run.key[k];
-    write_history<Law>(run.pair[k].history, 0, [&](int q, const auto& number) {
+    to.contact_key[c] = run.at.keys[p];
+    write_history<Law>(pair_of(run, p).history, 0, [&](int q, const auto& number) {
       to.contact_history[c * history_size<Law> + q] = static_cast<double>(number);
     });
   });
@@ -67,12 +69,12 @@ KOKKOS_INLINE_FUNCTION void store_contacts(Run& run, const DeviceState& to, cons
 
 /// Stores the final configuration as trial state. False where contacts have no room or the cell has become too narrow.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION bool store(Run& run, int contacts, const CellMotion<typename Run::V>& cell) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION bool store(Run& run, int contacts, const CellMotion<typename Run::V>& cell) {
   const DeviceState from = run.committed(), to = run.trial();
   if (contacts > run.batch.states.contacts) return false;
   store_contacts(run, to, cell);
-  each_grain(run, [&](int k, int i) {
-    to.rotation[i] = from.rotation[i] + run.course().rotation + static_cast<double>(run.own[k].rotation);
+  each_grain(run, [&](int i) {
+    to.rotation[i] = from.rotation[i] + run.course().rotation + static_cast<double>(run.at.rotation[i]);
   });
   move_positions(run, to.position);
   if (!reduce_cell(run, to.position)) return false;
@@ -88,13 +90,13 @@ template <class Run>
 /// Notes by how much grains may have come nearer, which decides how long the candidates hold, and tells all threads
 /// whether all grains' motions are finite.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION bool note_motion(Run& run) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION bool note_motion(Run& run) {
   double numbers[2] = {0, 0};
-  each_grain(run, [&](int k, int i) {
+  each_grain(run, [&](int i) {
     const auto m = run.at.motion[i];
     const double x = static_cast<double>(m.x), y = static_cast<double>(m.y);
     numbers[0] = Largest()(numbers[0], x * x + y * y);
-    if (!std::isfinite(x + y + static_cast<double>(run.own[k].rotation))) numbers[1] = 1;
+    if (!std::isfinite(x + y + static_cast<double>(run.at.rotation[i]))) numbers[1] = 1;
   });
   reduce_for_all<Largest>(run, numbers);
   const DeviceCandidates& of = run.batch.candidates;
@@ -109,7 +111,7 @@ template <class Run>
 
 /// Reports stress, tangent and status of an RVE that was not lost on the way.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void answer(Run& run, CellMotion<typename Run::V>& cell) {
+KOKKOS_FORCEINLINE_FUNCTION void answer(Run& run, CellMotion<typename Run::V>& cell) {
   const bool finite = note_motion(run);
   alone(run, [&] { round_motion(run.course(), cell, 0); });
   const Homogenised<SingleLane<double>> sums = homogenise(run, cell);

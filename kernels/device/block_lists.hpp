@@ -20,7 +20,7 @@ struct KeptContacts {
 };
 
 /// The first of keys[0 .. count - 1], which ascend, that is not below `key`.
-[[nodiscard]] KOKKOS_INLINE_FUNCTION int lower_bound(const std::uint32_t* keys, int count, std::uint32_t key) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int lower_bound(const std::uint32_t* keys, int count, std::uint32_t key) {
   int first = 0, last = count;
   while (first < last) {
     const int middle = (first + last) / 2;
@@ -35,7 +35,7 @@ struct KeptContacts {
 
 /// Sorts a few numbers in ascending order.
 template <class Number>
-KOKKOS_INLINE_FUNCTION void sort_few(Number* numbers, int count) {
+KOKKOS_FORCEINLINE_FUNCTION void sort_few(Number* numbers, int count) {
   for (int k = 1; k < count; ++k) {
     const Number moved = numbers[k];
     int to = k;
@@ -51,28 +51,28 @@ struct Bins {
   int columns, rows;
 
   /// @param reach of the longest candidate [m]; @param most bins
-  KOKKOS_INLINE_FUNCTION Bins(const Mat2& h, double reach, int most) : cell(h) {
+  KOKKOS_FORCEINLINE_FUNCTION Bins(const Mat2& h, double reach, int most) : cell(h) {
     columns = fitting(cell.height(0), reach, most);
     rows = fitting(cell.height(1), reach, most / columns);
   }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION static int fitting(double height, double reach, int most) {
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION static int fitting(double height, double reach, int most) {
     const double fit = std::floor(height / reach);
     return fit < 1 ? 1 : (fit > most ? (most < 1 ? 1 : most) : static_cast<int>(fit));
   }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION int count() const { return columns * rows; }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION static int place(double fraction, int bins) {
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int count() const { return columns * rows; }
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION static int place(double fraction, int bins) {
     const int at = static_cast<int>((fraction - std::floor(fraction)) * bins);
     return at < bins ? at : bins - 1;
   }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION int column_of(double x, double y) const {
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int column_of(double x, double y) const {
     return place(cell.inverse.xx * x + cell.inverse.xy * y, columns);
   }
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION int row_of(double x, double y) const {
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int row_of(double x, double y) const {
     return place(cell.inverse.yx * x + cell.inverse.yy * y, rows);
   }
   /// Calls visit(bin) once for each bin that may hold grains near a point of the given column and row.
   template <class Visit>
-  KOKKOS_INLINE_FUNCTION void around(int column, int row, const Visit& visit) const {
+  KOKKOS_FORCEINLINE_FUNCTION void around(int column, int row, const Visit& visit) const {
     for (int b = rows > 2 ? -1 : 0; b < (rows > 1 ? 2 : 1); ++b) {
       const int r = (row + b + rows) % rows;
       for (int a = columns > 2 ? -1 : 0; a < (columns > 1 ? 2 : 1); ++a) visit(r * columns + (column + a + columns) % columns);
@@ -86,7 +86,7 @@ struct BinScratch {
   int* grain;               ///< bin by bin
 
   template <class Run>
-  KOKKOS_INLINE_FUNCTION explicit BinScratch(const Run& run)
+  KOKKOS_FORCEINLINE_FUNCTION explicit BinScratch(const Run& run)
       : begin(reinterpret_cast<int*>(run.at.action)),
         next(begin + run.grains + 1),
         row(next + run.grains),
@@ -95,7 +95,7 @@ struct BinScratch {
 
 /// Sorts the grains into bins.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void fill_bins(const Run& run, const Bins& bins, const BinScratch& scratch,
+KOKKOS_FORCEINLINE_FUNCTION void fill_bins(const Run& run, const Bins& bins, const BinScratch& scratch,
                                       const double* position) {
   const auto bin_of = [&](int i) {
     const double x = position[2 * i], y = position[2 * i + 1];
@@ -122,7 +122,7 @@ template <class Run>
 
 /// Finds the candidates of the RVE at its positions. @param position in the trial state; @param skin [m]
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION Listing find_candidates(const Run& run, const double* position, double skin) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Listing find_candidates(const Run& run, const double* position, double skin) {
   const DeviceCandidates& to = run.batch.candidates;
   std::uint32_t* const keys = to.key + static_cast<std::size_t>(run.rve) * static_cast<std::size_t>(to.capacity);
   const Bins bins(run.at.control->cell, 2.0 * run.scales().largest_radius + skin, run.grains);
@@ -158,7 +158,7 @@ template <class Run>
 
 /// Makes sure that the candidates hold for the RVE's committed state.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION Listing ensure_candidates(const Run& run, const double* position) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Listing ensure_candidates(const Run& run, const double* position) {
   const DeviceCandidates& to = run.batch.candidates;
   const double wide = candidate_skin * run.scales().skin;
   // Without candidates, what was spent is not known.
@@ -173,17 +173,16 @@ template <class Run>
   return Listing::done;
 }
 
-/// Takes the candidates within the skin into the slots of the threads.
+/// Lists the candidates within the skin.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION Listing choose_pairs(Run& run, const double* position) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Listing choose_pairs(Run& run, const double* position) {
   const DeviceCandidates& from = run.batch.candidates;
   const std::uint32_t* const keys = from.key +
                                     static_cast<std::size_t>(run.rve) * static_cast<std::size_t>(from.capacity);
   const int candidates = from.count[run.rve];
   if (candidates > most_candidates(run)) return Listing::too_many;
-  const int room = candidates > run.grains ? candidates : run.grains;
   int* const flag = reinterpret_cast<int*>(run.at.action);
-  auto* const chosen = reinterpret_cast<std::uint32_t*>(flag + room);
+  std::uint32_t* const chosen = run.at.keys;
   const Cell cell(run.at.control->cell);
   const double skin = run.scales().skin;
   const auto is_listed = [&](std::uint32_t key) {
@@ -202,7 +201,6 @@ template <class Run>
     if (next > flag[c]) chosen[flag[c]] = keys[c];
   });
   run.block.barrier();
-  each_pair(run, [&](int k, int p) { run.key[k] = chosen[p]; });
   each(run, run.grains + 1, [&](int i) {
     run.at.row[i] = static_cast<typename Run::Index>(lower_bound(chosen, all, pair_key(i, 0)));
   });
@@ -213,14 +211,14 @@ template <class Run>
 
 /// Lists for each grain its pairs with grains of smaller numbers, in the order of the list.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void list_incoming(Run& run) {
+KOKKOS_FORCEINLINE_FUNCTION void list_incoming(Run& run) {
   using Index = typename Run::Index;
   int* const next = reinterpret_cast<int*>(run.at.action);
-  each_pair(run, [&](int k, int) { Kokkos::atomic_inc(&next[second_of(run.key[k])]); });
+  each_pair(run, [&](int p) { Kokkos::atomic_inc(&next[second_of(run.at.keys[p])]); });
   run.block.barrier();
   static_cast<void>(sums_before(run, next, run.grains));
-  each_pair(run, [&](int k, int p) {
-    run.at.incoming[Kokkos::atomic_fetch_add(&next[second_of(run.key[k])], 1)] = static_cast<Index>(p);
+  each_pair(run, [&](int p) {
+    run.at.incoming[Kokkos::atomic_fetch_add(&next[second_of(run.at.keys[p])], 1)] = static_cast<Index>(p);
   });
   run.block.barrier();
   each(run, run.grains, [&](int i) {
@@ -234,7 +232,7 @@ KOKKOS_INLINE_FUNCTION void list_incoming(Run& run) {
 /// Makes the list at the RVE's positions; branches and gaps are computed in double and rounded once. A kept contact
 /// that is not listed has opened by more than the skin and is dropped.
 template <class Run, class Number>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION Listing list_pairs(Run& run, const double* position,
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Listing list_pairs(Run& run, const double* position,
                                                         const KeptContacts<Number>& kept) {
   using Law = typename Run::Law;
   using V = typename Run::V;
@@ -242,8 +240,8 @@ template <class Run, class Number>
   if (choose_pairs(run, position) == Listing::too_many) return Listing::too_many;
   list_incoming(run);
   const Cell cell(run.at.control->cell);
-  each_pair(run, [&](int k, int) {
-    const std::uint32_t key = run.key[k];
+  each_pair(run, [&](int p) {
+    const std::uint32_t key = run.at.keys[p];
     const int i = first_of(key), j = second_of(key);
     const PairReference at = pair_reference(position[2 * j] - position[2 * i], position[2 * j + 1] - position[2 * i + 1],
                                             run.radius(i) + run.radius(j), cell);
@@ -252,7 +250,7 @@ template <class Run, class Number>
     const int c = lower_bound(kept.key, kept.count, key);
     if (c < kept.count && kept.key[c] == key)
       read_history<Law>(pair.history, 0, [&](int q) { return kept.history[c * history_size<Law> + q]; });
-    run.pair[k] = pair;
+    set_pair(run, p, pair);
   });
   run.block.barrier();
   return Listing::done;

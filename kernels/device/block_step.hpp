@@ -14,10 +14,10 @@
 namespace voussoir::kernels::device {
 
 /// The sums of a measuring step over the pairs and grains of one thread.
+template <class real>
 struct StepSums {
-  enum : int { stress_xx, stress_xy, stress_yx, stress_yy, force_squared, count };
-  double numbers[count] = {};
-  double largest_measure = 0;
+  real stress_xx = 0, stress_xy = 0, stress_yx = 0, stress_yy = 0, force_squared = 0;
+  real largest_measure = 0;
 };
 
 /// The constants of pair (i, j) in the sweep's precision.
@@ -28,60 +28,70 @@ template <class Run>
   return pair_shape<typename Run::Law>(j, run.material(i), radius_i, run.material(j), radius_j);
 }
 
-/// Geometry of the pair in slot k.
+/// Geometry of pair p, outside the loop of steps.
 template <class Run>
-[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PairGeometry<typename Run::V> geometry_in(
-    Run& run, int k, const CellMotion<typename Run::V>& cell) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PairGeometry<typename Run::V> geometry_of_pair(
+    const Run& run, int p, const CellMotion<typename Run::V>& cell) {
   using V = typename Run::V;
-  const auto& from = run.at.motion[first_of(run.key[k])];
-  const auto& to = run.at.motion[second_of(run.key[k])];
-  return geometry_of(run.pair[k], cell, V(to.x - from.x), V(to.y - from.y));
+  const auto& from = run.at.motion[first_of(run.at.keys[p])];
+  const auto& to = run.at.motion[second_of(run.at.keys[p])];
+  return geometry_of(pair_of(run, p), cell, V(to.x - from.x), V(to.y - from.y));
 }
 
 /// Computes contacts and law of all pairs.
 template <Sweep mode, class Run>
-KOKKOS_FORCEINLINE_FUNCTION void press_pairs(Run& run, const CellMotion<typename Run::V>& cell, StepSums& sums) {
+KOKKOS_FORCEINLINE_FUNCTION void press_pairs(const Run& run, BlockSlots<Run>& held,
+                                             const CellMotion<typename Run::V>& motion,
+                                             StepSums<typename Run::real>& sums) {
   using V = typename Run::V;
   using real = typename Run::real;
-  each_pair(run, [&](int k, int p) {
-    const int i = first_of(run.key[k]), j = second_of(run.key[k]);
+  const CellMotion<V> cell = motion;
+  each_held(run, held.pair, run.listed, [&](int k, int p) {
+    PairLanes<typename Run::Law> pair = pair_of(run, p, held.pair[k]);
+    const int i = first_of(run.at.keys[p]), j = second_of(run.at.keys[p]);
     const Four<real> from = run.at.motion[i], to = run.at.motion[j];
-    const PairGeometry<V> now = geometry_of(run.pair[k], cell, V(to.x - from.x), V(to.y - from.y));
+    const PairGeometry<V> now = geometry_of(pair, cell, V(to.x - from.x), V(to.y - from.y));
     if (!(now.gap[0] < 0)) {
-      run.pair[k].history = no_history<typename Run::Law>();
+      held.pair[k].history = no_history<typename Run::Law>();
       run.at.action[p] = {0, 0, 0, 0};
       return;
     }
     const Two<real> rim_i = run.at.rim[i], rim_j = run.at.rim[j];
     const auto shape = shape_of(run, i, j, rim_i.y, rim_j.y);
-    const PairAction<V> on = act(run.pair[k], shape, now, cell, V(to.z - from.z), V(to.w - from.w),
+    const PairAction<V> on = act(pair, shape, now, cell, V(to.z - from.z), V(to.w - from.w),
                                  rim_of(V(rim_i.y), V(rim_i.x)), V(rim_j.x));
+    held.pair[k].history = pair.history;
     run.at.action[p] = {on.force_x[0], on.force_y[0], on.torque_i[0], on.torque_j[0]};
     if constexpr (mode == Sweep::measure) {
-      const double fx = static_cast<double>(on.force_x[0]), fy = static_cast<double>(on.force_y[0]);
-      const double bx = static_cast<double>(now.branch_x[0]), by = static_cast<double>(now.branch_y[0]);
-      sums.numbers[StepSums::stress_xx] += fx * bx;
-      sums.numbers[StepSums::stress_xy] += fx * by;
-      sums.numbers[StepSums::stress_yx] += fy * bx;
-      sums.numbers[StepSums::stress_yy] += fy * by;
-      const double measure = static_cast<double>(overlap_measure(now, shape)[0]);
-      sums.largest_measure = Largest()(sums.largest_measure, measure);
+      sums.stress_xx += on.force_x[0] * now.branch_x[0];
+      sums.stress_xy += on.force_x[0] * now.branch_y[0];
+      sums.stress_yx += on.force_y[0] * now.branch_x[0];
+      sums.stress_yy += on.force_y[0] * now.branch_y[0];
+      const real measure = overlap_measure(now, shape)[0];
+      sums.largest_measure = sums.largest_measure < measure ? measure : sums.largest_measure;
     }
   });
+}
+
+/// Calls body(k) for k = first .. end - 1, one after another.
+template <class Body>
+KOKKOS_FORCEINLINE_FUNCTION void in_turn(int first, int end, const Body& body) {
+#if defined(__CUDA_ARCH__)
+#pragma unroll 1
+#endif
+  for (int k = first; k < end; ++k) body(k);
 }
 
 /// Calls body(p) for the pairs of grain i with grains of smaller numbers.
 template <class Run, class Body>
 KOKKOS_FORCEINLINE_FUNCTION void each_incoming(const Run& run, int i, const Body& body) {
-  const int end = static_cast<int>(run.at.incoming_end[i]);
-  for (int q = i == 0 ? 0 : static_cast<int>(run.at.incoming_end[i - 1]); q < end; ++q)
-    body(static_cast<int>(run.at.incoming[q]));
+  const int first = i == 0 ? 0 : static_cast<int>(run.at.incoming_end[i - 1]);
+  in_turn(first, static_cast<int>(run.at.incoming_end[i]), [&](int q) { body(static_cast<int>(run.at.incoming[q])); });
 }
 /// Calls body(p) for the pairs of grain i with grains of larger numbers.
 template <class Run, class Body>
 KOKKOS_FORCEINLINE_FUNCTION void each_own(const Run& run, int i, const Body& body) {
-  const int end = static_cast<int>(run.at.row[i + 1]);
-  for (int p = static_cast<int>(run.at.row[i]); p < end; ++p) body(p);
+  in_turn(static_cast<int>(run.at.row[i]), static_cast<int>(run.at.row[i + 1]), body);
 }
 
 /// The force on a grain, and its torque as spin: the actions of its pairs, gathered.
@@ -107,40 +117,42 @@ template <class Run>
 
 /// Moves all grains.
 template <Sweep mode, class Run>
-KOKKOS_FORCEINLINE_FUNCTION void move_grains(Run& run, const CellMotion<typename Run::V>& cell, StepSums& sums) {
+KOKKOS_FORCEINLINE_FUNCTION void move_grains(const Run& run, const CellMotion<typename Run::V>& motion,
+                                             StepSums<typename Run::real>& sums) {
   using V = typename Run::V;
   using real = typename Run::real;
+  const CellMotion<V> cell = motion;
   const V damping(static_cast<real>(run.scales().local_damping));
-  each_grain(run, [&](int k, int i) {
+  each_grain(run, [&](int i) {
     const GrainDofs<V> force = gather(run, i);
-    GrainOwn<real>& own = run.own[k];
     const Four<real> m = run.at.motion[i];
-    const Two<real> rim = run.at.rim[i];
-    GrainLanes<V> grain{V(m.x), V(m.y), V(m.z), V(m.w), V(rim.x), V(0), V(0), V(0), V(own.rotation)};
-    const GrainShape<real> shape{rim.y, own.mobility, own.rotational_mobility, real(0.5) * own.mobility,
-                                 real(0.5) * own.rotational_mobility};
+    const Two<real> rim = run.at.rim[i], mobility = run.at.mobility[i];
+    GrainLanes<V> grain{V(m.x), V(m.y), V(m.z), V(m.w), V(rim.x), V(0), V(0), V(0), V(run.at.rotation[i])};
+    const GrainShape<real> shape{rim.y, mobility.x, mobility.y, real(0.5) * mobility.x, real(0.5) * mobility.y};
     integrate(grain, shape, cell, damping, force.x, force.y, force.spin);
     run.at.motion[i] = {grain.u_x[0], grain.u_y[0], grain.w_x[0], grain.w_y[0]};
     run.at.rim[i] = {grain.spin[0], rim.y};
-    own.rotation = grain.rotation[0];
+    run.at.rotation[i] = grain.rotation[0];
     if constexpr (mode == Sweep::measure) {
-      const double fx = static_cast<double>(force.x[0]), fy = static_cast<double>(force.y[0]);
-      sums.numbers[StepSums::force_squared] += fx * fx + fy * fy;
+      sums.force_squared += force.x[0] * force.x[0] + force.y[0] * force.y[0];
     }
   });
 }
 
 /// The sums of all threads, for thread 0 alone.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION SweepSums<SingleLane<double>> sums_of_all(const Run& run, const StepSums& own) {
+[[nodiscard]] KOKKOS_INLINE_FUNCTION SweepSums<SingleLane<double>> sums_of_all(const Run& run,
+                                                                              const StepSums<typename Run::real>& own) {
   using D = SingleLane<double>;
-  double all[StepSums::count] = {};
-  reduce<Add>(run, own.numbers, all);
+  const double numbers[5] = {static_cast<double>(own.stress_xx), static_cast<double>(own.stress_xy),
+                             static_cast<double>(own.stress_yx), static_cast<double>(own.stress_yy),
+                             static_cast<double>(own.force_squared)};
+  const double measure[1] = {static_cast<double>(own.largest_measure)};
+  double all[5] = {}, largest[1] = {};
+  reduce<Add>(run, numbers, all);
   run.block.barrier();
-  double measure[1] = {own.largest_measure}, largest[1] = {};
   reduce<Largest>(run, measure, largest);
-  return {D(all[StepSums::stress_xx]), D(all[StepSums::stress_xy]), D(all[StepSums::stress_yx]),
-          D(all[StepSums::stress_yy]), D(all[StepSums::force_squared]), D(largest[0])};
+  return {D(all[0]), D(all[1]), D(all[2]), D(all[3]), D(all[4]), D(largest[0])};
 }
 
 }  // namespace voussoir::kernels::device

@@ -17,7 +17,7 @@ struct Largest {
 /// Joins the numbers of all threads; thread 0 alone receives `all`. The action of pairs is overwritten, so that all
 /// threads must have read it. Another barrier must follow before it is written again.
 template <class Join, int count, class Run>
-KOKKOS_INLINE_FUNCTION void reduce(const Run& run, const double (&own)[count], double (&all)[count]) {
+KOKKOS_FORCEINLINE_FUNCTION void reduce(const Run& run, const double (&own)[count], double (&all)[count]) {
   const Join join;
   const int threads = run.block.threads(), thread = run.block.thread();
   const int groups = (threads + threads_of_group - 1) / threads_of_group;
@@ -44,7 +44,7 @@ KOKKOS_INLINE_FUNCTION void reduce(const Run& run, const double (&own)[count], d
 
 /// As reduce, and tells all threads.
 template <class Join, int count, class Run>
-KOKKOS_INLINE_FUNCTION void reduce_for_all(const Run& run, double (&numbers)[count]) {
+KOKKOS_FORCEINLINE_FUNCTION void reduce_for_all(const Run& run, double (&numbers)[count]) {
   static_assert(count <= 4);
   double all[count] = {};
   reduce<Join>(run, numbers, all);
@@ -58,7 +58,7 @@ KOKKOS_INLINE_FUNCTION void reduce_for_all(const Run& run, double (&numbers)[cou
 /// Replaces each of values[0 .. n - 1], which all threads must see, by the sum of the values before it. Returns the sum
 /// of all, and ends in a barrier.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION int sums_before(const Run& run, int* values, int n) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int sums_before(const Run& run, int* values, int n) {
   const int threads = run.block.threads(), thread = run.block.thread();
   const int groups = (threads + threads_of_group - 1) / threads_of_group;
   int* const of_threads = run.at.counts;

@@ -23,15 +23,15 @@ struct Iteration {
 
 /// Writes the springs of all touching pairs into the device's memory.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void write_springs(Run& run, const CellMotion<typename Run::V>& cell) {
+KOKKOS_FORCEINLINE_FUNCTION void write_springs(Run& run, const CellMotion<typename Run::V>& cell) {
   using V = typename Run::V;
   using real = typename Run::real;
   const V share(static_cast<real>(elastic_share(run.settings.tangent)));
-  each_pair(run, [&](int k, int p) {
-    const int i = first_of(run.key[k]), j = second_of(run.key[k]);
+  each_pair(run, [&](int p) {
+    const int i = first_of(run.at.keys[p]), j = second_of(run.at.keys[p]);
     const auto shape = shape_of(run, i, j, run.at.rim[i].y, run.at.rim[j].y);
-    const PairGeometry<V> at = geometry_in(run, k, cell);
-    run.at.springs[p] = spring_of(run.pair[k], shape, at, distance_of(at.gap, shape), share);
+    const PairGeometry<V> at = geometry_of_pair(run, p, cell);
+    run.at.springs[p] = spring_of(pair_of(run, p), shape, at, distance_of(at.gap, shape), share);
   });
   run.block.barrier();
 }
@@ -42,8 +42,8 @@ template <class Run, class Act>
 KOKKOS_FORCEINLINE_FUNCTION void press_springs(Run& run, const Act& act) {
   using V = typename Run::V;
   const V zero(0);
-  each_pair(run, [&](int k, int p) {
-    const int i = first_of(run.key[k]), j = second_of(run.key[k]);
+  each_pair(run, [&](int p) {
+    const int i = first_of(run.at.keys[p]), j = second_of(run.at.keys[p]);
     const SpringLanes<V>& s = run.at.springs[p];
     GrainDofs<V> on_i{zero, zero, zero}, on_j{zero, zero, zero};
     act(s, V(run.at.rim[i].y), V(run.at.rim[j].y), i, j, on_i, on_j);
@@ -54,7 +54,7 @@ KOKKOS_FORCEINLINE_FUNCTION void press_springs(Run& run, const Act& act) {
 
 /// The block of a grain in K.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION Triangle<typename Run::V> block_of(const Run& run, int i) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Triangle<typename Run::V> block_of(const Run& run, int i) {
   using V = typename Run::V;
   const V zero(0), radius(run.at.rim[i].y);
   Triangle<V> block{zero, zero, zero, zero, zero, zero};
@@ -65,7 +65,7 @@ template <class Run>
 
 /// Sum of a number over all threads, for all of them.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION double total(const Run& run, double own) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION double total(const Run& run, double own) {
   double numbers[1] = {own};
   reduce_for_all<Add>(run, numbers);
   return numbers[0];
@@ -78,7 +78,7 @@ template <class V>
 
 /// The forces of the springs on grains that follow unit strain `a` as residuals. Returns twice the energy.
 template <class Run, class Slot>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION Iteration load_strain(Run& run, Slot& slot, int a) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Iteration load_strain(Run& run, Slot& slot, int a) {
   using V = typename Run::V;
   const V zero(0);
   double energy = 0, norm = 0;
@@ -89,7 +89,7 @@ template <class Run, class Slot>
     pull(s, force_of(s, e), ri, rj, on_i, on_j);
     energy += static_cast<double>(fused(s.normal * e.normal, e.normal, s.tangential * e.sliding * e.sliding)[0]);
   });
-  each_grain(run, [&](int k, int i) {
+  each_held(run, slot, run.grains, [&](int k, int i) {
     auto& own = slot[k];
     own.residual = own.direction = scaled(own.scale, gather(run, i));
     own.motion = {zero, zero, zero};
@@ -107,10 +107,10 @@ template <class Run, class Slot>
 
 /// One step along the directions. False where the residual is down to rounding.
 template <class Run, class Slot>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION bool iterate(Run& run, Slot& slot, Iteration& now) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION bool iterate(Run& run, Slot& slot, Iteration& now) {
   using V = typename Run::V;
   using real = typename Run::real;
-  each_grain(run, [&](int k, int i) {
+  each_held(run, slot, run.grains, [&](int k, int i) {
     const GrainDofs<V> d = unscaled(slot[k].scale, slot[k].direction);
     run.at.motion[i] = {d.x[0], d.y[0], d.spin[0], 0};
   });
@@ -121,7 +121,7 @@ template <class Run, class Slot>
     pull(s, force_of(s, e), ri, rj, on_i, on_j);
   });
   double work = 0, norm = 0;
-  each_grain(run, [&](int k, int i) {
+  each_held(run, slot, run.grains, [&](int k, int i) {
     slot[k].image = scaled(slot[k].scale, gather(run, i));
     work -= static_cast<double>(dot(slot[k].direction, slot[k].image, V(0))[0]);
   });
@@ -129,7 +129,7 @@ template <class Run, class Slot>
   const double product = total(run, work);
   if (!(product > 0) || !(now.rho > now.rounding)) return false;
   const double alpha = now.rho / product;
-  each_grain(run, [&](int k, int) {
+  each_held(run, slot, run.grains, [&](int k, int) {
     auto& own = slot[k];
     own.motion = plus(own.motion, V(static_cast<real>(alpha)), own.direction);
     own.residual = plus(own.residual, V(static_cast<real>(alpha)), own.image);
@@ -139,13 +139,13 @@ template <class Run, class Slot>
   now.energy -= alpha * now.rho;
   now.gained += alpha * now.rho;
   const V beta(static_cast<real>(next / now.rho));
-  each_grain(run, [&](int k, int) { slot[k].direction = plus(slot[k].residual, beta, slot[k].direction); });
+  each_held(run, slot, run.grains, [&](int k, int) { slot[k].direction = plus(slot[k].residual, beta, slot[k].direction); });
   now.rho = next;
   return true;
 }
 
 /// Whether the energy still changes by more than the tolerance allows.
-[[nodiscard]] KOKKOS_INLINE_FUNCTION bool goes_on(Iteration& now, double tolerance) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION bool goes_on(Iteration& now, double tolerance) {
   const double floor = softest * now.affine;
   const double energy = now.energy > floor ? now.energy : floor;
   const double error = loss_to_come(now.before, now.gained);
@@ -156,7 +156,7 @@ template <class Run, class Slot>
 
 /// Solves for one unit strain. Returns the iterations, negative where their limit was reached.
 template <class Run, class Slot>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION int solve(Run& run, Slot& slot, int a) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int solve(Run& run, Slot& slot, int a) {
   Iteration now = load_strain(run, slot, a);
   int k = 0;
   bool running = true;
@@ -165,7 +165,7 @@ template <class Run, class Slot>
     running = iterate(run, slot, now);
     if (running && k % tangent_look_interval == 0) running = goes_on(now, run.settings.tangent_tolerance);
   }
-  each_grain(run, [&](int s, int i) {
+  each_held(run, slot, run.grains, [&](int s, int i) {
     const auto x = unscaled(slot[s].scale, slot[s].motion);
     run.at.answers[a * run.grains + i] = {x.x[0], x.y[0], x.spin[0]};
   });
@@ -175,11 +175,11 @@ template <class Run, class Slot>
 
 /// Twice the mixed energies of the three motions, which thread 0 alone receives.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void energies(Run& run, double (&all)[6]) {
+KOKKOS_FORCEINLINE_FUNCTION void energies(Run& run, double (&all)[6]) {
   using V = typename Run::V;
   double own[6] = {};
-  each_pair(run, [&](int k, int p) {
-    const int i = first_of(run.key[k]), j = second_of(run.key[k]);
+  each_pair(run, [&](int p) {
+    const int i = first_of(run.at.keys[p]), j = second_of(run.at.keys[p]);
     const SpringLanes<V>& s = run.at.springs[p];
     SpringStrain<V> e[unit_strains];
     for (int a = 0; a < unit_strains; ++a) {
@@ -199,12 +199,14 @@ KOKKOS_INLINE_FUNCTION void energies(Run& run, double (&all)[6]) {
 
 /// Puts the static tangent in place of eq. (4) in the report, where it is usable. The motions of grains are overwritten.
 template <class Run>
-KOKKOS_INLINE_FUNCTION void find_tangent(Run& run, const CellMotion<typename Run::V>& cell, double volume) {
+VOUSSOIR_COLD_FUNCTION void find_tangent(const typename Run::Seat seat, const double volume) {
+  Run run(seat);
+  const CellMotion<typename Run::V> cell = run.at.control->motion[0];
   using V = typename Run::V;
   write_springs(run, cell);
   Slots<SolverSlot<V>, Run::Plan::grain_slots> slot(run.at.solver, run.grains, run.block.thread(),
                                                     run.block.threads());
-  each_grain(run, [&](int k, int i) { slot[k].scale = scale_of(block_of(run, i)); });
+  each_held(run, slot, run.grains, [&](int k, int i) { slot[k].scale = scale_of(block_of(run, i)); });
   int iterations = 0;
   bool capped = false;
   for (int a = 0; a < unit_strains; ++a) {

@@ -41,15 +41,14 @@ struct HostBackend {
   static void launch(const BlockBatch<real_of<typename Law::Value>, Drive>& batch, const EngineSettings& settings,
                      int, int blocks, int pairs) {
     using Memory = BlockMemory<Law, Drive, InMemory>;
-    const Memory sizes(nullptr, nullptr, batch.packings.stride, pairs, 1);
+    const Memory sizes(no_memory(), no_memory(), batch.packings.stride, pairs, 1);
     using Space = Kokkos::DefaultHostExecutionSpace;
     Kokkos::parallel_for("voussoir::device::host", Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(0, blocks).set_chunk_size(1),
                          [&](int number) {
                            const HostMemory fast(sizes.fast_bytes), slow(sizes.slow_bytes);
-                           BlockRun<Law, Drive, SerialBlock, InMemory, classes> run(SerialBlock(), batch, settings,
-                                                                                    number, fast.data(), slow.data(),
-                                                                                    pairs);
-                           advance_block(run);
+                           using Run = BlockRun<Law, Drive, SerialBlock, InMemory, classes>;
+                           advance_block<Run>({SerialBlock{fast.data()}, &batch, &settings, slow.data(), number,
+                                               batch.packings.stride, pairs});
                          });
     Space().fence("voussoir::device::host");
   }

@@ -61,21 +61,20 @@ class ResidentBatch final : public ResidentRves {
  public:
   using real = real_of<typename Law::Value>;
 
-  explicit ResidentBatch(const RveBatch& batch)
-      : batch_{batch.packings, batch.packing_of, {}, {}, {}},
+  explicit ResidentBatch(const RveSet& rves)
+      : batch_{rves.packings, rves.packing_of, {}, {}, {}},
         packings_(batch_),
-        states_(static_cast<int>(batch.size()), packings_.grains(), batch.committed.contact_capacity(),
-                static_cast<int>(batch.committed.history_size())),
-        packing_of_(batch.size()),
-        overflown_(batch.size()),
-        candidate_count_(batch.size()),
-        candidate_skin_(batch.size()),
-        candidate_spent_(batch.size()),
-        candidate_spending_(batch.size()) {
-    if (batch.committed.history_size() != static_cast<std::size_t>(history_size<Law>))
+        states_(static_cast<int>(batch_.size()), packings_.grains(), rves.committed.contacts, rves.committed.history),
+        packing_of_(batch_.size()),
+        overflown_(batch_.size()),
+        candidate_count_(batch_.size()),
+        candidate_skin_(batch_.size()),
+        candidate_spent_(batch_.size()),
+        candidate_spending_(batch_.size()) {
+    if (rves.committed.history != history_size<Law>)
       throw std::invalid_argument("the batch holds the histories of another law");
     packing_of_.write(batch_.packing_of);
-    upload(plain(batch.committed));
+    upload(rves.committed);
   }
 
   void upload(const HostStates& from) override {
@@ -239,9 +238,10 @@ class ResidentBatch final : public ResidentRves {
 
 /// Holds a batch by the instance that its law, its precision and its grains ask for.
 template <class Backend>
-[[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveBatch& batch, Precision precision) {
+[[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) {
+  const RveBatch batch{rves.packings, rves.packing_of, {}, {}, {}};
   return choose_instance<SingleLane>(batch, precision, [&]<class Law>(Instance<Law>) -> std::unique_ptr<ResidentRves> {
-    return std::make_unique<ResidentBatch<Law, Backend>>(batch);
+    return std::make_unique<ResidentBatch<Law, Backend>>(rves);
   });
 }
 

@@ -14,4 +14,8 @@ HostStates plain(const RveStates& states) {
           .history = static_cast<int>(states.history_size())};
 }
 
+RveSet plain(const RveBatch& batch) {
+  return {.packings = batch.packings, .packing_of = batch.packing_of, .committed = plain(batch.committed)};
+}
+
 }  // namespace voussoir::kernels::device

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kernels/state/rve_batch.hpp"
 
@@ -22,6 +23,14 @@ struct HostStates {
   int grains, contacts, history;  ///< extents for each RVE
 };
 [[nodiscard]] HostStates plain(const RveStates& states);
+
+/// The RVEs of a batch, without its views.
+struct RveSet {
+  const std::vector<Packing>& packings;
+  const std::vector<int>& packing_of;  ///< by RVE
+  HostStates committed;
+};
+[[nodiscard]] RveSet plain(const RveBatch& batch);
 
 /// What moved between host and device, and what the device did.
 struct DeviceWork {
@@ -61,9 +70,9 @@ class Device {
 
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
-  /// Holds the RVEs of a batch. @throws std::invalid_argument where the device cannot; std::runtime_error where it has
-  /// no memory for them
-  [[nodiscard]] virtual std::unique_ptr<ResidentRves> hold(const RveBatch& batch, Precision precision) = 0;
+  /// Holds RVEs. @throws std::invalid_argument where the device cannot; std::runtime_error where it has no memory for
+  /// them
+  [[nodiscard]] virtual std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) = 0;
 };
 
 }  // namespace voussoir::kernels::device

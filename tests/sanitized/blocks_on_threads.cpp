@@ -103,7 +103,7 @@ Answer strains(const reference::Rve& rve, bool lost) {
     requests[1] = {.f_rel = {1.2, 0, 0, 1.2}, .strain_steps = 20, .hold_cap = 8};
     requests[3] = {.f_rel = {nan, 0, 0, 1}, .strain_steps = 10, .hold_cap = 1};
   }
-  device::ResidentBatch<Law<real>, Backend> held(batch);
+  device::ResidentBatch<Law<real>, Backend> held(device::plain(batch));
   Answer answer{std::vector<RveReport>(5), {}};
   held.advance(std::span<const StrainRequest>(requests), settings, answer.reports, std::array{2, 0, 3});
   held.commit(std::array{2});
@@ -124,7 +124,7 @@ Answer servos(const reference::Rve& rve, int steps) {
        .max_steps = steps,
        .trace = &answer.trace,
        .trace_interval = 10}};
-  device::ResidentBatch<Law<real>, Backend> held(batch);
+  device::ResidentBatch<Law<real>, Backend> held(device::plain(batch));
   held.advance(std::span<const ServoRequest>(requests), eventful(), answer.reports, all_of(2));
   return answer;
 }
@@ -146,7 +146,7 @@ Answer squeezed(const reference::Rve& rve) {
   settings.skin = 0.05;
   settings.overlap_limit = 0.95;
   const std::vector<StrainRequest> requests(2, {.f_rel = {0.6, 0, 0, 0.6}, .strain_steps = 40, .hold_cap = 1});
-  device::ResidentBatch<Law<real>, InMemory> held(batch);
+  device::ResidentBatch<Law<real>, InMemory> held(device::plain(batch));
   Answer answer{std::vector<RveReport>(2), {}};
   held.advance(std::span<const StrainRequest>(requests), settings, answer.reports, all_of(2));
   if (answer.reports[0].status != RveStatus::neighbour_overflow) {
@@ -164,7 +164,7 @@ Answer large(const reference::Rve& rve) {
   settings.skin = 0.004;
   const std::vector<StrainRequest> requests{
       {.f_rel = {1.0005, 0.0015, -0.0005, 0.999}, .strain_steps = 16, .hold_cap = 8}};
-  device::ResidentBatch<Law<real>, Backend> held(batch);
+  device::ResidentBatch<Law<real>, Backend> held(device::plain(batch));
   Answer answer{std::vector<RveReport>(1), {}};
   held.advance(std::span<const StrainRequest>(requests), settings, answer.reports, all_of(1));
   held.commit({});

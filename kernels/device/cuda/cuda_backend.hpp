@@ -1,0 +1,138 @@
+#pragma once
+/// A device with CUDA: its memory, and the launch of one block for each RVE. host_backend.hpp says what a backend has.
+///
+/// The kernel is a plain __global__ function and not a Kokkos team policy: an RVE of 700 grains wants 50 KiB of fast
+/// memory, and Kokkos 4.5 grants a team 41 KiB of the 227 KiB that a block of compute capability 9.0 may have.
+
+#include <cuda_runtime.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "kernels/device/block_advance.hpp"
+
+namespace voussoir::kernels::device {
+
+/// @throws std::runtime_error with the words of the runtime
+inline void check_cuda(cudaError_t error, const char* what) {
+  if (error != cudaSuccess) throw std::runtime_error(std::string(what) + ": " + cudaGetErrorString(error));
+}
+
+template <int Threads>
+struct CudaBlock {
+  [[nodiscard]] __device__ __forceinline__ static int thread() { return static_cast<int>(threadIdx.x); }
+  [[nodiscard]] __device__ __forceinline__ static constexpr int threads() { return Threads; }
+  [[nodiscard]] __device__ __forceinline__ static char* fast_memory() {
+    extern __shared__ char fast[];
+    return fast;
+  }
+  __device__ __forceinline__ static void barrier() { __syncthreads(); }
+};
+
+/// An instance of the kernel: so many threads to a block, at least so many blocks at once on a multiprocessor, and so
+/// many pairs and grains in the registers of a thread.
+template <int Threads, int Blocks, int PairSlots, int GrainSlots>
+struct CudaPlan {
+  static constexpr int threads = Threads, blocks = Blocks;
+  static constexpr int pairs = Threads * PairSlots, grains = Threads * GrainSlots;
+  using Plan = BlockPlan<PairSlots, GrainSlots>;
+};
+using SmallPlan = CudaPlan<128, 4, 6, 3>;    ///< up to 384 grains
+using MiddlePlan = CudaPlan<256, 2, 7, 3>;   ///< up to 768
+using LargePlan = CudaPlan<512, 1, 7, 3>;    ///< up to 1536
+using MemoryPlan = CudaPlan<256, 2, 0, 0>;   ///< any number, in the device's memory
+
+template <class Law, class Drive, class Of, bool classes>
+__global__ void __launch_bounds__(Of::threads, Of::blocks)
+    advance_kernel(const __grid_constant__ BlockBatch<real_of<typename Law::Value>, Drive> batch,
+                   const __grid_constant__ EngineSettings settings, const int pairs, char* const slow, const std::size_t slow_bytes) {
+  const int number = static_cast<int>(blockIdx.x);
+  // With constant room, the places of all arrays in fast memory are constants of the machine code.
+  constexpr bool in_registers = Of::Plan::in_registers;
+  using Run = BlockRun<Law, Drive, CudaBlock<Of::threads>, typename Of::Plan, classes>;
+  advance_block<Run>({CudaBlock<Of::threads>(), &batch, &settings, slow + static_cast<std::size_t>(number) * slow_bytes,
+                      number, in_registers ? Of::grains : batch.packings.stride, in_registers ? Of::pairs : pairs});
+}
+
+struct CudaBackend {
+  static constexpr int levels = 6;  ///< three instances in registers, three with ever more room in memory
+
+  [[nodiscard]] static void* allocate(std::size_t bytes) {
+    void* p = nullptr;
+    check_cuda(cudaMalloc(&p, bytes), "the device has no memory left");
+    return p;
+  }
+  static void release(void* p) { cudaFree(p); }
+  static void copy_up(void* to, const void* from, std::size_t bytes) {
+    if (bytes > 0) check_cuda(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "a copy to the device failed");
+  }
+  static void copy_down(void* to, const void* from, std::size_t bytes) {
+    if (bytes > 0) check_cuda(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "a copy from the device failed");
+  }
+
+  [[nodiscard]] static int first_level(int grains) {
+    return grains <= SmallPlan::grains ? 0 : (grains <= MiddlePlan::grains ? 1 : (grains <= LargePlan::grains ? 2 : 3));
+  }
+  template <class Law, class Drive>
+  [[nodiscard]] static int room(int level, int grains) {
+    constexpr std::array<int, 3> in_registers{SmallPlan::pairs, MiddlePlan::pairs, LargePlan::pairs};
+    if (level < 3) return in_registers[static_cast<std::size_t>(level)];
+    const int of_all = std::max(grains * (grains - 1) / 2, 2 * grains);
+    const int few = level == 3 ? 8 * grains : 64 * grains;
+    return std::max(level == 5 ? of_all : std::min(few, of_all), 1024);
+  }
+
+  template <class Law, class Drive, bool classes>
+  static void launch(const BlockBatch<real_of<typename Law::Value>, Drive>& batch, const EngineSettings& settings,
+                     int level, int blocks, int pairs) {
+    if (level == 0) return launch_plan<Law, Drive, SmallPlan, classes>(batch, settings, blocks, pairs);
+    if (level == 1) return launch_plan<Law, Drive, MiddlePlan, classes>(batch, settings, blocks, pairs);
+    if (level == 2) return launch_plan<Law, Drive, LargePlan, classes>(batch, settings, blocks, pairs);
+    launch_plan<Law, Drive, MemoryPlan, classes>(batch, settings, blocks, pairs);
+  }
+
+ private:
+  /// The slow memory of all blocks of a launch; it is kept from launch to launch.
+  [[nodiscard]] static char* slow_memory(std::size_t bytes) {
+    static char* memory = nullptr;
+    static std::size_t size = 0;
+    if (bytes > size) {
+      if (memory != nullptr) release(memory);
+      memory = nullptr;
+      size = 0;
+      memory = static_cast<char*>(allocate(bytes));
+      size = bytes;
+    }
+    return memory;
+  }
+
+  template <class Law, class Drive, class Of, bool classes>
+  static void launch_plan(const BlockBatch<real_of<typename Law::Value>, Drive>& batch, const EngineSettings& settings,
+                          int blocks, int pairs) {
+    const int grains = Of::Plan::in_registers ? Of::grains : batch.packings.stride;
+    const BlockMemory<Law, Drive, typename Of::Plan> sizes(no_memory(), no_memory(), grains, pairs, Of::threads);
+    const auto kernel = advance_kernel<Law, Drive, Of, classes>;
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                    static_cast<int>(sizes.fast_bytes)),
+               "the device grants a block too little fast memory");
+    const std::size_t slow = (sizes.slow_bytes + 255) / 256 * 256;
+    // Blocks whose memory would exceed a share of the device's come one after another.
+    constexpr std::size_t most = std::size_t(8) << 30;
+    const int at_once = static_cast<int>(std::clamp<std::size_t>(most / std::max<std::size_t>(slow, 1), 1, 1U << 30));
+    BlockBatch<real_of<typename Law::Value>, Drive> part = batch;
+    for (int first = 0; first < blocks; first += at_once) {
+      const int count = std::min(at_once, blocks - first);
+      char* const memory = slow_memory(slow * static_cast<std::size_t>(count));
+      part.order = batch.order + first;
+      part.drives = batch.drives + first;
+      part.reports = batch.reports + first;
+      kernel<<<static_cast<unsigned>(count), Of::threads, sizes.fast_bytes>>>(part, settings, pairs, memory, slow);
+      check_cuda(cudaGetLastError(), "the kernel was not launched");
+      check_cuda(cudaDeviceSynchronize(), "the kernel failed");
+    }
+  }
+};
+
+}  // namespace voussoir::kernels::device
