@@ -251,7 +251,10 @@ TEST_F(DeviceBlocks, AListWithoutRoomRunsAgainWithMoreOfIt) {
     settings.list_interval = t.skin < 0.01 ? 1 : 8;
     const std::vector<StrainRequest> requests(2, two_hundred_steps);
     const Blocks blocks{BlockKind::in_memory, 2, t.first_pairs};
-    expect_lanes_answers([&] { return clones(t.rve, 2); }, requests, settings, in_double_, {{}, blocks});
+    SCOPED_TRACE(testing::Message() << "a skin of " << t.skin);
+    const auto lanes =
+        expect_lanes_answers([&] { return clones(t.rve, 2); }, requests, settings, in_double_, {{}, blocks});
+    for (const RveReport& r : lanes) EXPECT_FALSE(is_failure(r.status)) << name_of(r.status);
     const RveBatch batch = clones(t.rve, 2);
     std::vector<RveReport> reports(2);
     const auto work = advance_held(*hold(batch, Precision::float64, blocks), requests, settings, reports,
