@@ -65,35 +65,46 @@ class BarrierPlaces {
   }
 };
 
-/// What the threads of a block wait at.
+/// What the threads of a block wait at: two barriers by turns. With one alone ThreadSanitizer would miss races, because a
+/// thread that wakes up late from it would seem to be ordered after those that have already come to it again.
 class ThreadBarrier {
  public:
-  explicit ThreadBarrier(int threads) { pthread_barrier_init(&barrier_, nullptr, static_cast<unsigned>(threads)); }
+  explicit ThreadBarrier(int threads) {
+    for (auto& barrier : barriers_) pthread_barrier_init(&barrier, nullptr, static_cast<unsigned>(threads));
+  }
   ThreadBarrier(const ThreadBarrier&) = delete;
   ThreadBarrier& operator=(const ThreadBarrier&) = delete;
-  ~ThreadBarrier() { pthread_barrier_destroy(&barrier_); }
-  void wait() { pthread_barrier_wait(&barrier_); }
+  ~ThreadBarrier() {
+    for (auto& barrier : barriers_) pthread_barrier_destroy(&barrier);
+  }
+  /// @param turn of the calling thread, which changes
+  void wait(int& turn) {
+    pthread_barrier_wait(&barriers_[turn]);
+    turn = 1 - turn;
+  }
 
  private:
-  pthread_barrier_t barrier_{};
+  pthread_barrier_t barriers_[2]{};
 };
 
 /// One thread of a block.
 class ThreadBlock {
  public:
-  ThreadBlock(ThreadBarrier& barrier, int thread, int threads, char* fast)
-      : barrier_(&barrier), thread_(thread), threads_(threads), fast_(fast) {}
+  /// @param turn of the thread at the barriers, 0 at first
+  ThreadBlock(ThreadBarrier& barrier, int& turn, int thread, int threads, char* fast)
+      : barrier_(&barrier), turn_(&turn), thread_(thread), threads_(threads), fast_(fast) {}
   [[nodiscard]] char* fast_memory() const { return fast_; }
   [[nodiscard]] int thread() const { return thread_; }
   [[nodiscard]] int threads() const { return threads_; }
   void barrier(const std::source_location& from = std::source_location::current()) const {
     if (BarrierPlaces::noting) BarrierPlaces::note(from);
     if (BarrierPlaces::left_out != 0 && BarrierPlaces::is_left_out(from)) return;
-    barrier_->wait();
+    barrier_->wait(*turn_);
   }
 
  private:
   ThreadBarrier* barrier_;
+  int* turn_;
   int thread_, threads_;
   char* fast_;
 };
@@ -144,16 +155,17 @@ struct ThreadBackend {
     using Run = BlockRun<Law, Drive, ThreadBlock, OwnPlan, classes>;
     const int grains = batch.packings.stride;
     const BlockMemory<Law, Drive, OwnPlan> sizes(no_memory(), no_memory(), grains, pairs, threads);
-    ThreadBarrier barrier(threads);
     // One block after another, each with memory of its own, as a block on a GPU finds it: not cleared.
     for (int number = 0; number < blocks; ++number) {
       char *const fast = static_cast<char*>(allocate(sizes.fast_bytes)),
                  *const slow = static_cast<char*>(allocate(sizes.slow_bytes));
+      ThreadBarrier barrier(threads);
       std::vector<std::thread> all;
       for (int t = 0; t < threads; ++t) {
         all.emplace_back([&, t] {
+          int turn = 0;
           advance_block<Run>(
-              {ThreadBlock(barrier, t, threads, fast), &batch, &settings, slow, number, grains, pairs});
+              {ThreadBlock(barrier, turn, t, threads, fast), &batch, &settings, slow, number, grains, pairs});
         });
       }
       for (std::thread& t : all) t.join();
