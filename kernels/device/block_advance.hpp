@@ -118,7 +118,10 @@ VOUSSOIR_COLD_FUNCTION void finish(const typename Run::Seat seat) {
   answer(run, cell);
   if (is_failure(report.status)) return;
   const double volume = report.cell_area * run.scales().thickness;
-  if (!store(run, report.contacts, cell)) return alone(run, [&] { report.status = RveStatus::neighbour_overflow; });
+  if (!store(run, report.contacts, cell)) {
+    run.block.barrier();  // all threads have read the status
+    return alone(run, [&] { report.status = RveStatus::neighbour_overflow; });
+  }
   if (run.settings.tangent != TangentKind::contact) find_tangent<Run>(seat, volume);
 }
 

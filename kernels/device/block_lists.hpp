@@ -161,7 +161,8 @@ template <class Run>
 [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Listing ensure_candidates(const Run& run, const double* position) {
   const DeviceCandidates& to = run.batch.candidates;
   const double wide = candidate_skin * run.scales().skin;
-  const bool hold = to.spent[run.rve] <= to.skin[run.rve] - run.scales().skin;
+  // Without candidates, what was spent is not known.
+  const bool hold = to.skin[run.rve] >= 0 && to.spent[run.rve] <= to.skin[run.rve] - run.scales().skin;
   run.block.barrier();
   if (hold) return Listing::done;
   if (find_candidates(run, position, wide) == Listing::too_many) return Listing::too_many;

@@ -57,6 +57,7 @@ template <class Run>
     run.course() = course;
     run.at.control->cell = {from.cell[0], from.cell[1], from.cell[2], from.cell[3]};
     run.batch.overflown[run.rve] = 0;
+    if (run.batch.sample_room > 0) run.batch.sample_count[run.rve] = 0;  // a block without room may have taken some
     run.batch.states.evaluated[run.rve] = 0;
     run.batch.candidates.spending[run.rve] = -1;
   });

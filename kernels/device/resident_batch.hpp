@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernels/course/choose_instance.hpp"
+#include "kernels/device/block_run.hpp"
 #include "kernels/device/held_arrays.hpp"
 
 namespace voussoir::kernels::device {
