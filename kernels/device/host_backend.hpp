@@ -5,6 +5,7 @@
 ///
 /// A backend has
 ///   allocate(bytes), release(p), copy_up(to, from, bytes), copy_down(to, from, bytes)   the device's memory
+///   follows_stresses                whether servo drives are compiled
 ///   levels, first_level(grains)     how many instances with ever more room there are, and the first that fits
 ///   room<Law, Drive>(level, grains) pairs for which a block of a level has room
 ///   launch<Law, Drive, classes>(batch, settings, level, blocks, pairs)   advances the RVEs order[0 .. blocks - 1], and
@@ -21,6 +22,7 @@ namespace voussoir::kernels::device {
 struct HostBackend {
   static constexpr std::align_val_t line{64};
   static constexpr int levels = 3;
+  static constexpr bool follows_stresses = true;
 
   [[nodiscard]] static void* allocate(std::size_t bytes) { return ::operator new(bytes, line); }
   static void release(void* p) { ::operator delete(p, line); }

@@ -1,6 +1,7 @@
 // The functions that the program asks of libvoussoir_gpu.so.
 
-#include "kernels/device/cuda/cuda_backend.hpp"
+#include "kernels/device/cuda/cuda_errors.hpp"
+#include "kernels/device/cuda/instances.hpp"
 #include "kernels/device/device_library.hpp"
 #include "kernels/device/resident_batch.hpp"
 
@@ -21,7 +22,7 @@ class CudaDevice final : public Device {
   [[nodiscard]] std::size_t memory_bytes() const override { return properties_.totalGlobalMem; }
   [[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) override {
     check_cuda(cudaSetDevice(number_), "the device cannot be chosen");
-    return device::hold<CudaBackend>(rves, precision);
+    return choose_law(rves, precision, [&]<class Law>(Instance<Law>) { return hold_on_cuda<Law>(rves); });
   }
 
  private:
