@@ -1,0 +1,81 @@
+// The engine on a device against the lanes of the host, for a machine with a GPU (tools/gpu_check); with the library of
+// tests/emulated_gpu it runs anywhere. Prints the largest differences and exits with 1 where one is larger than allowed.
+
+#include <Kokkos_Core.hpp>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "kernels/device/device_library.hpp"
+#include "kernels/device/device_residence.hpp"
+#include "tests/engine_support.hpp"
+
+namespace {
+
+using namespace voussoir::kernels;
+
+constexpr std::size_t n_rves = 64;
+
+std::vector<StrainRequest> motions() {
+  std::vector<StrainRequest> requests(n_rves);
+  for (std::size_t k = 0; k < n_rves; ++k) {
+    const double e = 1e-4 * std::cos(1.0 * static_cast<double>(k));
+    requests[k] = {.f_rel = {1 + e, 2 * e, 0, 1 - e}, .strain_steps = 100 + static_cast<int>(k), .hold_cap = 64};
+  }
+  return requests;
+}
+
+/// What two answers differ by, over the pressure and over the tangent; infinite where statuses, steps or contacts differ.
+struct Difference {
+  double stress = 0, tangent = 0;
+};
+
+double larger_of(double a, double b) { return b <= a ? a : b; }  // keeps a NaN
+
+Difference difference(const std::vector<RveReport>& a, const std::vector<RveReport>& b) {
+  Difference d;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    if (a[k].status != b[k].status || a[k].steps != b[k].steps || a[k].contacts != b[k].contacts) return {INFINITY, INFINITY};
+    for (int c = 0; c < 4; ++c) d.stress = larger_of(d.stress, std::abs(a[k].stress[c] - b[k].stress[c]) / b[k].pressure());
+    for (int c = 0; c < 6; ++c) d.tangent = larger_of(d.tangent, std::abs(a[k].tangent[c] - b[k].tangent[c]) / b[k].tangent[0]);
+  }
+  return d;
+}
+
+/// Two increments, so that states, candidates and histories of the first one are used.
+std::vector<RveReport> two_increments(RveBatch& batch, const EngineSettings& settings) {
+  run(batch, motions(), settings);
+  commit(batch);
+  return run(batch, motions(), settings);
+}
+
+bool compare(const std::shared_ptr<device::Device>& on, Precision precision, double stress, double tangent) {
+  const auto start = voussoir::reference::consolidated_packing(60, 2, 1e5, 0.0, voussoir::reference::Material{});
+  const EngineSettings settings{.precision = precision, .hold_tolerance = 1e-12, .tangent = TangentKind::elastic};
+  RveBatch lanes = clones(start, n_rves), device = clones(start, n_rves), again = clones(start, n_rves);
+  device::reside(device, on, precision);
+  device::reside(again, on, precision);
+  const auto by_lanes = two_increments(lanes, settings), by_device = two_increments(device, settings);
+  const Difference d = difference(by_device, by_lanes), repeated = difference(two_increments(again, settings), by_device);
+  const bool good = d.stress <= stress && d.tangent <= tangent && repeated.stress == 0 && repeated.tangent == 0;
+  std::printf("%-7s stress off by %.1e of the pressure (at most %.0e), tangent by %.1e (at most %.0e); a second run by %.0e: %s\n",
+              precision == Precision::float64 ? "double" : "float", d.stress, stress, d.tangent, tangent, repeated.stress,
+              good ? "good" : "NOT GOOD");
+  return good;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Kokkos::ScopeGuard kokkos(argc, argv);
+  std::string why;
+  const std::shared_ptr<device::Device> device = device::open_device(0, why);
+  if (!device) {
+    std::printf("no device: %s\n", why.c_str());
+    return 77;
+  }
+  std::printf("%s\n", device->name().c_str());
+  const bool in_double = compare(device, Precision::float64, 1e-8, 1e-5);
+  const bool in_float = compare(device, Precision::float32, 5e-3, 5e-3);
+  return in_double && in_float ? 0 : 1;
+}
