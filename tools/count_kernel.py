@@ -43,10 +43,18 @@ int main() {{
 """
 
 
+def found_in(pattern, text):
+    """The first group of a pattern that must be in a text."""
+    found = re.search(pattern, text)
+    if found is None:
+        sys.exit(f"{pattern} is not in what was read")
+    return found.group(1)
+
+
 def plan_of(name):
     """Threads, blocks a multiprocessor, pair slots and grain slots of an instance, from its source."""
     text = (ROOT / "kernels/device/cuda/cuda_backend.hpp").read_text()
-    return [int(x) for x in re.search(rf"using {name}Plan = CudaPlan<([\d, ]+)>", text).group(1).split(",")]
+    return [int(x) for x in found_in(rf"using {name}Plan = CudaPlan<([\d, ]+)>", text).split(",")]
 
 
 def find_cuobjdump():
@@ -71,7 +79,7 @@ def compile_kernel(args, folder):
     lines = done.stderr.splitlines()
     at = next(k for k, line in enumerate(lines) if "Function properties" in line and "advance_kernel" in line)
     numbers = [int(x) for x in re.findall(r"(\d+) bytes", lines[at + 1])]
-    registers = int(re.search(r"Used (\d+) registers", " ".join(lines[at : at + 4])).group(1))
+    registers = int(found_in(r"Used (\d+) registers", " ".join(lines[at : at + 4])))
     return target, registers, numbers[0], numbers[1] + numbers[2]
 
 
