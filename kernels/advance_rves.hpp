@@ -2,6 +2,8 @@
 /// The functions by which the engine advances RVEs: each RVE of a batch goes, by its own request, from its committed to
 /// its trial state.
 ///
+/// A batch that resides on a device (`RveBatch::residence`) is advanced there, and every other one by the lanes.
+///
 /// RVEs are sorted into groups of one packing and similar predicted work, because a group takes as long as its slowest
 /// lane. With one build and one precision, the answer of an RVE has the same bits in every group, lane and thread.
 
@@ -12,12 +14,8 @@
 
 namespace voussoir::kernels {
 
-/// Whether a backend runs requests by teams of threads. With `automatic`, requests for a static tangent or for recorded
-/// microstructures go to lanes nevertheless, since teams cannot answer them.
-[[nodiscard]] bool takes_teams(Backend backend);
-
 /// Advances every RVE by a given motion. `requests` and `reports` have batch.size() entries.
-/// Writes batch.trial. The call never throws for a numerical reason: the status of each RVE says how its evaluation
+/// The trial states are written where the batch resides, in batch.trial or on its device. The call never throws for a numerical reason: the status of each RVE says how its evaluation
 /// ended.
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports);

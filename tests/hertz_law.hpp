@@ -9,9 +9,11 @@
 namespace voussoir::kernels {
 
 /// K = 4/3 E* sqrt(r*) [N/m^1.5] with 1/E* = 1/E_1 + 1/E_2 and 1/r* = 1/r_1 + 1/r_2.
-[[nodiscard]] inline double hertz_constant(const GrainMaterial& m1, double r1, const GrainMaterial& m2, double r2) {
-  const double modulus = m1.modulus * m2.modulus / (m1.modulus + m2.modulus);
-  return 4.0 / 3.0 * modulus * std::sqrt(r1 * r2 / (r1 + r2));
+template <class Number>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION Number hertz_constant(const GrainMaterialOf<Number>& m1, Number r1,
+                                                           const GrainMaterialOf<Number>& m2, Number r2) {
+  const Number modulus = m1.modulus * m2.modulus / (m1.modulus + m2.modulus);
+  return Number(4.0 / 3.0) * modulus * Kokkos::sqrt(r1 * r2 / (r1 + r2));
 }
 
 template <class V>
@@ -30,9 +32,10 @@ struct HertzLaw {
 
   KOKKOS_FORCEINLINE_FUNCTION static void keep(const History&, History&) {}
 
-  [[nodiscard]] KOKKOS_INLINE_FUNCTION static Pair combine(const GrainMaterial& m1, double r1, const GrainMaterial& m2,
-                                                           double r2) {
-    return {static_cast<real_of<V>>(hertz_constant(m1, r1, m2, r2) * std::sqrt(r1 + r2))};
+  template <class Number>
+  [[nodiscard]] KOKKOS_INLINE_FUNCTION static Pair combine(const GrainMaterialOf<Number>& m1, Number r1,
+                                                           const GrainMaterialOf<Number>& m2, Number r2) {
+    return {static_cast<real_of<V>>(hertz_constant(m1, r1, m2, r2) * Kokkos::sqrt(r1 + r2))};
   }
 
   [[nodiscard]] static double normal_stiffness_of(const GrainMaterial& m, double radius, double overlap) {

@@ -21,7 +21,7 @@ OURS = ("kernels", "fem", "io", "host", "tests")
 # folder -> (our folders, third-party libraries) that it may include. Standard headers are free to all, and fmt stands
 # in for std::format (not in g++ 12) everywhere but in kernels, which write no text.
 FOLDERS = {
-    "kernels": ({"kernels"}, {"Kokkos", "intrinsics"}),
+    "kernels": ({"kernels"}, {"Kokkos", "intrinsics", "CUDA", "POSIX"}),
     "fem": ({"fem"}, {"Eigen", "SuiteSparse", "Gmsh", "OpenMP", "fmt"}),
     "io": ({"io"}, {"HDF5", "toml++", "JSON", "fmt", "POSIX"}),
     # host joins the others, so it holds their types (Kokkos views, Eigen matrices) and starts Kokkos.
@@ -33,7 +33,7 @@ FOLDERS = {
 # folder -> its rooms (sub-folders) level by level, the lowest first; rooms that stand on one level do not include one
 # another. Files at the top of the folder stand above all of its rooms.
 ROOMS = {
-    "kernels": (("contact",), ("state",), ("course", "isa"), ("tangents",), ("lanes", "teams")),
+    "kernels": (("contact",), ("state",), ("course", "isa"), ("tangents",), ("lanes", "device")),
     "host": (
         ("process",),
         ("case",),

@@ -79,6 +79,9 @@ struct PackingCase {
 /// The key `engine.isa`; "auto" is the choice without a value.
 using InstructionSetChoice = std::optional<kernels::InstructionSet>;
 
+/// The key `engine.backend`: lanes of the processor, a GPU, or a GPU where there is one.
+enum class Backend { automatic, lanes, gpu };
+
 /// [engine] Speed and accuracy of the grain engine: a preset (engine.hpp), whose values single keys override.
 /// What each key costs and buys is measured in docs/trade.md. The defaults are the preset `standard`.
 struct EngineCase {
@@ -86,7 +89,7 @@ struct EngineCase {
   kernels::Precision precision = kernels::Precision::float32;  ///< value type of the pair loop
   double inertial_number = 3.0e-4;                             ///< target inertial number of an increment [-]
   double hold_tolerance = 1.0e-3;                              ///< unbalanced force ratio that ends the hold [-]
-  kernels::Backend backend = kernels::Backend::automatic;      ///< one SIMD lane or one team of threads per RVE
+  Backend backend = Backend::automatic;                        ///< where the RVEs of a mesh are advanced
   InstructionSetChoice isa = {};                               ///< of the lanes; no bit of a result depends on it
   int hold_cap = 4000;                                         ///< most steps of a hold
   double skin = 0.1;                                           ///< neighbour skin over the mean grain diameter [-]

@@ -95,6 +95,15 @@ InstructionSetChoice read_instruction_set(const io::Table& table) {
   return isa;
 }
 
+/// RVEs of a mesh may be advanced by a GPU; few RVEs would leave most of it idle.
+Backend read_backend(const io::Table& table, bool on_a_mesh) {
+  const std::string name = table.choice("backend", {"auto", "lanes", "gpu"}, "auto");
+  if (name == "gpu" && !on_a_mesh)
+    throw table.error("backend", "\"gpu\" is for kinds with a mesh only: all other kinds run a few RVEs, by lanes");
+  if (!on_a_mesh || name == "lanes") return Backend::lanes;
+  return name == "gpu" ? Backend::gpu : Backend::automatic;
+}
+
 }  // namespace
 
 EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
@@ -102,10 +111,7 @@ EngineCase read_engine(const io::Table& table, bool on_a_mesh) {
   const char* width = engine.precision == kernels::Precision::float32 ? "float" : "double";
   engine.precision = table.choice("precision", {"float", "double"}, width) == "float" ? kernels::Precision::float32
                                                                                       : kernels::Precision::float64;
-  const std::string backend = table.choice("backend", {"auto", "lanes", "teams"}, "auto");
-  engine.backend = backend == "lanes"   ? kernels::Backend::lanes
-                   : backend == "teams" ? kernels::Backend::teams
-                                        : kernels::Backend::automatic;
+  engine.backend = read_backend(table, on_a_mesh);
   engine.isa = read_instruction_set(table);
   read_rates(table, engine);
   read_integer(table, "hold_cap", engine.hold_cap, {.at_least = 0, .at_most = 10'000'000});
@@ -159,16 +165,10 @@ std::string engine_note(const EngineCase& engine, const SoilCase& soil) {
   return note;
 }
 
-kernels::TangentKind tangent_kind(TangentChoice choice, const EngineCase& engine) {
-  const bool on_teams = kernels::takes_teams(engine.backend);
-  return choice.value_or(on_teams ? kernels::TangentKind::contact : kernels::TangentKind::elastic);
-}
+kernels::TangentKind tangent_kind(TangentChoice choice) { return choice.value_or(kernels::TangentKind::elastic); }
 
 kernels::EngineSettings engine_settings(const EngineCase& engine) {
-  return {.precision = engine.precision,
-          .skin = engine.skin,
-          .hold_tolerance = engine.hold_tolerance,
-          .backend = engine.backend};
+  return {.precision = engine.precision, .skin = engine.skin, .hold_tolerance = engine.hold_tolerance};
 }
 
 bool uses_engine(CaseKind kind, MaterialKind material) {

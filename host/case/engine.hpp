@@ -31,7 +31,7 @@ namespace voussoir::host {
 
 /// The tangent of a choice. A choice without a value means the elastic tangent, or eq. (4) with teams of threads, which
 /// find no other.
-[[nodiscard]] kernels::TangentKind tangent_kind(TangentChoice choice, const EngineCase& engine);
+[[nodiscard]] kernels::TangentKind tangent_kind(TangentChoice choice);
 
 /// True where [engine] decides anything. It does not for packings and biaxial tests, which have rates of their own.
 [[nodiscard]] bool uses_engine(CaseKind kind, MaterialKind material);

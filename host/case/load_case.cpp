@@ -81,18 +81,10 @@ void read_ground_tables(const io::Table& root, Case& input) {
   }
 }
 
-/// Refuses a case that asks for something that teams of threads do not compute.
-void check_teams(const io::Table& root, const Case& input) {
-  const auto of_lanes = [](TangentChoice tangent) { return tangent && *tangent != kernels::TangentKind::contact; };
-  if (of_lanes(input.newton.tangent)) {
-    throw root.table("newton").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
-  }
-  if (input.kind == CaseKind::probe && of_lanes(input.probe.tangent)) {
-    throw root.table("probe").error("tangent", "other than \"contact\" is not computed by engine.backend = \"teams\"");
-  }
-  if (input.kind == CaseKind::biaxial && input.output.microstructure.any()) {
-    throw root.table("output").error("microstructure", "is not recorded along a test by engine.backend = \"teams\"");
-  }
+/// Refuses a case that asks for something that a GPU does not compute.
+void check_gpu(const io::Table& root, const Case& input) {
+  if (input.newton.tangent == kernels::TangentKind::loading)
+    throw root.table("newton").error("tangent", "\"loading\" is not computed by engine.backend = \"gpu\"");
 }
 
 std::string bytes_of(const std::filesystem::path& file) {
@@ -144,7 +136,7 @@ Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
   input.name = read_title(root, file);
   read_grain_tables(root, input);
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
-  if (input.engine.backend == kernels::Backend::teams) check_teams(root, input);
+  if (input.engine.backend == Backend::gpu) check_gpu(root, input);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
   check_packing_origin(root, input);
   declare_idle_keys(root, input);

@@ -12,6 +12,7 @@
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
+#include "kernels/device/device_residence.hpp"
 #include "kernels/state/committed_contacts.hpp"
 #include "kernels/state/describe_committed.hpp"
 #include "kernels/state/mobility.hpp"
@@ -53,6 +54,7 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
     : engine_(options.engine),
       settings_(settings_of(options)),
       microstructure_(options.microstructure),
+      device_(choose_device(options.engine, options.tangent)),
       batch_(batch_of_points(mix)),
       requests_(mix.points()),
       trial_reports_(mix.points()),
@@ -64,6 +66,7 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
     mobilities_.push_back(
         kernels::mean_mobility<kernels::PlainEngineLaw>(packing, kernels::EngineSettings{}.overlap_limit));
   }
+  find_residence();
   kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
   for (std::size_t k = 0; k < mix.points(); ++k) {
     kernels::RveReport& report = committed_reports_[k];
@@ -77,6 +80,17 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
       report.status = kernels::RveStatus::converged;
   }
   deferral_.start(committed_reports_);
+}
+
+/// Moves the RVEs to the device. With `engine.backend` = "auto", lanes advance them where the device has no room.
+void RvePool::find_residence() {
+  if (!device_) return;
+  try {
+    kernels::device::reside(batch_, device_, settings_.precision);
+  } catch (const std::runtime_error&) {
+    if (engine_.backend == Backend::gpu) throw;
+    device_.reset();
+  }
 }
 
 void RvePool::begin_increment() {
@@ -155,14 +169,15 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
 
 void RvePool::commit() {
   const kernels::RveStates before = batch_.committed;
-  kernels::commit(batch_);
-  committed_reports_ = trial_reports_;
-  if (is_held(before)) batch_.trial = free_states();
-  if (!deferral_.on()) return;
-  for (std::size_t k = 0; k < size(); ++k) {
-    if (!deferral_.commit(k, increment_[k], trial_reports_[k])) continue;
-    kernels::copy_state(before, batch_.committed, k, static_cast<std::size_t>(batch_.packing(k).size()));
+  std::vector<int> kept;
+  for (std::size_t k = 0; deferral_.on() && k < size(); ++k) {
+    if (deferral_.commit(k, increment_[k], trial_reports_[k])) kept.push_back(static_cast<int>(k));
   }
+  kernels::commit(batch_, kept);
+  committed_reports_ = trial_reports_;
+  if (!is_held(before)) return;
+  // The next states to be written are the trial states of lanes, or the committed ones that come from a device.
+  (batch_.residence ? batch_.committed : batch_.trial) = free_states();
 }
 
 void RvePool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const {
@@ -170,6 +185,7 @@ void RvePool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> t
 }
 
 std::vector<fem::PointField> RvePool::fields() const {
+  kernels::bring_committed(batch_);
   std::vector<fem::PointField> out;
   const auto add = [&](const ResultField& row, auto&& value) {
     fem::PointField field{row.name, row.unit, row.components, std::vector<double>(size())};
@@ -211,12 +227,14 @@ std::vector<fem::PointField> RvePool::fields() const {
 }
 
 double RvePool::void_ratio_of(std::size_t rve) const {
+  kernels::bring_committed(batch_);
   const kernels::RveStates& s = batch_.committed;
   return void_ratio(s.cell(rve, 0) * s.cell(rve, 3) - s.cell(rve, 1) * s.cell(rve, 2),
                     batch_.packing(rve).solid_area());
 }
 
 PackedRve RvePool::packed(std::size_t rve) const {
+  kernels::bring_committed(batch_);
   const kernels::RveReport& report = deferral_.on() ? deferral_.committed(rve).grains : committed_reports_[rve];
   PackedRve out;
   out.packing = batch_.packing(rve);

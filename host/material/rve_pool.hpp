@@ -5,6 +5,7 @@
 #include "fem/material_batch.hpp"
 #include "host/case/case.hpp"
 #include "host/material/deferral.hpp"
+#include "host/material/devices.hpp"
 #include "host/material/held_rves.hpp"
 #include "host/material/snapshot_source.hpp"
 #include "host/material/state_records.hpp"
@@ -56,6 +57,8 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] double pressure_floor() const {
     return settings_.pressure_floor;
   }  ///< least pressure that the reports' ratios are relative to [Pa]
+  /// Of the device on which the RVEs reside; empty where the lanes advance them.
+  [[nodiscard]] std::string device_name() const { return device_ ? device_->name() : std::string(); }
   [[nodiscard]] std::uint64_t identity() const;
   [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;  ///< of `n` RVEs
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
@@ -64,6 +67,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   EngineCase engine_;
   kernels::EngineSettings settings_;
   kernels::MicrostructureRequest microstructure_;
+  DevicePointer device_;
   kernels::RveBatch batch_;
   std::vector<kernels::StrainRequest> requests_;
   std::vector<kernels::RveReport> trial_reports_;
@@ -77,6 +81,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<kernels::RveStates> all_states_;       ///< committed, trial and held ones
   std::vector<std::weak_ptr<const HeldRves>> held_;  ///< those that somebody holds, and such as were held
 
+  void find_residence();
   [[nodiscard]] double inertial_time_of(std::size_t rve) const;
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
   void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);

@@ -125,6 +125,7 @@ void HeldRves::write(const Sink& sink) const {
 }
 
 HeldRves RvePool::committed_rves() const {
+  kernels::bring_committed(batch_);
   HeldRves held;
   held.states = batch_.committed;
   held.reports = committed_reports_;
@@ -178,6 +179,7 @@ kernels::RveStates RvePool::free_states() {
 
 void RvePool::set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records) {
   if (is_held(batch_.committed)) throw std::logic_error("a state that is held would be overwritten");
+  kernels::bring_committed(batch_);
   for (std::size_t k = 0; k < rves.size(); ++k) {
     io::ByteReader read(records[k], not_of_this_case);
     transfer_report(read, committed_reports_[rves[k]]);

@@ -30,6 +30,7 @@ struct Arguments {
   bool resume = false;
   bool replace = false;
   bool cpu = false;
+  bool devices = false;
   int threads = 0;
   int processes = 1;
   bool take_over = false;
@@ -147,8 +148,11 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
   CLI::Option_group* what = info->add_option_group("what");
   what->add_option("result", a.file, "run.h5 of a result");
   what->add_flag("--cpu", a.cpu, "print instead which instruction set the lanes take on this processor, and why");
+  what->add_flag("--devices", a.devices, "print instead which GPUs were found, or why none was");
   what->require_option(1);
-  info->callback([&] { outcome = a.cpu ? command_info_cpu() : command_info(a.file); });
+  info->callback([&] {
+    outcome = a.cpu ? command_info_cpu() : (a.devices ? command_info_devices() : command_info(a.file));
+  });
 }
 
 int complain(Outcome outcome, const std::string& sentence) {

@@ -10,6 +10,7 @@
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
 #include "host/estimate/report.hpp"
+#include "host/material/devices.hpp"
 #include "host/packing/draw_scatter.hpp"
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
@@ -131,5 +132,7 @@ Outcome command_info_cpu() {
                                   kernels::processor_name(), kernels::description_of(kernels::processor_set()), held,
                                   kernels::lanes_sentence(kernels::choose_lanes({}))));
 }
+
+Outcome command_info_devices() { return print_answer(devices_sentence()); }
 
 }  // namespace voussoir::host

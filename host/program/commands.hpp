@@ -28,6 +28,7 @@ namespace voussoir::host {
 
 /// `voussoir info --cpu`: prints the processor, the sets of lanes in this program, and which of them is taken and why.
 [[nodiscard]] Outcome command_info_cpu();
+[[nodiscard]] Outcome command_info_devices();
 
 struct SweepOptions {
   std::filesystem::path folder;

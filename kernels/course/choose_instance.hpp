@@ -1,6 +1,6 @@
 #pragma once
 /// The choice at run time between the compiled instances of the engine: precision, number of lanes side by side, and
-/// whether grains resist rolling. The law itself is chosen in contact/engine_law.hpp. Lanes and teams both use this
+/// whether grains resist rolling. The law itself is chosen in contact/engine_law.hpp. Lanes and devices both use this
 /// choice.
 
 #include <type_traits>
@@ -27,7 +27,7 @@ auto choose_precision(Precision precision, const Body& body) {
 }
 
 /// Calls body(Instance<Law>) with the law over the value type that the batch and the precision ask for. `Value<real>`
-/// is SingleLane<real> for teams, and for lanes the value that holds as many RVEs as the instruction set allows.
+/// is SingleLane<real> for devices, and for lanes the value that holds as many RVEs as the instruction set allows.
 template <template <class> class Value, class Body>
 auto choose_instance(const RveBatch& batch, Precision precision, const Body& body) {
   const auto with = [&]<class V>(Instance<V>) {

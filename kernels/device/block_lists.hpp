@@ -201,30 +201,36 @@ template <class Run>
     if (next > flag[c]) chosen[flag[c]] = keys[c];
   });
   run.block.barrier();
-  each(run, run.grains + 1, [&](int i) {
-    run.at.row[i] = static_cast<typename Run::Index>(lower_bound(chosen, all, pair_key(i, 0)));
-  });
   each(run, run.grains, [&](int i) { flag[i] = 0; });
   run.block.barrier();
   return Listing::done;
 }
 
-/// Lists for each grain its pairs with grains of smaller numbers, in the order of the list.
+/// Lists for each grain its pairs, in the order of the list.
 template <class Run>
-KOKKOS_FORCEINLINE_FUNCTION void list_incoming(Run& run) {
+KOKKOS_FORCEINLINE_FUNCTION void list_entries(Run& run) {
   using Index = typename Run::Index;
   int* const next = reinterpret_cast<int*>(run.at.action);
-  each_pair(run, [&](int p) { Kokkos::atomic_inc(&next[second_of(run.at.keys[p])]); });
+  each_pair(run, [&](int p) {
+    Kokkos::atomic_inc(&next[first_of(run.at.keys[p])]);
+    Kokkos::atomic_inc(&next[second_of(run.at.keys[p])]);
+  });
   run.block.barrier();
   static_cast<void>(sums_before(run, next, run.grains));
+  each(run, run.grains, [&](int i) { run.at.row[i] = static_cast<Index>(next[i]); });
+  if (run.block.thread() == 0) run.at.row[run.grains] = static_cast<Index>(2 * run.listed);
+  run.block.barrier();
   each_pair(run, [&](int p) {
-    run.at.incoming[Kokkos::atomic_fetch_add(&next[second_of(run.at.keys[p])], 1)] = static_cast<Index>(p);
+    const auto enter = [&](int grain, int entry) {
+      run.at.entries[Kokkos::atomic_fetch_add(&next[grain], 1)] = static_cast<Index>(entry);
+    };
+    enter(first_of(run.at.keys[p]), 2 * p);
+    enter(second_of(run.at.keys[p]), 2 * p + 1);
   });
   run.block.barrier();
   each(run, run.grains, [&](int i) {
-    const int begin = i == 0 ? 0 : next[i - 1];
-    run.at.incoming_end[i] = static_cast<Index>(next[i]);
-    sort_few(run.at.incoming + begin, next[i] - begin);
+    const int begin = static_cast<int>(run.at.row[i]);
+    sort_few(run.at.entries + begin, static_cast<int>(run.at.row[i + 1]) - begin);
   });
   run.block.barrier();
 }
@@ -238,7 +244,7 @@ template <class Run, class Number>
   using V = typename Run::V;
   using real = typename Run::real;
   if (choose_pairs(run, position) == Listing::too_many) return Listing::too_many;
-  list_incoming(run);
+  list_entries(run);
   const Cell cell(run.at.control->cell);
   each_pair(run, [&](int p) {
     const std::uint32_t key = run.at.keys[p];

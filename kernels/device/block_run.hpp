@@ -67,9 +67,8 @@ struct BlockMemory {
   std::uint32_t* keys;  ///< by pair
   real* gap;            ///< by pair, at the last rebase [m^2]
   Four<real>* action;   ///< by pair: force on i, torque on i and on j; between steps the scratch of sums and lists
-  Index* row;           ///< pairs of grain i: row[i] .. row[i + 1]
-  Index* incoming_end;  ///< pairs (h, i), h < i: incoming[incoming_end[i - 1] .. incoming_end[i]], ascending
-  Index* incoming;
+  Index* row;           ///< pairs of grain i, in which it is the first or the second: its entries row[i] .. row[i + 1]
+  Index* entries;       ///< 2 p, or 2 p + 1 where the grain is the second one of pair p; ascending for each grain
   int* counts;          ///< scratch of sums_before
   // In the device's memory.
   std::uint32_t* kept_key;        ///< of a rebase, by pair
@@ -97,8 +96,7 @@ struct BlockMemory {
     gap = of_grains.template take<real>(capacity);
     action = of_grains.template take<Four<real>>(capacity);
     row = of_grains.template take<Index>(n + 1);
-    incoming_end = of_grains.template take<Index>(n);
-    incoming = of_grains.template take<Index>(capacity);
+    entries = of_grains.template take<Index>(2 * capacity);
     kept_key = in_slow.take<std::uint32_t>(capacity);
     kept_history = in_slow.take<real>(capacity * history_size<Law>);
     springs = in_slow.take<SpringLanes<V>>(capacity);

@@ -73,25 +73,18 @@ KOKKOS_FORCEINLINE_FUNCTION void press_pairs(const Run& run, BlockSlots<Run>& he
   });
 }
 
-/// Calls body(k) for k = first .. end - 1, one after another.
-template <class Body>
-KOKKOS_FORCEINLINE_FUNCTION void in_turn(int first, int end, const Body& body) {
+/// Calls body(p, is_second) for the pairs of grain i, in the order of the list: those with grains of smaller numbers, in
+/// which it is the second one, come first.
+template <class Run, class Body>
+KOKKOS_FORCEINLINE_FUNCTION void each_pair_of(const Run& run, int i, const Body& body) {
+  const int end = static_cast<int>(run.at.row[i + 1]);
 #if defined(__CUDA_ARCH__)
 #pragma unroll 1
 #endif
-  for (int k = first; k < end; ++k) body(k);
-}
-
-/// Calls body(p) for the pairs of grain i with grains of smaller numbers.
-template <class Run, class Body>
-KOKKOS_FORCEINLINE_FUNCTION void each_incoming(const Run& run, int i, const Body& body) {
-  const int first = i == 0 ? 0 : static_cast<int>(run.at.incoming_end[i - 1]);
-  in_turn(first, static_cast<int>(run.at.incoming_end[i]), [&](int q) { body(static_cast<int>(run.at.incoming[q])); });
-}
-/// Calls body(p) for the pairs of grain i with grains of larger numbers.
-template <class Run, class Body>
-KOKKOS_FORCEINLINE_FUNCTION void each_own(const Run& run, int i, const Body& body) {
-  in_turn(static_cast<int>(run.at.row[i]), static_cast<int>(run.at.row[i + 1]), body);
+  for (int q = static_cast<int>(run.at.row[i]); q < end; ++q) {
+    const auto entry = static_cast<unsigned>(run.at.entries[q]);
+    body(static_cast<int>(entry >> 1U), (entry & 1U) != 0);
+  }
 }
 
 /// The force on a grain, and its torque as spin: the actions of its pairs, gathered.
@@ -100,17 +93,11 @@ template <class Run>
   using V = typename Run::V;
   using real = typename Run::real;
   real fx(0), fy(0), torque(0);
-  each_incoming(run, i, [&](int p) {
-    const Four<real> action = run.at.action[p];
-    fx = fx - action.x;
-    fy = fy - action.y;
-    torque = torque + action.w;
-  });
-  each_own(run, i, [&](int p) {
-    const Four<real> action = run.at.action[p];
-    fx = fx + action.x;
-    fy = fy + action.y;
-    torque = torque + action.z;
+  each_pair_of(run, i, [&](int p, bool is_second) {
+    const Four<real> action = run.at.action[p];  // whole, and then a choice: a load for each choice would take longer
+    fx = fx + (is_second ? -action.x : action.x);
+    fy = fy + (is_second ? -action.y : action.y);
+    torque = torque + (is_second ? action.w : action.z);
   });
   return {V(fx), V(fy), V(torque)};
 }

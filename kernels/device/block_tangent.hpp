@@ -58,8 +58,7 @@ template <class Run>
   using V = typename Run::V;
   const V zero(0), radius(run.at.rim[i].y);
   Triangle<V> block{zero, zero, zero, zero, zero, zero};
-  each_incoming(run, i, [&](int p) { add_block(run.at.springs[p], -radius, block); });
-  each_own(run, i, [&](int p) { add_block(run.at.springs[p], radius, block); });
+  each_pair_of(run, i, [&](int p, bool is_second) { add_block(run.at.springs[p], is_second ? -radius : radius, block); });
   return block;
 }
 

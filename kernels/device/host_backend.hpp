@@ -1,9 +1,11 @@
 #pragma once
 /// The device that is no device: blocks on the cores of the host, in its memory. It is the engine of a GPU without a
-/// GPU, for tests; the lanes do the same work much faster.
+/// GPU, for tests; the lanes do the same work much faster. Its threads are OpenMP's and not those of Kokkos, because a
+/// library that is opened at run time has a Kokkos of its own that nobody starts.
 ///
 /// A backend has
 ///   allocate(bytes), release(p), copy_up(to, from, bytes), copy_down(to, from, bytes)   the device's memory
+///   follows_stresses                whether servo drives are compiled
 ///   levels, first_level(grains)     how many instances with ever more room there are, and the first that fits
 ///   room<Law, Drive>(level, grains) pairs for which a block of a level has room
 ///   launch<Law, Drive, classes>(batch, settings, level, blocks, pairs)   advances the RVEs order[0 .. blocks - 1], and
@@ -20,6 +22,7 @@ namespace voussoir::kernels::device {
 struct HostBackend {
   static constexpr std::align_val_t line{64};
   static constexpr int levels = 3;
+  static constexpr bool follows_stresses = true;
 
   [[nodiscard]] static void* allocate(std::size_t bytes) { return ::operator new(bytes, line); }
   static void release(void* p) { ::operator delete(p, line); }
@@ -42,15 +45,15 @@ struct HostBackend {
                      int, int blocks, int pairs) {
     using Memory = BlockMemory<Law, Drive, InMemory>;
     const Memory sizes(no_memory(), no_memory(), batch.packings.stride, pairs, 1);
-    using Space = Kokkos::DefaultHostExecutionSpace;
-    Kokkos::parallel_for("voussoir::device::host", Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(0, blocks).set_chunk_size(1),
-                         [&](int number) {
-                           const HostMemory fast(sizes.fast_bytes), slow(sizes.slow_bytes);
-                           using Run = BlockRun<Law, Drive, SerialBlock, InMemory, classes>;
-                           advance_block<Run>({SerialBlock{fast.data()}, &batch, &settings, slow.data(), number,
-                                               batch.packings.stride, pairs});
-                         });
-    Space().fence("voussoir::device::host");
+#if defined(_OPENMP)
+#pragma omp parallel for schedule(dynamic, 1)
+#endif
+    for (int number = 0; number < blocks; ++number) {
+      const HostMemory fast(sizes.fast_bytes), slow(sizes.slow_bytes);
+      using Run = BlockRun<Law, Drive, SerialBlock, InMemory, classes>;
+      advance_block<Run>(
+          {SerialBlock{fast.data()}, &batch, &settings, slow.data(), number, batch.packings.stride, pairs});
+    }
   }
 
   /// The memory of one block.

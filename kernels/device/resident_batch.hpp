@@ -62,7 +62,7 @@ class ResidentBatch final : public ResidentRves {
   using real = real_of<typename Law::Value>;
 
   explicit ResidentBatch(const RveSet& rves)
-      : batch_{rves.packings, rves.packing_of, {}, {}, {}},
+      : batch_{rves.packings, rves.packing_of, {}, {}, {}, {}},
         packings_(batch_),
         states_(static_cast<int>(batch_.size()), packings_.grains(), rves.committed.contacts, rves.committed.history),
         packing_of_(batch_.size()),
@@ -90,7 +90,8 @@ class ResidentBatch final : public ResidentRves {
   }
   DeviceWork advance(std::span<const ServoRequest> requests, const EngineSettings& settings,
                      std::span<RveReport> reports, std::span<const int> rves) override {
-    return advance_with<ServoControl>(requests, settings, reports, rves);
+    if constexpr (Backend::follows_stresses) return advance_with<ServoControl>(requests, settings, reports, rves);
+    throw std::invalid_argument("the device follows given motions only: lanes control stresses");
   }
   void commit(std::span<const int> kept) override {
     const std::vector<std::uint8_t> changes = states_.commit(kept);
@@ -180,11 +181,10 @@ class ResidentBatch final : public ResidentRves {
     const int pairs = Backend::template room<Law, Drive>(level, packings_.grains());
     grow_candidates(pairs);
     const BlockBatch<real, Drive> batch = view(arrays);
-    if (packings_.classes()) {
-      Backend::template launch<Law, Drive, true>(batch, settings, level, blocks, pairs);
-    } else {
-      Backend::template launch<Law, Drive, false>(batch, settings, level, blocks, pairs);
+    if constexpr (Law::has_rolling) {
+      if (packings_.classes()) return Backend::template launch<Law, Drive, true>(batch, settings, level, blocks, pairs);
     }
+    Backend::template launch<Law, Drive, false>(batch, settings, level, blocks, pairs);
   }
 
   template <class Drive>
@@ -236,11 +236,23 @@ class ResidentBatch final : public ResidentRves {
   }
 };
 
-/// Holds a batch by the instance that its law, its precision and its grains ask for.
+/// Calls body(Instance<Law>) with the law that the RVEs ask for. Grains of several classes have the law with rolling, so
+/// that fewer instances are compiled.
+template <class Body>
+[[nodiscard]] auto choose_law(const RveSet& rves, Precision precision, const Body& body) {
+  const RveBatch batch{rves.packings, rves.packing_of, {}, {}, {}, {}};
+  const bool rolling = rolls(batch) || std::any_of(rves.packings.begin(), rves.packings.end(),
+                                                   [](const Packing& p) { return !p.class_of.empty(); });
+  return choose_precision(precision, [&]<class real>(Instance<real>) {
+    using V = SingleLane<real>;
+    return rolling ? body(Instance<EngineLaw<V, true>>{}) : body(Instance<EngineLaw<V, false>>{});
+  });
+}
+
+/// Holds RVEs by the instance that they ask for.
 template <class Backend>
 [[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) {
-  const RveBatch batch{rves.packings, rves.packing_of, {}, {}, {}};
-  return choose_instance<SingleLane>(batch, precision, [&]<class Law>(Instance<Law>) -> std::unique_ptr<ResidentRves> {
+  return choose_law(rves, precision, [&]<class Law>(Instance<Law>) -> std::unique_ptr<ResidentRves> {
     return std::make_unique<ResidentBatch<Law, Backend>>(rves);
   });
 }

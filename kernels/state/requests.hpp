@@ -19,10 +19,6 @@ enum class Precision { float32, float64 };
 /// (tangents/loading_tangent.hpp).
 enum class TangentKind { contact, elastic, static_, loading };
 
-/// `lanes`: one SIMD lane advances an RVE (CPUs). `teams`: a team of threads does (GPUs; on a CPU they give the same
-/// bits more slowly). `automatic`: teams where Kokkos' default execution space is a device of its own.
-enum class Backend { automatic, lanes, teams };
-
 /// Numerical settings of a run. The case file's [engine] table sets them for a mesh; packings are made with the
 /// defaults.
 struct EngineSettings {
@@ -34,9 +30,6 @@ struct EngineSettings {
   int look_interval = 16;         ///< steps between looks at stress and unbalanced force
   int list_interval = 8;          ///< steps between looks at displacements
   int guard_interval = 256;       ///< steps between looks at overlaps while straining
-  Backend backend = Backend::automatic;
-  int team_size = 0;  ///< threads of a team; with 0 Kokkos chooses: on CPUs one, since several threads would wait for
-                      ///< one another on shared cores
   TangentKind tangent = TangentKind::contact;
   double tangent_tolerance = 2e-3;  ///< error of the grains' motion under which a static tangent's iterations end, in
                                     ///< the norm of the energy; the tangent's own error is its square [-]

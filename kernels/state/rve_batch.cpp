@@ -125,7 +125,8 @@ RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of, 
   return batch;
 }
 
-void commit(RveBatch& batch) {
+void commit(RveBatch& batch, std::span<const int> kept) {
+  if (batch.residence) return batch.residence->commit(kept);
   std::swap(batch.committed, batch.trial);
   CandidateCache& c = batch.candidates;
   for (std::size_t k = 0; k < batch.size(); ++k) {
@@ -133,9 +134,19 @@ void commit(RveBatch& batch) {
     c.spent[k] = c.spending[k];
     c.spending[k] = -1.0;
   }
+  for (const int rve : kept) {
+    const auto k = static_cast<std::size_t>(rve);
+    copy_state(batch.trial, batch.committed, k, batch.packing(k).radii.size());
+    c.skin[k] = -1.0;
+  }
+}
+
+void bring_committed(const RveBatch& batch) {
+  if (batch.residence) batch.residence->bring(batch.committed);
 }
 
 void forget_candidates(RveBatch& batch) {
+  if (batch.residence) batch.residence->forget();
   CandidateCache& c = batch.candidates;
   for (auto* numbers : {&c.skin, &c.spent, &c.spending}) numbers->assign(batch.size(), -1.0);
 }

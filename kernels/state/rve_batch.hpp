@@ -10,12 +10,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "kernels/contact/engine_law.hpp"
 #include "kernels/contact/kinematics.hpp"
 #include "kernels/state/requests.hpp"
+#include "kernels/state/residence.hpp"
 
 namespace voussoir::kernels {
 
@@ -128,6 +131,7 @@ struct RveBatch {
   RveStates committed;
   RveStates trial;
   CandidateCache candidates;
+  std::shared_ptr<Residence> residence;  ///< where a device advances the RVEs; it then holds the newest states
 
   [[nodiscard]] std::size_t size() const { return packing_of.size(); }
   [[nodiscard]] const Packing& packing(std::size_t rve) const {
@@ -143,8 +147,13 @@ void copy_state(const RveStates& from, RveStates& to, std::size_t rve, std::size
 [[nodiscard]] RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of,
                                   int history = history_size<PlainEngineLaw>);
 
-/// Makes the trial states the committed ones; an RVE whose evaluation failed keeps its committed state.
-void commit(RveBatch& batch);
+/// Makes the trial states the committed ones; an RVE whose evaluation failed keeps its committed state, and so do the
+/// RVEs `kept`.
+void commit(RveBatch& batch, std::span<const int> kept = {});
+
+/// Brings the committed states from the device that has newer ones to `batch.committed`. To be called before they are
+/// read; without a device it does nothing.
+void bring_committed(const RveBatch& batch);
 
 /// Whether any grain resists rolling; where none does, an engine runs from which that part of the law is compiled out.
 [[nodiscard]] bool rolls(const RveBatch& batch);

@@ -50,13 +50,6 @@ Scene three_classes(Precision precision) {
   return scene;
 }
 
-/// `alike` by teams of the default execution space.
-Scene teams(Precision precision) {
-  Scene scene = alike(precision);
-  scene.settings.backend = Backend::teams;
-  return scene;
-}
-
 /// Length change that brings the pressure back, by the tangent of eq. (4); that it is too stiff makes it a safe choice.
 double dilation_of(const RveReport& report) {
   const double bulk = 0.25 * (report.tangent[0] + 2.0 * report.tangent[1] + report.tangent[3]);
@@ -165,7 +158,6 @@ void add(const std::string& name, int iterations, Scene (*make)(Precision)) {
   add("three_classes", 8, three_classes);
   add("grading", 4, grading);
   add("unequal_steps", 1, unequal);
-  add("teams", 1, teams);
   return true;
 }();
 

@@ -4,21 +4,13 @@
 /// The kernel is a plain __global__ function and not a Kokkos team policy: an RVE of 700 grains wants 50 KiB of fast
 /// memory, and Kokkos 4.5 grants a team 41 KiB of the 227 KiB that a block of compute capability 9.0 may have.
 
-#include <cuda_runtime.h>
-
 #include <algorithm>
 #include <array>
-#include <stdexcept>
-#include <string>
 
 #include "kernels/device/block_advance.hpp"
+#include "kernels/device/cuda/cuda_errors.hpp"
 
 namespace voussoir::kernels::device {
-
-/// @throws std::runtime_error with the words of the runtime
-inline void check_cuda(cudaError_t error, const char* what) {
-  if (error != cudaSuccess) throw std::runtime_error(std::string(what) + ": " + cudaGetErrorString(error));
-}
 
 template <int Threads>
 struct CudaBlock {
@@ -57,6 +49,7 @@ __global__ void __launch_bounds__(Of::threads, Of::blocks)
 }
 
 struct CudaBackend {
+  static constexpr bool follows_stresses = false;  // few RVEs are made or tested under stresses, and lanes serve them
   static constexpr int levels = 6;  ///< three instances in registers, three with ever more room in memory
 
   [[nodiscard]] static void* allocate(std::size_t bytes) {

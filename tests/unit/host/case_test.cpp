@@ -71,20 +71,19 @@ TEST(Case, DefaultsAreThoseOfTheDeclarations) {
   EXPECT_EQ(input.newton.smallest_cut, declared.newton.smallest_cut);
 }
 
-TEST(Case, TeamsHaveNoStaticTangentAndRecordNoMicrostructure) {
-  const std::string teams = "kind = 'tunnel'\n[engine]\nbackend = 'teams'\n";
-  EXPECT_EQ(load_case(write(teams)).engine.backend, kernels::Backend::teams);
-  EXPECT_FALSE(load_case(write(teams)).newton.tangent.has_value());  // eq. (4) there
-  EXPECT_EQ(complaint(teams, {"newton.tangent=contact"}), "");
-  const char* other = "other than \"contact\" is not computed by engine.backend = \"teams\"";
-  for (const char* tangent : {"elastic", "static", "loading"}) {
-    expect_refused({teams, {std::string("newton.tangent=") + tangent}, 0, "newton.tangent", other});
+TEST(Case, AGpuAdvancesTheRvesOfAMeshAndFindsNoLoadingTangents) {
+  const std::string gpu = "kind = 'tunnel'\n[engine]\nbackend = 'gpu'\n";
+  EXPECT_EQ(load_case(write(gpu)).engine.backend, Backend::gpu);
+  for (const char* tangent : {"contact", "elastic", "static"}) {
+    EXPECT_EQ(complaint(gpu, {std::string("newton.tangent=") + tangent}), "");
   }
-  const std::string probe = "kind = 'probe'\n[engine]\nbackend = 'teams'\n";
-  expect_refused({probe, {"probe.tangent=loading"}, 0, "probe.tangent", other});
-  const std::string biaxial = "kind = 'biaxial'\n[engine]\nbackend = 'teams'\n[output]\nmicrostructure = ['fabric']\n";
-  expect_refused({biaxial, {}, 5, "output.microstructure", "is not recorded along a test"});
-  EXPECT_EQ(load_case(write(biaxial), {"output.microstructure=[]"}).engine.backend, kernels::Backend::teams);
+  expect_refused({gpu, {"newton.tangent=loading"}, 0, "newton.tangent", "is not computed by engine.backend = \"gpu\""});
+  EXPECT_EQ(load_case(write("kind = 'tunnel'\n")).engine.backend, Backend::automatic);
+  for (const char* kind : {"probe", "biaxial"}) {
+    const std::string head = std::string("kind = '") + kind + "'\n[engine]\n";
+    expect_refused({head + "backend = 'gpu'\n", {}, 3, "engine.backend", "is for kinds with a mesh only"});
+    EXPECT_EQ(load_case(write(head + "backend = 'auto'\n")).engine.backend, Backend::lanes);
+  }
 }
 
 TEST(Case, RvesAreDeferredOnAMeshOnly) {

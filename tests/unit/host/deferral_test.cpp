@@ -225,23 +225,6 @@ TEST_F(DeferringPool, KeepsToItsBound) {
   EXPECT_LT(error, bound);
 }
 
-/// Teams run some of the RVEs as lanes do.
-TEST_F(DeferringPool, HasTheSameBitsInTeams) {
-  EngineCase with_teams = engine(1e-2);
-  with_teams.backend = kernels::Backend::teams;
-  RvePool lanes(rve, {engine(1e-2)}, 2), teams(rve, {with_teams}, 2);
-  std::size_t deferred = 0;
-  for (const auto& second : {tiny, large, large}) {
-    const fem::BatchReport by_lanes = step(lanes, {large, second});
-    const auto answer = stress_;
-    EXPECT_EQ(step(teams, {large, second}).deferred, by_lanes.deferred);
-    deferred += by_lanes.deferred;
-    EXPECT_EQ(answer, stress_);
-    EXPECT_EQ(teams.state(), lanes.state());
-  }
-  EXPECT_GT(deferred, 0u) << "no RVE was deferred: the test shows nothing";
-}
-
 TEST_F(DeferringPool, AVanishingBoundHasTheBitsOfNone) {
   RvePool on(rve, {engine(1e-300)}, 2), off(rve, {engine(0)}, 2);
   for (const auto& h : {tiny, large}) {

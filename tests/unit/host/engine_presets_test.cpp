@@ -109,22 +109,16 @@ TEST(EnginePresets, AnUnknownOneIsRefused) {
 TEST(EngineSettings, AreThoseOfTheCase) {
   const kernels::EngineSettings settings = engine_settings({.precision = kernels::Precision::float64,
                                                             .hold_tolerance = 2e-5,
-                                                            .backend = kernels::Backend::teams,
                                                             .skin = 0.03});
   EXPECT_EQ(settings.precision, kernels::Precision::float64);
   EXPECT_EQ(settings.hold_tolerance, 2e-5);
-  EXPECT_EQ(settings.backend, kernels::Backend::teams);
   EXPECT_EQ(settings.skin, 0.03);
 }
 
-TEST(EngineSettings, ATangentWithoutANameFollowsTheBackend) {
-  const EngineCase lanes{.backend = kernels::Backend::lanes}, teams{.backend = kernels::Backend::teams};
-  EXPECT_EQ(tangent_kind({}, lanes), kernels::TangentKind::elastic);
-  EXPECT_EQ(tangent_kind({}, teams), kernels::TangentKind::contact);
-  for (const EngineCase& engine : {lanes, teams}) {
-    EXPECT_EQ(tangent_kind(kernels::TangentKind::loading, engine), kernels::TangentKind::loading);
-    EXPECT_EQ(tangent_kind(kernels::TangentKind::contact, engine), kernels::TangentKind::contact);
-  }
+TEST(EngineSettings, ATangentWithoutANameIsElastic) {
+  EXPECT_EQ(tangent_kind({}), kernels::TangentKind::elastic);
+  EXPECT_EQ(tangent_kind(kernels::TangentKind::loading), kernels::TangentKind::loading);
+  EXPECT_EQ(tangent_kind(kernels::TangentKind::contact), kernels::TangentKind::contact);
 }
 
 TEST(EngineSettings, TangentsAreReadByTheirNames) {

@@ -1,0 +1,92 @@
+#include "kernels/device/device_library.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+namespace voussoir::kernels::device {
+
+namespace {
+
+constexpr const char* file_name = "libvoussoir_gpu.so";
+
+std::vector<std::filesystem::path> places() {
+  if (const char* const given = std::getenv("VOUSSOIR_GPU_LIBRARY"); given != nullptr) return {given};
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  const std::filesystem::path folder = program.parent_path();
+  return {folder / file_name, folder / ".." / "lib" / file_name};
+}
+
+/// An opened library. It stays open, because its devices need its code.
+struct Library {
+  std::string path, why;
+  CountFunction count = nullptr;
+  OpenFunction open = nullptr;
+};
+
+void take_functions(void* handle, Library& to) {
+  const auto interface = reinterpret_cast<InterfaceFunction>(::dlsym(handle, interface_symbol));
+  if (interface == nullptr || interface() != interface_number) {
+    to.why = "the library " + to.path + " belongs to another version of the program";
+    return;
+  }
+  to.count = reinterpret_cast<CountFunction>(::dlsym(handle, count_symbol));
+  to.open = reinterpret_cast<OpenFunction>(::dlsym(handle, open_symbol));
+}
+
+Library open_library() {
+  Library out;
+  const std::vector<std::filesystem::path> tried = places();
+  for (const std::filesystem::path& place : tried) {
+    std::error_code error;
+    if (!std::filesystem::exists(place, error)) continue;
+    out.path = place.lexically_normal().string();
+    if (void* const handle = ::dlopen(out.path.c_str(), RTLD_NOW | RTLD_LOCAL); handle != nullptr) {
+      take_functions(handle, out);
+    } else {
+      out.why = std::string("the library cannot be opened: ") + ::dlerror();
+    }
+    return out;
+  }
+  out.why = "there is no " + (tried.empty() ? std::string(file_name) : tried.front().lexically_normal().string());
+  return out;
+}
+
+const Library& library() {
+  static const Library opened = open_library();
+  return opened;
+}
+
+}  // namespace
+
+DeviceSearch find_devices() {
+  const Library& from = library();
+  DeviceSearch out{.library = from.path, .names = {}, .why_none = from.why};
+  if (from.count == nullptr) return out;
+  const std::size_t count = from.count(&out.why_none);
+  for (std::size_t k = 0; k < count; ++k) {
+    std::string why;
+    const std::unique_ptr<Device> device(from.open(k, &why));
+    out.names.push_back(device ? device->name() : "cannot be used: " + why);
+  }
+  return out;
+}
+
+std::shared_ptr<Device> open_device(std::size_t number, std::string& why) {
+  const Library& from = library();
+  why = from.why;
+  if (from.open == nullptr) return nullptr;
+  const std::size_t count = from.count(&why);
+  if (count == 0) return nullptr;
+  if (number >= count) {
+    why = "there is no device of the number " + std::to_string(number);
+    return nullptr;
+  }
+  return std::shared_ptr<Device>(from.open(number, &why));
+}
+
+}  // namespace voussoir::kernels::device

@@ -1,0 +1,39 @@
+#pragma once
+/// The library of a device, which is opened when a program wants a device. A program without the library, or on a
+/// machine without the device's driver, runs as if there were no devices.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernels/device/resident_rves.hpp"
+
+namespace voussoir::kernels::device {
+
+/// What a look for devices found.
+struct DeviceSearch {
+  std::string library;              ///< path of the library that was opened; empty: none
+  std::vector<std::string> names;   ///< of its devices, in their order
+  std::string why_none;             ///< where there is no device
+};
+
+/// Looks for the library and its devices: the file that the environment variable VOUSSOIR_GPU_LIBRARY names, or
+/// libvoussoir_gpu.so beside the program or in its folder ../lib.
+[[nodiscard]] DeviceSearch find_devices();
+
+/// Opens device `number` (from 0). Null where there is none, and then `why` says the reason.
+[[nodiscard]] std::shared_ptr<Device> open_device(std::size_t number, std::string& why);
+
+/// The form of the functions that a library exports under the names below. The interface's number is raised with every
+/// change of the types that cross the border.
+inline constexpr int interface_number = 1;
+inline constexpr const char* interface_symbol = "voussoir_device_interface";
+inline constexpr const char* count_symbol = "voussoir_device_count";
+inline constexpr const char* open_symbol = "voussoir_device_open";
+using InterfaceFunction = int (*)();
+/// Number of devices; with 0, the text says why.
+using CountFunction = std::size_t (*)(std::string* why);
+/// Opens a device; null and a text where that fails.
+using OpenFunction = Device* (*)(std::size_t number, std::string* why);
+
+}  // namespace voussoir::kernels::device

@@ -1,0 +1,47 @@
+// A library of a device as the program opens it (kernels/device/device_library.hpp), whose device is the host: what a
+// program does with a GPU can be tested without one. The environment variable VOUSSOIR_EMULATED_GPUS says how many
+// devices there are; without it there is one.
+
+#include <cstdlib>
+
+#include "kernels/device/device_library.hpp"
+#include "kernels/device/host_backend.hpp"
+#include "kernels/device/resident_batch.hpp"
+
+namespace voussoir::kernels::device {
+namespace {
+
+class EmulatedDevice final : public Device {
+ public:
+  explicit EmulatedDevice(std::size_t number) : number_(number) {}
+  [[nodiscard]] std::string name() const override { return "emulated device " + std::to_string(number_); }
+  [[nodiscard]] std::size_t memory_bytes() const override { return std::size_t(1) << 33; }
+  [[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) override {
+    return device::hold<HostBackend>(rves, precision);
+  }
+
+ private:
+  std::size_t number_;
+};
+
+}  // namespace
+}  // namespace voussoir::kernels::device
+
+extern "C" {
+
+__attribute__((visibility("default"))) int voussoir_device_interface() {
+  return voussoir::kernels::device::interface_number;
+}
+
+__attribute__((visibility("default"))) std::size_t voussoir_device_count(std::string* why) {
+  const char* const wanted = std::getenv("VOUSSOIR_EMULATED_GPUS");
+  const std::size_t count = wanted == nullptr ? 1 : std::strtoul(wanted, nullptr, 10);
+  if (count == 0) *why = "the driver knows no device";
+  return count;
+}
+
+__attribute__((visibility("default"))) voussoir::kernels::device::Device* voussoir_device_open(std::size_t number,
+                                                                                               std::string*) {
+  return new voussoir::kernels::device::EmulatedDevice(number);
+}
+}

@@ -1,0 +1,69 @@
+"""RVEs on a device, which is the host here (tests/emulated_gpu): the program opens its library, and a tunnel has the
+lanes' answers within rounding. Without the library, and with one that has no device, the lanes' bits stay."""
+
+import os
+import subprocess
+
+import h5py
+import numpy as np
+from program import PROGRAM, SMALL_TUNNEL, check, check_same, command, fresh, run
+
+LIBRARY = os.environ["VOUSSOIR_EMULATED_GPU"]
+EMULATED = {"VOUSSOIR_GPU_LIBRARY": LIBRARY}
+SETTINGS = [*SMALL_TUNNEL, "packing.grains=100", "volume_loss.increments=2"]
+
+
+def devices(**environment):
+    out = subprocess.run([PROGRAM, "info", "--devices"], check=False, capture_output=True, text=True, env=os.environ | environment)
+    check(out.returncode == 0, f"info --devices ended with {out.returncode}: {out.stderr}")
+    return out.stdout
+
+
+def with_environment(words, **environment):
+    return ["env", *(f"{name}={value}" for name, value in environment.items()), *words]
+
+
+def last(folder):
+    return sorted((folder / "increments").glob("*.h5"))[-1]
+
+
+# What the search for devices says.
+check("devices: none: there is no " in devices(VOUSSOIR_GPU_LIBRARY="/no/such/library.so"), "no library is not said")
+check("device 0: emulated device 0" in devices(**EMULATED), "the emulated device is not named")
+two = devices(**EMULATED, VOUSSOIR_EMULATED_GPUS="2")
+check("device 1: emulated device 1" in two, "the second device is not named")
+none = devices(**EMULATED, VOUSSOIR_EMULATED_GPUS="0")
+check("devices: none: the driver knows no device" in none, f"a library without devices says {none}")
+wrong = devices(VOUSSOIR_GPU_LIBRARY=PROGRAM)
+check("devices: none: the library cannot be opened" in wrong or "another version" in wrong, f"a wrong file says {wrong}")
+
+# Without a device nothing changes; whoever asks for one is told that there is none.
+lanes = fresh("lanes")
+run(command("tunnel_quick", lanes, SETTINGS))
+deviceless = fresh("deviceless")
+run(with_environment(command("tunnel_quick", deviceless, SETTINGS), **EMULATED, VOUSSOIR_EMULATED_GPUS="0"))
+check_same(lanes, deviceless)
+asked = fresh("asked")
+words = command("tunnel_quick", asked, [*SETTINGS, 'engine.backend="gpu"'])
+refused = subprocess.run(words, check=False, capture_output=True, text=True)
+check(refused.returncode != 0 and "no device is there" in refused.stderr, f"a missing device is not said: {refused.stderr}")
+ignored = fresh("ignored")
+run(with_environment(command("tunnel_quick", ignored, [*SETTINGS, 'engine.backend="lanes"']), **EMULATED))
+check_same(lanes, ignored)
+
+# On the device: the log says so, and the ground moves as with lanes.
+device = fresh("device")
+run(with_environment(command("tunnel_quick", device, SETTINGS), **EMULATED))
+check("grains on the device emulated device 0" in (device / "run.log").read_text(), "the log does not name the device")
+check(last(device).name == last(lanes).name, "the device took another number of increments")
+with h5py.File(last(lanes)) as a, h5py.File(last(device)) as b:
+    expected, found = a["node/displacement"][:], b["node/displacement"][:]
+largest = np.abs(expected).max()
+off = np.abs(found - expected).max() / largest
+print(f"displacements of the device are off by {off:.1e} of the largest, {largest:.3e} m")
+check(0 < off < 0.05, "displacements on the device are not those of lanes within repeats")
+
+# The same bits again, and after a stop: states come down for the checkpoint and go up again.
+again = fresh("again")
+run(with_environment(command("tunnel_quick", again, SETTINGS), **EMULATED))
+check_same(device, again)
