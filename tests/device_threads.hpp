@@ -118,6 +118,7 @@ struct ThreadBackend {
   static inline int blocks_run = 0;   ///< of all launches so far
 
   static constexpr int levels = 1 + HostBackend::levels;
+  static constexpr bool follows_stresses = true;
   static constexpr int rubbish = 0xfe;  ///< in each byte: a negative integer, a negative number of 1e303 or NaN-like
                                         ///< float
 

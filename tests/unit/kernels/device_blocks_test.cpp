@@ -240,12 +240,13 @@ TEST_F(DeviceBlocks, MoreContactsThanAStateHoldsAreReportedAsByTheLanes) {
 TEST_F(DeviceBlocks, AListWithoutRoomRunsAgainWithMoreOfIt) {
   // There is room for fewer pairs than are near, then for fewer than touch, then for fewer than a wide skin lists.
   const reference::Rve loose = gas(400, 1e-3, 1e-3);
+  const int touching = static_cast<int>(dense.histories.size());
   struct Try {
     const reference::Rve& rve;
     double skin;
     int first_pairs;
   };
-  for (const Try& t : {Try{dense, 0.08, 64}, Try{dense, 0.0005, 82}, Try{loose, 4, 0}}) {
+  for (const Try& t : {Try{dense, 0.08, 64}, Try{dense, 0.0005, touching - 1}, Try{loose, 4, 0}}) {
     EngineSettings settings = in_double();
     settings.skin = t.skin;
     settings.list_interval = t.skin < 0.01 ? 1 : 8;
