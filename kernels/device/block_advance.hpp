@@ -63,10 +63,7 @@ VOUSSOIR_COLD_FUNCTION void end_segment(const typename Run::Seat seat, const int
   const Run run(seat);
   SweepSums<SingleLane<double>> all;
   const bool measures = measures_in(run, step);
-  if (measures) {
-    run.block.barrier();  // all grains have gathered the actions, whose memory the sums take
-    all = sums_of_all(run, sums);
-  }
+  if (measures) all = sums_of_all(run, sums);
   alone(run, [&] {
     if (measures) judge_step(run, step, all);
     if (run.course().running) move_cell(run.course(), step + 1, run.at.control->motion[(step + 1) & 1], 0);
