@@ -169,10 +169,10 @@ TEST_P(DeviceResidency, CandidatesThatHoldOverCommitsGiveTheBitsOfNewOnes) {
     const auto reports = advance_held(*resident, requests, {});
     expect_same_reports(reports, advance_held(*anew, requests, {}));
     expect_same_states(states_of(*resident, batch, true), states_of(*anew, batch, true));
-    contacts = std::max(contacts, reports[2].contacts);
+    contacts = std::max(contacts, reports[0].contacts);
     resident->commit(increment % 3 == 1 ? std::vector{1} : std::vector<int>{});
   }
-  EXPECT_GT(contacts, 60) << "hardly a grain touches: the test shows nothing";
+  EXPECT_GT(contacts, 40) << "hardly a grain touches: the test shows nothing";
 }
 
 TEST_P(DeviceResidency, OtherSkinsFindOtherCandidates) {
