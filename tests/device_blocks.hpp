@@ -61,6 +61,18 @@ inline RveStates states_of(device::ResidentRves& held, const RveBatch& batch, bo
   return states;
 }
 
+/// The answers of the lanes, whose trial states are in the batch.
+inline std::vector<RveReport> run_lanes(RveBatch& batch, const std::vector<StrainRequest>& requests,
+                                        const EngineSettings& settings) {
+  return run(batch, requests, settings);
+}
+inline std::vector<RveReport> run_lanes(RveBatch& batch, const std::vector<ServoRequest>& requests,
+                                        const EngineSettings& settings) {
+  std::vector<RveReport> reports(batch.size());
+  advance(batch, std::span<const ServoRequest>(requests), settings, reports);
+  return reports;
+}
+
 /// Different motions, so that RVEs end at different steps.
 inline std::vector<StrainRequest> motions(std::size_t n) {
   std::vector<StrainRequest> requests(n);

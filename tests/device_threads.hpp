@@ -65,8 +65,8 @@ class BarrierPlaces {
   }
 };
 
-/// What the threads of a block wait at: two barriers by turns. With one alone ThreadSanitizer would miss races, because a
-/// thread that wakes up late from it would seem to be ordered after those that have already come to it again.
+/// What the threads of a block wait at: two barriers by turns. With one alone ThreadSanitizer would miss races, because
+/// a thread that wakes up late from it would seem to be ordered after those that have already come to it again.
 class ThreadBarrier {
  public:
   explicit ThreadBarrier(int threads) {
@@ -118,6 +118,7 @@ struct ThreadBackend {
   static inline int blocks_run = 0;   ///< of all launches so far
 
   static constexpr int levels = 1 + HostBackend::levels;
+  static constexpr bool follows_stresses = true;
   static constexpr int rubbish = 0xfe;  ///< in each byte: a negative integer, a negative number of 1e303 or NaN-like
                                         ///< float
 
@@ -157,8 +158,8 @@ struct ThreadBackend {
     const BlockMemory<Law, Drive, OwnPlan> sizes(no_memory(), no_memory(), grains, pairs, threads);
     // One block after another, each with memory of its own, as a block on a GPU finds it: not cleared.
     for (int number = 0; number < blocks; ++number) {
-      char *const fast = static_cast<char*>(allocate(sizes.fast_bytes)),
-                 *const slow = static_cast<char*>(allocate(sizes.slow_bytes));
+      char *const fast = static_cast<char*>(allocate(sizes.fast_bytes)), *const slow = static_cast<char*>(
+                                                                             allocate(sizes.slow_bytes));
       ThreadBarrier barrier(threads);
       std::vector<std::thread> all;
       for (int t = 0; t < threads; ++t) {

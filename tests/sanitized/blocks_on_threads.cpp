@@ -227,7 +227,8 @@ int run_without_each(const reference::Rve& small, const std::string& program) {
   note_barriers(small);
   int unreported = 0;
   for (const std::string& name : device::BarrierPlaces::names()) {
-    const std::string command = "timeout 60 " + program + " --without '" + name + "' 2>&1 | grep -q 'ThreadSanitizer: '";
+    const std::string command = "timeout 60 " + program + " --without '" + name +
+                                "' 2>&1 | grep -q 'ThreadSanitizer: '";
     // NOLINTNEXTLINE(bugprone-command-processor): a child process is what a sanitizer ends
     const bool reported = std::system(command.c_str()) == 0;
     std::printf("%-24s %s\n", name.c_str(), reported ? "reported" : "NOT REPORTED");

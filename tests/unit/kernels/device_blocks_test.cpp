@@ -34,17 +34,6 @@ reference::Rve gas(int grains, double smallest, double largest) {
   return rve;
 }
 
-std::vector<RveReport> run_lanes(RveBatch& batch, const std::vector<StrainRequest>& requests, EngineSettings settings) {
-  settings.backend = Backend::lanes;
-  return run(batch, requests, settings);
-}
-std::vector<RveReport> run_lanes(RveBatch& batch, const std::vector<ServoRequest>& requests, EngineSettings settings) {
-  settings.backend = Backend::lanes;
-  std::vector<RveReport> reports(batch.size());
-  advance(batch, std::span<const ServoRequest>(requests), settings, reports);
-  return reports;
-}
-
 /// Largest force of the contacts that a state remembers, which is at least that of 100 Pa.
 double force_scale(const RveStates& states, const Packing& packing, std::size_t rve) {
   double most = 100.0 * packing.mean_diameter() * packing.thickness;
@@ -240,20 +229,21 @@ TEST_F(DeviceBlocks, MoreContactsThanAStateHoldsAreReportedAsByTheLanes) {
 TEST_F(DeviceBlocks, AListWithoutRoomRunsAgainWithMoreOfIt) {
   // There is room for fewer pairs than are near, then for fewer than touch, then for fewer than a wide skin lists.
   const reference::Rve loose = gas(400, 1e-3, 1e-3);
+  const int touching = static_cast<int>(dense.histories.size());
   struct Try {
     const reference::Rve& rve;
     double skin;
     int first_pairs;
   };
-  for (const Try& t : {Try{dense, 0.08, 64}, Try{dense, 0.0005, 82}, Try{loose, 4, 0}}) {
+  for (const Try& t : {Try{dense, 0.08, 64}, Try{dense, 0.0005, touching - 1}, Try{loose, 4, 0}}) {
     EngineSettings settings = in_double();
     settings.skin = t.skin;
     settings.list_interval = t.skin < 0.01 ? 1 : 8;
     const std::vector<StrainRequest> requests(2, two_hundred_steps);
     const Blocks blocks{BlockKind::in_memory, 2, t.first_pairs};
     SCOPED_TRACE(testing::Message() << "a skin of " << t.skin);
-    const auto lanes =
-        expect_lanes_answers([&] { return clones(t.rve, 2); }, requests, settings, in_double_, {{}, blocks});
+    const auto lanes = expect_lanes_answers([&] { return clones(t.rve, 2); }, requests, settings, in_double_,
+                                            {{}, blocks});
     for (const RveReport& r : lanes) EXPECT_FALSE(is_failure(r.status)) << name_of(r.status);
     const RveBatch batch = clones(t.rve, 2);
     std::vector<RveReport> reports(2);
@@ -295,7 +285,8 @@ TEST_F(DeviceBlocks, KeepsTheLanesTraceUnderAServo) {
   const int one_too_few = batch.trial.contact_count(1) - 1;
   ASSERT_GT(one_too_few, static_cast<int>(dense.histories.size())) << "the list is too full from the start";
   ASSERT_EQ(lanes.size(), 30U);
-  for (const Blocks& blocks : {Blocks{}, Blocks{BlockKind::in_memory, 2, one_too_few}, Blocks{BlockKind::in_registers, 7}}) {
+  for (const Blocks& blocks :
+       {Blocks{}, Blocks{BlockKind::in_memory, 2, one_too_few}, Blocks{BlockKind::in_registers, 7}}) {
     SCOPED_TRACE(name_of(blocks));
     samples.clear();
     const auto held = hold(batch, Precision::float64, blocks);
@@ -339,6 +330,23 @@ TEST_F(DeviceBlocks, FindsTheLanesStaticTangentsWithinTheirTolerance) {
       }
     }
   }
+}
+
+TEST_F(DeviceBlocks, AStaticTangentLeavesOutTheSpringsThatTheLanesLeaveOut) {
+  // In the middle of a shear contacts slide, so that the two kinds differ.
+  const std::vector<StrainRequest> shear(1, {.f_rel = {1.002, 0.008, 0, 0.998}, .strain_steps = 400, .hold_cap = 1});
+  std::vector<RveReport> found;
+  for (const TangentKind kind : {TangentKind::elastic, TangentKind::static_}) {
+    EngineSettings settings = in_double();
+    settings.tangent = kind;
+    settings.tangent_tolerance = 1e-3;
+    RveBatch lanes = clones(dense, 1);
+    const RveReport expected = run_lanes(lanes, shear, settings).front();
+    const RveBatch batch = clones(dense, 1);
+    found.push_back(advance_held(*hold(batch, Precision::float64, {}), shear, settings).front());
+    EXPECT_LE(tangent_difference(found.back(), expected), 1e-6);
+  }
+  EXPECT_GT(tangent_difference(found[0], found[1]), 0.01) << "no contact slides: the test shows nothing";
 }
 
 TEST_F(DeviceBlocks, SaysWhereATangentsIterationsReachTheirLimit) {

@@ -138,32 +138,41 @@ TEST_P(DeviceResidency, AnUploadBeginsAnew) {
   expect_same_reports(advance_held(*rves, motions(n), {}), expected);
 }
 
-/// Increments by one batch that keeps its candidates and by one that finds them anew, and the same bits.
-/// @param held_back the RVEs kept back at each commit
-void expect_bits_of_new_candidates(device::ResidentRves& resident, device::ResidentRves& anew, const RveBatch& batch,
-                                   const std::vector<StrainRequest>& requests, const EngineSettings& settings,
-                                   const std::vector<int>& held_back) {
-  for (int increment = 0; increment < 6; ++increment) {
-    SCOPED_TRACE(testing::Message() << "increment " << increment);
-    anew.upload(device::plain(states_of(resident, batch, false)));
-    expect_same_reports(advance_held(resident, requests, settings), advance_held(anew, requests, settings));
-    expect_same_states(states_of(resident, batch, true), states_of(anew, batch, true));
-    resident.commit(increment % 2 == 0 ? std::vector<int>{} : held_back);
-  }
+TEST_P(DeviceResidency, AFailureAfterASuccessLeavesNoTrialState) {
+  const RveBatch batch = unlike(2);
+  const auto rves = held(batch);
+  std::vector<StrainRequest> requests = motions(2);
+  advance_held(*rves, requests, {});
+  requests[0].f_rel.xx = std::numeric_limits<double>::quiet_NaN();
+  advance_held(*rves, requests, {});
+  rves->commit({});
+  expect_same_state(states_of(*rves, batch, false), batch.committed, 0, dense.radii.size());
 }
 
 TEST_P(DeviceResidency, CandidatesThatHoldOverCommitsGiveTheBitsOfNewOnes) {
-  // Increments so small that candidates hold over several, others with rebases that overwrite them on their way, and
-  // one in which grains fly through the cell.
-  const RveBatch batch = unlike(3);
-  std::vector<StrainRequest> requests(3);
-  requests[0] = {.f_rel = {1.004, 0.006, -0.002, 0.997}, .strain_steps = 40, .hold_cap = 8};
-  requests[1] = {.f_rel = {1.03, 0.03, 0, 0.98}, .strain_steps = 40, .hold_cap = 8};
-  requests[2] = {.f_rel = {1.05, 0, 0, 1.0}, .strain_steps = 40, .hold_cap = 8};
-  EngineSettings settings;
-  settings.list_interval = 1;
+  // Loose grains are pressed together along x until pairs touch that were far from each other: candidates hold for one
+  // increment of 3 % and a second one. RVE 1 is rebased on its way in every third increment and kept back after it, RVE
+  // 2 is rebased and committed.
+  reference::Rve loose = reference::loose_packing(60, 5e-4, 1e-3, 4, reference::Material{});
+  loose.rotations.assign(loose.radii.size(), 0.0);
+  const RveBatch batch = clones(loose, 3);
   const auto resident = held(batch), anew = held(batch);
-  expect_bits_of_new_candidates(*resident, *anew, batch, requests, settings, {0, 1});
+  int contacts = 0;
+  for (int increment = 0; increment < 12; ++increment) {
+    SCOPED_TRACE(testing::Message() << "increment " << increment);
+    const StrainRequest small{.f_rel = {0.97, 0, 0, 1}, .strain_steps = 60, .hold_cap = 4};
+    const StrainRequest large{.f_rel = {0.93, 0, 0, 1}, .strain_steps = 60, .hold_cap = 4};
+    const StrainRequest rebased{.f_rel = {0.85, 0, 0, 1.12}, .strain_steps = 60, .hold_cap = 4};
+    const std::vector requests{increment % 2 == 0 ? small : large, increment % 3 == 1 ? rebased : small,
+                               increment % 4 == 1 ? rebased : small};
+    anew->upload(device::plain(states_of(*resident, batch, false)));
+    const auto reports = advance_held(*resident, requests, {});
+    expect_same_reports(reports, advance_held(*anew, requests, {}));
+    expect_same_states(states_of(*resident, batch, true), states_of(*anew, batch, true));
+    contacts = std::max(contacts, reports[0].contacts);
+    resident->commit(increment % 3 == 1 ? std::vector{1} : std::vector<int>{});
+  }
+  EXPECT_GT(contacts, 40) << "hardly a grain touches: the test shows nothing";
 }
 
 TEST_P(DeviceResidency, OtherSkinsFindOtherCandidates) {
