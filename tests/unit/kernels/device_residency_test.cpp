@@ -150,29 +150,39 @@ TEST_P(DeviceResidency, AFailureAfterASuccessLeavesNoTrialState) {
 }
 
 TEST_P(DeviceResidency, CandidatesThatHoldOverCommitsGiveTheBitsOfNewOnes) {
-  // Loose grains are pressed together along x until pairs touch that were far from each other: candidates hold for one
-  // increment of 3 % and a second one. RVE 1 is rebased on its way in every third increment and kept back after it, RVE
-  // 2 is rebased and committed.
-  reference::Rve loose = reference::loose_packing(60, 5e-4, 1e-3, 4, reference::Material{});
-  loose.rotations.assign(loose.radii.size(), 0.0);
-  const RveBatch batch = clones(loose, 3);
+  // Loose grains, in RVEs 0 and 2 with gaps of at least 0.08 and 0.13 diameters, are pressed together along x. A strain
+  // of 3.3 % spends most of what candidates allow, one of 6 % that follows brings pairs into contact that were outside
+  // the skin before both: RVE 0 takes them by turns. RVE 2 takes the small one until pairs touch that were no
+  // candidates. A large strain renews lists on its way: that of RVE 1 is kept back, that of RVE 3 is committed.
+  const auto spaced = [](double gap) {
+    const double radius = 1e-3 * (1 + gap);
+    reference::Rve rve = reference::loose_packing(300, radius, radius, 4, reference::Material{});
+    rve.radii.assign(rve.radii.size(), 1e-3);
+    rve.rotations.assign(rve.radii.size(), 0.0);
+    return rve;
+  };
+  RveBatch batch = clones(spaced(0), 4);
+  fill(batch.committed, 0, spaced(0.08));
+  fill(batch.committed, 2, spaced(0.13));
   const auto resident = held(batch), anew = held(batch);
+  const auto pressed = [](double to) {
+    return StrainRequest{.f_rel = {to, 0, 0, 1}, .strain_steps = 60, .hold_cap = 4};
+  };
+  const StrainRequest small = pressed(0.967), next = pressed(0.94);
+  const StrainRequest large{.f_rel = {0.85, 0, 0, 1.12}, .strain_steps = 60, .hold_cap = 4};
   int contacts = 0;
-  for (int increment = 0; increment < 12; ++increment) {
+  for (int increment = 0; increment < 8; ++increment) {
     SCOPED_TRACE(testing::Message() << "increment " << increment);
-    const StrainRequest small{.f_rel = {0.97, 0, 0, 1}, .strain_steps = 60, .hold_cap = 4};
-    const StrainRequest large{.f_rel = {0.93, 0, 0, 1}, .strain_steps = 60, .hold_cap = 4};
-    const StrainRequest rebased{.f_rel = {0.85, 0, 0, 1.12}, .strain_steps = 60, .hold_cap = 4};
-    const std::vector requests{increment % 2 == 0 ? small : large, increment % 3 == 1 ? rebased : small,
-                               increment % 4 == 1 ? rebased : small};
+    const std::vector requests{increment % 2 == 0 ? small : next, increment % 3 == 1 ? large : small, small,
+                               increment % 4 == 1 ? large : small};
     anew->upload(device::plain(states_of(*resident, batch, false)));
     const auto reports = advance_held(*resident, requests, {});
     expect_same_reports(reports, advance_held(*anew, requests, {}));
     expect_same_states(states_of(*resident, batch, true), states_of(*anew, batch, true));
-    contacts = std::max(contacts, reports[0].contacts);
+    contacts = std::max(contacts, std::max(reports[1].contacts, reports[3].contacts));
     resident->commit(increment % 3 == 1 ? std::vector{1} : std::vector<int>{});
   }
-  EXPECT_GT(contacts, 40) << "hardly a grain touches: the test shows nothing";
+  EXPECT_GT(contacts, 10) << "hardly a grain touches: the test shows nothing";
 }
 
 TEST_P(DeviceResidency, OtherSkinsFindOtherCandidates) {
