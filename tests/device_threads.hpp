@@ -30,16 +30,16 @@ class BarrierPlaces {
   static inline std::string file_left_out;
 
   static void note(const std::source_location& from) {
-    lines_[function_of(from)].insert({from.line(), from.file_name()});
+    lines[function_of(from)].insert({from.line(), from.file_name()});
   }
   [[nodiscard]] static bool is_left_out(const std::source_location& from) {
     return left_out == from.line() && file_left_out == from.file_name();
   }
   /// Leaves out a barrier that was noted. @throws std::invalid_argument where there is none of that name
   static void leave_out(const std::string& name) {
-    for (const auto& [function, lines] : lines_) {
+    for (const auto& [function, places] : lines) {
       int number = 0;
-      for (const auto& [line, file] : lines) {
+      for (const auto& [line, file] : places) {
         if (function + "#" + std::to_string(++number) != name) continue;
         file_left_out = file;
         left_out = line;
@@ -50,13 +50,13 @@ class BarrierPlaces {
   }
   [[nodiscard]] static std::vector<std::string> names() {
     std::vector<std::string> all;
-    for (const auto& [function, lines] : lines_)
-      for (std::size_t k = 0; k < lines.size(); ++k) all.push_back(function + "#" + std::to_string(k + 1));
+    for (const auto& [function, places] : lines)
+      for (std::size_t k = 0; k < places.size(); ++k) all.push_back(function + "#" + std::to_string(k + 1));
     return all;
   }
 
  private:
-  static inline std::map<std::string, std::set<std::pair<unsigned, std::string>>> lines_;
+  static inline std::map<std::string, std::set<std::pair<unsigned, std::string>>> lines;
 
   [[nodiscard]] static std::string function_of(const std::source_location& from) {
     const std::string_view name = from.function_name();

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -227,8 +228,11 @@ int run_without_each(const reference::Rve& small, const std::string& program) {
   note_barriers(small);
   int unreported = 0;
   for (const std::string& name : device::BarrierPlaces::names()) {
-    const std::string command = "timeout 60 " + program + " --without '" + name +
-                                "' 2>&1 | grep -q 'ThreadSanitizer: '";
+    std::string command = "timeout 60 ";
+    command += program;
+    command += " --without '";
+    command += name;
+    command += "' 2>&1 | grep -q 'ThreadSanitizer: '";
     // NOLINTNEXTLINE(bugprone-command-processor): a child process is what a sanitizer ends
     const bool reported = std::system(command.c_str()) == 0;
     std::printf("%-24s %s\n", name.c_str(), reported ? "reported" : "NOT REPORTED");
@@ -250,4 +254,11 @@ int run_program(int argc, char** argv) {
 }  // namespace
 }  // namespace voussoir::kernels
 
-int main(int argc, char** argv) { return voussoir::kernels::run_program(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return voussoir::kernels::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "blocks_on_threads: %s\n", error.what());
+    return 2;
+  }
+}

@@ -24,9 +24,9 @@ class DeviceBlocks : public testing::Test {
 const std::vector<Blocks> usual{{}, {BlockKind::in_memory, 3}, {BlockKind::in_registers, 7}};
 
 // 1e-15 of a force grows to 3e-11 in 200 steps; the contract is 1e-8. Positions differ by less, since grains are stiff.
-constexpr Tolerance in_double_{.stress = 1e-8, .position = 1e-11};
+constexpr Tolerance exactly{.stress = 1e-8, .position = 1e-11};
 // Float and double lanes differ by 1e-4 of the pressure in these few hundred steps.
-constexpr Tolerance in_float_{.stress = 2e-3, .position = 1e-4, .counts = false};
+constexpr Tolerance roughly{.stress = 2e-3, .position = 1e-4, .counts = false};
 
 reference::Rve gas(int grains, double smallest, double largest) {
   reference::Rve rve = reference::loose_packing(grains, smallest, largest, 4, reference::Material{});
@@ -77,13 +77,13 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesInDouble) {
   for (const int threads : {1, 2, 7, 16, 32}) kinds.push_back({BlockKind::in_memory, threads});
   for (const int threads : {7, 16, 32}) kinds.push_back({BlockKind::in_registers, threads});
   const auto reports = expect_lanes_answers([&] { return clones(dense, 2); }, std::vector(2, two_hundred_steps),
-                                            in_double(), in_double_, kinds);
+                                            in_double(), exactly, kinds);
   for (const RveReport& r : reports) EXPECT_GT(r.contacts, 60);
 }
 
 TEST_F(DeviceBlocks, AgreesWithTheLanesWithMoreThreadsThanGrains) {
   const StrainRequest short_one{.f_rel = {1.0001, 0.0003, -0.0001, 0.9998}, .strain_steps = 16, .hold_cap = 4};
-  expect_lanes_answers([&] { return clones(dense, 1); }, std::vector{short_one}, in_double(), in_double_,
+  expect_lanes_answers([&] { return clones(dense, 1); }, std::vector{short_one}, in_double(), exactly,
                        {{BlockKind::in_memory, 128}, {BlockKind::in_registers, 128}});
 }
 
@@ -93,7 +93,7 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesInFloatAsFarAsTheyAgreeWithDouble) {
   const auto lanes = run_lanes(in_one, motions(6), {});
   double allowed = 0;
   for (std::size_t k = 0; k < 6; ++k) allowed = std::max(allowed, stress_difference(lanes[k], exact[k]));
-  EXPECT_LT(allowed, in_float_.stress);
+  EXPECT_LT(allowed, roughly.stress);
   for (const Blocks& blocks : usual) {
     SCOPED_TRACE(name_of(blocks));
     const RveBatch batch = clones(dense, 6);
@@ -109,14 +109,13 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesThroughManyRebases) {
   EngineSettings settings = in_double();
   settings.skin = 0.0005;
   settings.list_interval = 1;
-  expect_lanes_answers([&] { return clones(dense, 3); }, motions(3), settings, in_double_);
+  expect_lanes_answers([&] { return clones(dense, 3); }, motions(3), settings, exactly);
   settings.precision = Precision::float32;
-  expect_lanes_answers([&] { return clones(dense, 3); }, motions(3), settings, in_float_);
+  expect_lanes_answers([&] { return clones(dense, 3); }, motions(3), settings, roughly);
 }
 
 TEST_F(DeviceBlocks, AgreesWithTheLanesInTheNextIncrementsToo) {
-  for (const auto& [settings, tolerance] :
-       {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
+  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, roughly}, std::pair{in_double(), exactly}}) {
     RveBatch lanes = clones(dense, 3);
     const RveBatch batch = clones(dense, 3);
     std::vector<RveReport> expected;
@@ -146,8 +145,8 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesWithoutRolling) {
   reference::Rve rve = dense;
   rve.material.rolling_stiffness = 0;
   for (auto& [pair, history] : rve.histories) history.moment = 0;
-  expect_lanes_answers([&] { return clones(rve, 2); }, motions(2), in_double(), in_double_);
-  expect_lanes_answers([&] { return clones(rve, 2); }, motions(2), EngineSettings{}, in_float_);
+  expect_lanes_answers([&] { return clones(rve, 2); }, motions(2), in_double(), exactly);
+  expect_lanes_answers([&] { return clones(rve, 2); }, motions(2), EngineSettings{}, roughly);
 }
 
 TEST_F(DeviceBlocks, AgreesWithTheLanesWithClassesAndUnlikePackings) {
@@ -161,8 +160,8 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesWithClassesAndUnlikePackings) {
     for (std::size_t k = 0; k < 4; ++k) fill(batch.committed, k, k % 2 == 0 ? dense : other);
     return batch;
   };
-  expect_lanes_answers(make, motions(4), in_double(), in_double_);
-  expect_lanes_answers(make, motions(4), EngineSettings{}, in_float_);
+  expect_lanes_answers(make, motions(4), in_double(), exactly);
+  expect_lanes_answers(make, motions(4), EngineSettings{}, roughly);
 }
 
 TEST_F(DeviceBlocks, AgreesWithTheLanesWithWideGrading) {
@@ -199,8 +198,7 @@ TEST_F(DeviceBlocks, EndsWithTheLanesStatuses) {
                                             general,
                                             {.f_rel = {1.0001, 0, 0, 1}, .strain_steps = 100, .hold_cap = 2000},
                                             general};
-  for (const auto& [settings, tolerance] :
-       {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
+  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, roughly}, std::pair{in_double(), exactly}}) {
     const auto reports = expect_lanes_answers(make, requests, settings, tolerance);
     const RveStatus expected[] = {RveStatus::not_finite, RveStatus::not_finite,    RveStatus::overlap_limit,
                                   RveStatus::open,       RveStatus::overlap_limit, RveStatus::step_limit,
@@ -213,7 +211,7 @@ TEST_F(DeviceBlocks, EndsWithTheLanesStatuses) {
 TEST_F(DeviceBlocks, TooNarrowACellIsReportedAsByTheLanes) {
   EngineSettings settings = in_double();
   settings.skin = 2.5;
-  expect_lanes_answers([&] { return clones(dense, 2); }, std::vector(2, general), settings, in_double_);
+  expect_lanes_answers([&] { return clones(dense, 2); }, std::vector(2, general), settings, exactly);
 }
 
 TEST_F(DeviceBlocks, MoreContactsThanAStateHoldsAreReportedAsByTheLanes) {
@@ -221,8 +219,7 @@ TEST_F(DeviceBlocks, MoreContactsThanAStateHoldsAreReportedAsByTheLanes) {
   settings.overlap_limit = 0.95;
   const auto reports = expect_lanes_answers(
       [&] { return clones(dense, 2); },
-      std::vector(2, StrainRequest{.f_rel = {0.6, 0, 0, 0.6}, .strain_steps = 400, .hold_cap = 1}), settings,
-      in_double_);
+      std::vector(2, StrainRequest{.f_rel = {0.6, 0, 0, 0.6}, .strain_steps = 400, .hold_cap = 1}), settings, exactly);
   EXPECT_EQ(reports[0].status, RveStatus::neighbour_overflow) << name_of(reports[0].status);
 }
 
@@ -242,7 +239,7 @@ TEST_F(DeviceBlocks, AListWithoutRoomRunsAgainWithMoreOfIt) {
     const std::vector<StrainRequest> requests(2, two_hundred_steps);
     const Blocks blocks{BlockKind::in_memory, 2, t.first_pairs};
     SCOPED_TRACE(testing::Message() << "a skin of " << t.skin);
-    const auto lanes = expect_lanes_answers([&] { return clones(t.rve, 2); }, requests, settings, in_double_,
+    const auto lanes = expect_lanes_answers([&] { return clones(t.rve, 2); }, requests, settings, exactly,
                                             {{}, blocks});
     for (const RveReport& r : lanes) EXPECT_FALSE(is_failure(r.status)) << name_of(r.status);
     const RveBatch batch = clones(t.rve, 2);
@@ -258,8 +255,7 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesUnderAServo) {
   const ServoRequest biaxial{
       .x = {true, -1e5}, .y = {false, -1e-6}, .max_rate = 1e-5, .max_steps = 3000, .end_strain_y = 2e-4};
   const std::vector requests{squeeze, biaxial};
-  for (const auto& [settings, tolerance] :
-       {std::pair{EngineSettings{}, in_float_}, std::pair{in_double(), in_double_}}) {
+  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, roughly}, std::pair{in_double(), exactly}}) {
     const auto reports = expect_lanes_answers([&] { return clones(dense, 2); }, requests, settings, tolerance);
     EXPECT_EQ(reports[0].status, RveStatus::step_limit);
     EXPECT_EQ(reports[1].status, RveStatus::converged);
@@ -321,7 +317,7 @@ TEST_F(DeviceBlocks, FindsTheLanesStaticTangentsWithinTheirTolerance) {
         const RveBatch batch = clones(dense, 3);
         const auto reports = advance_held(*hold(batch, Precision::float64, blocks), motions(3), settings);
         for (std::size_t k = 0; k < 3; ++k) {
-          expect_near_report(reports[k], expected[k], in_double_, k);
+          expect_near_report(reports[k], expected[k], exactly, k);
           EXPECT_EQ(reports[k].tangent_kind, kind);
           EXPECT_FALSE(reports[k].tangent_capped);
           EXPECT_GT(reports[k].tangent_iterations, 0);
@@ -371,8 +367,8 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesOnLargePackings) {
   for (const Size& s : {Size{2, 3, 7}, Size{2, 7, 16}, Size{5, 6, 32}}) {
     SCOPED_TRACE(testing::Message() << 50 * s.columns * s.rows << " grains");
     const reference::Rve rve = reference::tiled(tile, s.columns, s.rows);
-    const auto reports = expect_lanes_answers([&] { return clones(rve, 1); }, std::vector{short_one}, settings,
-                                              in_double_, {{}, {BlockKind::in_registers, s.threads}});
+    const auto reports = expect_lanes_answers([&] { return clones(rve, 1); }, std::vector{short_one}, settings, exactly,
+                                              {{}, {BlockKind::in_registers, s.threads}});
     EXPECT_GT(reports[0].contacts, 75 * s.columns * s.rows);
   }
 }
