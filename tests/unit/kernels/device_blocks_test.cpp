@@ -23,10 +23,11 @@ class DeviceBlocks : public testing::Test {
 
 const std::vector<Blocks> usual{{}, {BlockKind::in_memory, 3}, {BlockKind::in_registers, 7}};
 
-// 1e-15 of a force grows to 3e-11 in 200 steps; the contract is 1e-8. Positions differ by less, since grains are stiff.
-constexpr Tolerance exactly{.stress = 1e-8, .position = 1e-11};
-// Float and double lanes differ by 1e-4 of the pressure in these few hundred steps.
-constexpr Tolerance roughly{.stress = 2e-3, .position = 1e-4, .counts = false};
+// The contract is 1e-8 over 200 steps. On the same processor only sums over all pairs are taken in another order, and
+// 3e-15 is measured; what is left of 1e-8 is for a device's own rounding.
+constexpr Tolerance exactly{.stress = 3e-14, .position = 1e-13};
+// Measured 8e-5; float and double lanes differ by 3e-5 of the pressure in these few hundred steps.
+constexpr Tolerance roughly{.stress = 5e-4, .position = 1e-4, .counts = false};
 
 reference::Rve gas(int grains, double smallest, double largest) {
   reference::Rve rve = reference::loose_packing(grains, smallest, largest, 4, reference::Material{});
@@ -165,8 +166,7 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesWithClassesAndUnlikePackings) {
 }
 
 TEST_F(DeviceBlocks, AgreesWithTheLanesWithWideGrading) {
-  // Sizes of 1 to 10 in a sheared cell, without contact until it is compressed; rows of very unlike length. Collisions
-  // multiply the differences of rounding.
+  // Sizes of 1 to 10 in a sheared cell, without contact until it is compressed; rows of very unlike length.
   reference::Rve rve = gas(60, 1e-4, 1e-3);
   rve.cell.xy += 0.4 * rve.cell.yy;
   for (auto& x : rve.positions) x.x += 0.4 * x.y;
@@ -174,7 +174,7 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesWithWideGrading) {
   const auto reports = expect_lanes_answers(
       [&] { return clones(rve, 2); },
       std::vector(2, StrainRequest{.f_rel = {f, 0.3, 0, f}, .strain_steps = 4000, .hold_cap = 100}), in_double(),
-      {.stress = 1e-6, .position = 1e-9}, {{}, {BlockKind::in_memory, 2}});
+      exactly, {{}, {BlockKind::in_memory, 2}});
   for (const RveReport& r : reports) {
     EXPECT_FALSE(is_failure(r.status)) << name_of(r.status);
     EXPECT_GT(r.contacts, 60) << "hardly a grain touches: the test shows nothing";
@@ -255,7 +255,9 @@ TEST_F(DeviceBlocks, AgreesWithTheLanesUnderAServo) {
   const ServoRequest biaxial{
       .x = {true, -1e5}, .y = {false, -1e-6}, .max_rate = 1e-5, .max_steps = 3000, .end_strain_y = 2e-4};
   const std::vector requests{squeeze, biaxial};
-  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, roughly}, std::pair{in_double(), exactly}}) {
+  // The control feeds the rounding of its sums back: 2e-12 is measured in the rate.
+  constexpr Tolerance followed{.stress = 2e-11, .position = 1e-11};
+  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, roughly}, std::pair{in_double(), followed}}) {
     const auto reports = expect_lanes_answers([&] { return clones(dense, 2); }, requests, settings, tolerance);
     EXPECT_EQ(reports[0].status, RveStatus::step_limit);
     EXPECT_EQ(reports[1].status, RveStatus::converged);
