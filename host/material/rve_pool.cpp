@@ -12,8 +12,8 @@
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
+#include "kernels/describe_committed.hpp"
 #include "kernels/state/committed_contacts.hpp"
-#include "kernels/state/describe_committed.hpp"
 #include "kernels/state/mobility.hpp"
 
 namespace voussoir::host {

@@ -12,16 +12,27 @@ namespace voussoir::kernels {
 
 namespace {
 
-/// Eq. (22): a = 2 |<exp(2 i theta)>| and theta_a half its argument, every contact weighted alike.
-void describe_fabric(std::span<const NetworkContact> contacts, Microstructure& out) {
-  double cosine = 0, sine = 0;  // sums over twice the angle of the normal
+/// Sums over contacts, in their order. They are taken together, because each of them waits for its last addition.
+struct Sums {
+  double cosine = 0, sine = 0;  ///< of twice the angle of the normal
+  double normal_force = 0;      ///< [N]
+};
+
+Sums sums_of(std::span<const NetworkContact> contacts) {
+  Sums sums;
   for (const NetworkContact& c : contacts) {
-    cosine += c.normal_x * c.normal_x - c.normal_y * c.normal_y;
-    sine += 2.0 * c.normal_x * c.normal_y;
+    sums.cosine += c.normal_x * c.normal_x - c.normal_y * c.normal_y;
+    sums.sine += 2.0 * c.normal_x * c.normal_y;
+    sums.normal_force += c.normal_force;
   }
-  out.fabric_anisotropy = contacts.empty() ? 0.0
-                                           : 2.0 * std::hypot(cosine, sine) / static_cast<double>(contacts.size());
-  const double direction = 0.5 * std::atan2(sine, cosine);
+  return sums;
+}
+
+/// Eq. (22): a = 2 |<exp(2 i theta)>| and theta_a half its argument, every contact weighted alike.
+void describe_fabric(const Sums& sums, std::size_t contacts, Microstructure& out) {
+  out.fabric_anisotropy = contacts == 0 ? 0.0
+                                        : 2.0 * std::hypot(sums.cosine, sums.sine) / static_cast<double>(contacts);
+  const double direction = 0.5 * std::atan2(sums.sine, sums.cosine);
   out.fabric_direction = direction <= -0.5 * std::numbers::pi ? 0.5 * std::numbers::pi : direction;
 }
 
@@ -62,20 +73,15 @@ std::array<double, networks> mechanical_coordination(std::span<const NetworkCont
   return out;
 }
 
-double mean_force(std::span<const NetworkContact> contacts) {
-  double sum = 0;
-  for (const NetworkContact& c : contacts) sum += c.normal_force;
-  return contacts.empty() ? 0.0 : sum / static_cast<double>(contacts.size());
-}
-
 }  // namespace
 
 void describe_network(std::span<const NetworkContact> contacts, int grains, const MicrostructureRequest& wanted,
                       Microstructure& out) {
   out.coordination = 2.0 * static_cast<double>(contacts.size()) / grains;
-  if (wanted.fabric) describe_fabric(contacts, out);
+  const Sums sums = wanted.fabric || wanted.strong_networks ? sums_of(contacts) : Sums{};
+  if (wanted.fabric) describe_fabric(sums, contacts.size(), out);
   if (!wanted.coordination && !wanted.strong_networks) return;
-  const double mean = wanted.strong_networks ? mean_force(contacts) : 0.0;
+  const double mean = contacts.empty() ? 0.0 : sums.normal_force / static_cast<double>(contacts.size());
   std::array<double, networks> least{0.0};
   for (std::size_t k = 1; k < networks; ++k) least[k] = strong_thresholds[k - 1] * mean;
   const auto found = mechanical_coordination(contacts, grains, least);

@@ -1,5 +1,5 @@
 // Contact networks with known fabric and connectivity; forces against the oracle and against the engine's own stress.
-#include "kernels/state/describe_committed.hpp"
+#include "kernels/describe_committed.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "kernels/state/describe_committed.hpp"
+#include "kernels/describe_committed.hpp"
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
@@ -6,17 +6,17 @@
 #include <exception>
 #include <vector>
 
-#include "kernels/state/committed_network.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::kernels {
 
 namespace {
 
 Microstructure describe(const RveBatch& batch, std::size_t rve, const MicrostructureRequest& wanted,
-                        std::vector<NetworkContact>& contacts) {
+                        const LaneSet& lanes, std::vector<NetworkContact>& contacts) {
   Microstructure out;
   out.grain_rotation = mean_rotation(batch, rve);
-  committed_network(batch, rve, contacts);
+  lanes.committed_network(batch, rve, contacts);
   describe_network(contacts, batch.packing(rve).size(), wanted, out);
   return out;
 }
@@ -33,6 +33,7 @@ double mean_rotation(const RveBatch& batch, std::size_t rve) {
 void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<Microstructure> out) {
   using Space = Kokkos::DefaultHostExecutionSpace;
   constexpr std::size_t share = 16;  // RVEs that reuse one worker's array
+  const LaneSet& lanes = *chosen_lanes().lanes;
   std::exception_ptr failure;
   std::atomic_flag failed;
   Kokkos::parallel_for(
@@ -42,7 +43,7 @@ void describe_committed(const RveBatch& batch, const MicrostructureRequest& want
         try {
           std::vector<NetworkContact> contacts;
           const std::size_t last = std::min(batch.size(), (block + 1) * share);
-          for (std::size_t k = block * share; k < last; ++k) out[k] = describe(batch, k, wanted, contacts);
+          for (std::size_t k = block * share; k < last; ++k) out[k] = describe(batch, k, wanted, lanes, contacts);
         } catch (...) {  // for example where memory runs out
           if (!failed.test_and_set()) failure = std::current_exception();
         }
