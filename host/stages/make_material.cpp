@@ -4,6 +4,7 @@
 
 #include "fem/linear_elastic.hpp"
 #include "host/case/engine.hpp"
+#include "host/case/result_fields.hpp"
 #include "host/material/mirrored_batch.hpp"
 #include "host/material/rve_pool.hpp"
 #include "host/ranks/session.hpp"
@@ -39,7 +40,7 @@ MaterialCase material_case(const Case& input) {
           .elastic = input.elastic,
           .tangent = input.newton.tangent,
           .tangent_strain = input.newton.tangent_strain,
-          .microstructure = input.output.microstructure};
+          .microstructure = written_quantities(input.output)};
 }
 
 std::unique_ptr<fem::MaterialBatch> make_material(const MaterialCase& material, std::size_t n_points,
