@@ -41,10 +41,11 @@ template <class Law, class V = typename Law::Value>
   return all;
 }
 
-/// Where a lane's contacts go, one after another.
+/// Where a lane's contacts go.
 struct ContactPlace {
-  std::uint32_t* key = nullptr;
-  double* history = nullptr;
+  std::uint32_t* keys = nullptr;
+  double* histories = nullptr;
+  std::ptrdiff_t count = 0;  ///< of those stored so far
 };
 
 /// Stores the contacts at the final positions with their histories, for the lanes that are `stored`. Half of the lanes
@@ -64,7 +65,7 @@ void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) 
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (!stored[l]) continue;
     wanted |= 1U << l;
-    place[l] = {&to.contact_key(rve_of(l), 0), to.histories_of(rve_of(l))};
+    place[l] = {&to.contact_key(rve_of(l), 0), to.histories_of(rve_of(l)), 0};
   }
   for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
     const auto& gi = run.group.grains[i];
@@ -78,17 +79,17 @@ void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) 
       const std::uint32_t key = pair_key(static_cast<int>(i), j);
       for (std::size_t l = 0; l < Run::width; ++l) {
         const std::ptrdiff_t touches = (touching >> l) & 1U;
-        *(touches != 0 ? place[l].key : &spare_key) = key;
-        double* const history = touches != 0 ? place[l].history : spare_history.data();
+        ContactPlace& at_lane = place[l];
+        *(touches != 0 ? at_lane.keys + at_lane.count : &spare_key) = key;
+        double* const history = touches != 0 ? at_lane.histories + numbers * at_lane.count : spare_history.data();
         write_history<Law>(pair.history, l,
                            [history](int k, const auto& number) { history[k] = static_cast<double>(number); });
-        place[l].key += touches;
-        place[l].history += numbers * touches;
+        at_lane.count += touches;
       }
     }
   }
   for (std::size_t l = 0; l < Run::width; ++l) {
-    if (stored[l]) to.contact_count(rve_of(l)) = static_cast<int>(place[l].key - &to.contact_key(rve_of(l), 0));
+    if (stored[l]) to.contact_count(rve_of(l)) = static_cast<int>(place[l].count);
   }
 }
 

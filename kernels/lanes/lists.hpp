@@ -58,11 +58,24 @@ class HistoryWalk {
         histories_(kept.keys.empty() ? none_.data() : kept.histories),
         last_(kept.keys.empty() ? 0 : kept.keys.size() - 1) {}
 
+  /// The history of a pair, or zeros.
+  class History {
+   public:
+    History(const double* history, bool found) : history_(history), mask_(-static_cast<std::uint64_t>(found)) {}
+    [[nodiscard]] double operator[](std::size_t k) const {
+      return std::bit_cast<double>(std::bit_cast<std::uint64_t>(history_[k]) & mask_);
+    }
+
+   private:
+    const double* history_;
+    std::uint64_t mask_;
+  };
+
   /// The history of a pair, which is zero where the pair is not kept.
-  [[nodiscard]] const double* of(std::uint32_t key) {
+  [[nodiscard]] History of(std::uint32_t key) {
     while (at_ < last_ && keys_[at_] < key) ++at_;  // rare: the contact before has been dropped
     const bool found = keys_[at_] == key;
-    const double* const history = found ? histories_ + numbers * at_ : none_.data();
+    const History history(histories_ + numbers * at_, found);
     at_ += static_cast<std::size_t>(found) & static_cast<std::size_t>(at_ < last_);
     return history;
   }
@@ -92,7 +105,7 @@ void list_pairs(LaneListOf<Law>& lane, std::span<const double> radii, double ski
     const double sum = radii[i] + radii[j];
     const PairReference at = pair_reference(position[2 * j] - position[2 * i], position[2 * j + 1] - position[2 * i + 1],
                                             sum, cell);
-    const double* const history = walk.of(key);
+    const auto history = walk.of(key);
     to->key = key;
     to->branch_x = static_cast<real>(at.branch_x);
     to->branch_y = static_cast<real>(at.branch_y);
