@@ -49,8 +49,8 @@ struct ContactPlace {
 };
 
 /// Stores the contacts at the final positions with their histories, for the lanes that are `stored`. Half of the lanes
-/// touch in a pair, and it cannot be foreseen which ones; so each lane writes, and where the pair does not touch, what it
-/// writes goes to a spare place.
+/// touch in a pair, and it cannot be foreseen which ones; so each lane writes, and where the pair does not touch, what
+/// it writes goes to a spare place.
 template <class Run>
 void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) {
   using Law = typename Run::Law;

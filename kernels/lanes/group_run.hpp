@@ -41,8 +41,8 @@ struct GroupRun {
   GroupState<Law> group;
   std::conditional_t<is_spread, SpreadRve<typename LawOver<Law, WideLane<real>>::type, Law>, NotSpread> spread;
   UnionBuilder<Law> builder;
-  SpringSystem<V> springs;             ///< empty unless the static tangent is asked for
-  StepSystem<V> step;                  ///< empty unless the loading tangent is asked for
+  SpringSystem<V> springs;               ///< empty unless the static tangent is asked for
+  StepSystem<V> step;                    ///< empty unless the loading tangent is asked for
   std::vector<std::uint32_t> keys;       ///< scratch of a rebase
   std::vector<std::uint32_t> kept_keys;  ///< scratch of a rebase: contacts with history, and its numbers
   std::vector<double> kept_histories;

@@ -48,8 +48,8 @@ using ListedPairOf = ListedPair<real_of<typename Law::Value>, static_cast<std::s
 template <class Law>
 using LaneListOf = LaneList<real_of<typename Law::Value>, static_cast<std::size_t>(history_size<Law>)>;
 
-/// Finds the histories of pairs whose keys ascend, in one walk along the kept contacts. Half of the pairs have one, in no
-/// order that a processor could foresee, so the walk has no branch that depends on it.
+/// Finds the histories of pairs whose keys ascend, in one walk along the kept contacts. Half of the pairs have one, in
+/// no order that a processor could foresee, so the walk has no branch that depends on it.
 template <std::size_t numbers>
 class HistoryWalk {
  public:
@@ -103,8 +103,8 @@ void list_pairs(LaneListOf<Law>& lane, std::span<const double> radii, double ski
   for (const std::uint32_t key : keys) {
     const auto i = static_cast<std::size_t>(first_of(key)), j = static_cast<std::size_t>(second_of(key));
     const double sum = radii[i] + radii[j];
-    const PairReference at = pair_reference(position[2 * j] - position[2 * i], position[2 * j + 1] - position[2 * i + 1],
-                                            sum, cell);
+    const PairReference at = pair_reference(position[2 * j] - position[2 * i],
+                                            position[2 * j + 1] - position[2 * i + 1], sum, cell);
     const auto history = walk.of(key);
     to->key = key;
     to->branch_x = static_cast<real>(at.branch_x);
@@ -126,8 +126,8 @@ PairShape<Law> shape_of(const Packing& packing, int i, int j) {
   return shape;
 }
 
-/// Writes the union of the lanes' lists into the group. All lists are walked together, and the least key at which a lane
-/// stands comes next. Which lanes list it cannot be foreseen, so only rows and the end of the walk are branches.
+/// Writes the union of the lanes' lists into the group. All lists are walked together, and the least key at which a
+/// lane stands comes next. Which lanes list it cannot be foreseen, so only rows and the end of the walk are branches.
 template <class Law>
 class UnionBuilder {
  public:

@@ -47,7 +47,7 @@ void rebase(Run& run, std::size_t l) {
   if (!reduce_cell(run, list)) return discard(run, l, RveStatus::neighbour_overflow);
   find_candidates(list.position, run.packing->radii, Cell(list.cell), run.scales.skin, run.keys);
   list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, run.keys,
-                                 {run.kept_keys, run.kept_histories.data()});
+                                {run.kept_keys, run.kept_histories.data()});
   list.rebased = true;
 }
 

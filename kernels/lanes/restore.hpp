@@ -37,8 +37,8 @@ template <class Run>
   const std::size_t n = run.group.grains.size();
   list.cell = {from.cell(rve, 0), from.cell(rve, 1), from.cell(rve, 2), from.cell(rve, 3)};
   list.position.assign(&from.position(rve, 0, 0), &from.position(rve, 0, 0) + 2 * n);
-  const bool finite = std::isfinite(list.cell.norm()) &&
-                      std::all_of(list.position.begin(), list.position.end(), [](double x) { return std::isfinite(x); });
+  const bool finite = std::isfinite(list.cell.norm()) && std::all_of(list.position.begin(), list.position.end(),
+                                                                     [](double x) { return std::isfinite(x); });
   if (!lane.drive.possible() || !finite || !(list.cell.det() > 0)) {
     lane.status = RveStatus::not_finite;
     return false;

@@ -78,11 +78,11 @@ void turn_directions(SpringSystem<V>& system, bool first, const PerStrain<V>& be
 template <class V>
 struct Progress {
   PerStrain<V> running;
-  PerStrain<V> energy;                    ///< twice the energy of the motion so far: the diagonal of V D
-  PerStrain<V> affine;                    ///< the same of the affine motion
-  PerStrain<V> rounding;                  ///< squared residual below which a residual is rounding
-  PerStrain<V> gained;                    ///< its decrease in the last iteration
-  PerStrain<V> before;                    ///< its decrease in the iteration before
+  PerStrain<V> energy;    ///< twice the energy of the motion so far: the diagonal of V D
+  PerStrain<V> affine;    ///< the same of the affine motion
+  PerStrain<V> rounding;  ///< squared residual below which a residual is rounding
+  PerStrain<V> gained;    ///< its decrease in the last iteration
+  PerStrain<V> before;    ///< its decrease in the iteration before
 };
 
 /// Completes the products of the matrix with the directions, image + answer, and returns the step lengths: rho /
