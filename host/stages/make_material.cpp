@@ -12,8 +12,8 @@
 namespace voussoir::host {
 namespace {
 
-/// Tolerance of the static tangents with which Newton iterates: they take 4 to 6 iterations and are off by 0.1 to 0.4
-/// %. A smaller tolerance does not save evaluations (kernels/README.md, "Static tangent").
+/// Tolerance of the static tangents with which Newton iterates: they are off by 1 % at most, as their error is
+/// estimated. A smaller tolerance does not save evaluations (kernels/README.md, "Static tangent").
 constexpr double newton_tangent_tolerance = 0.1;
 
 /// A pool with the chosen packings at the points.

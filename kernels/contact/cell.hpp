@@ -7,6 +7,13 @@
 
 namespace voussoir::kernels {
 
+/// The nearest integer, the even one of two that are equally near, of a number below 2^51. std::nearbyint gives the
+/// same, but calls a function where the processor is not known to have an instruction for it.
+[[nodiscard]] KOKKOS_INLINE_FUNCTION double nearest_integer(double x) {
+  constexpr double no_fraction = 6755399441055744.0;  // 1.5 * 2^52: sums with it are rounded to integers
+  return (x + no_fraction) - no_fraction;
+}
+
 /// Periodic cell with its inverse, for nearest images.
 struct Cell {
   Mat2 h;  ///< columns are the periodic vectors [m]
@@ -25,8 +32,8 @@ struct Cell {
   /// Replaces a difference vector by its nearest image. The image is chosen in the cell's own (sheared) coordinates,
   /// which is exact for vectors shorter than half a height.
   KOKKOS_INLINE_FUNCTION void nearest(double& dx, double& dy) const {
-    const double a = std::nearbyint(inverse.xx * dx + inverse.xy * dy);
-    const double b = std::nearbyint(inverse.yx * dx + inverse.yy * dy);
+    const double a = nearest_integer(inverse.xx * dx + inverse.xy * dy);
+    const double b = nearest_integer(inverse.yx * dx + inverse.yy * dy);
     dx -= h.xx * a + h.xy * b;
     dy -= h.yx * a + h.yy * b;
   }

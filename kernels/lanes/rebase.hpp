@@ -33,12 +33,12 @@ template <class Run>
 void rebase(Run& run, std::size_t l) {
   auto& list = run.lists[l];
   auto& lane = run.lanes[l];
-  run.kept.clear();
+  run.kept_keys.clear();
+  run.kept_histories.clear();
   for (const auto& p : list.pairs) {
     if (std::all_of(p.history.begin(), p.history.end(), [](auto number) { return number == 0; })) continue;
-    auto& kept = run.kept.emplace_back();
-    kept.key = p.key;
-    std::copy(p.history.begin(), p.history.end(), kept.history.begin());
+    run.kept_keys.push_back(p.key);
+    run.kept_histories.insert(run.kept_histories.end(), p.history.begin(), p.history.end());
   }
   move_positions(run, l, list.position);
   list.cell = current_cell(lane, list.cell);
@@ -46,7 +46,8 @@ void rebase(Run& run, std::size_t l) {
   for (auto& g : run.group.grains) g.u_x[l] = g.u_y[l] = 0;
   if (!reduce_cell(run, list)) return discard(run, l, RveStatus::neighbour_overflow);
   find_candidates(list.position, run.packing->radii, Cell(list.cell), run.scales.skin, run.keys);
-  list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, run.keys, run.kept);
+  list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, run.keys,
+                                {run.kept_keys, run.kept_histories.data()});
   list.rebased = true;
 }
 
