@@ -142,7 +142,7 @@ VOUSSOIR_OWN_SYMBOL void finish(Run& run, std::span<RveReport> reports) {
   }
   if (run.settings.tangent != TangentKind::contact) replace_tangents(run, answers);
   std::array<bool, Run::width> stored{};
-  const auto motion = motion_of(run.group);
+  const auto motion = motion_of_group(run);
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0) continue;
     RveReport& report = answers[l];
