@@ -14,8 +14,7 @@
 ///   stable_rows(...)        row sums of a grain's stiffness at the largest overlap allowed; its scaled mass follows
 ///   normal_stiffness_of(...) d f_n/d delta of a grain against an equal one, for the control of stresses
 ///   pushes_only(pair)       optional: whether that pair has neither f_t nor m, whatever its motion and history, so
-///   that
-///                           a step needs neither of them (packings consolidated without friction)
+///                           that a step needs neither of them (packings consolidated without friction)
 ///   Law(pair)               the law of that pair, with the member functions
 ///     operator()(motion, history)    forces; the history becomes 0 where the grains do not touch
 ///     keep(changed, history)         copies the numbers that operator() can change from `changed` to `history`;
