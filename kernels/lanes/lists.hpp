@@ -55,7 +55,7 @@ class HistoryWalk {
  public:
   explicit HistoryWalk(const KeptContacts& kept)
       : keys_(kept.keys.empty() ? &key_of_no_pair : kept.keys.data()),
-        histories_(kept.keys.empty() ? none_.data() : kept.histories),
+        histories_(kept.keys.empty() ? none.data() : kept.histories),
         last_(kept.keys.empty() ? 0 : kept.keys.size() - 1) {}
 
   /// The history of a pair, or zeros.
@@ -81,7 +81,7 @@ class HistoryWalk {
   }
 
  private:
-  static constexpr std::array<double, std::max(numbers, std::size_t{1})> none_{};
+  static constexpr std::array<double, std::max(numbers, std::size_t{1})> none{};
   const std::uint32_t* keys_;
   const double* histories_;
   std::size_t last_, at_ = 0;
