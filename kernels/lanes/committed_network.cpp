@@ -36,13 +36,6 @@ Lanes load(const double* from) {
 
 void store(const Lanes& v, double* to) { v.copy_to(to, Kokkos::Experimental::element_aligned_tag()); }
 
-/// std::nearbyint of numbers below 2^51: their sum with 2^52 has no room for a fraction, and is rounded as all sums
-/// are.
-Lanes nearest_integers(const Lanes& x) {
-  const Lanes no_fraction(0x1.8p52);
-  return (x + no_fraction) - no_fraction;
-}
-
 /// Fills the radii, and the branches without the choice of an image.
 void gather(const RveStates& states, std::size_t rve, const Packing& packing, const std::uint32_t* keys, Block& b) {
   const double* const positions = &states.position(rve, 0, 0);
@@ -56,15 +49,11 @@ void gather(const RveStates& states, std::size_t rve, const Packing& packing, co
   }
 }
 
-/// Makes the operations of Cell::nearest and of kernels::committed_contacts, in their order.
+/// Makes the operations of kernels::committed_contacts, in their order.
 void measure(const Cell& cell, Block& b) {
-  const Mat2 h = cell.h, inverse = cell.inverse;
   for (std::size_t c = 0; c < b.size; c += at_once) {
-    const Lanes dx = load(b.x + c), dy = load(b.y + c);
-    const Lanes first = nearest_integers(Lanes(inverse.xx) * dx + Lanes(inverse.xy) * dy);
-    const Lanes second = nearest_integers(Lanes(inverse.yx) * dx + Lanes(inverse.yy) * dy);
-    const Lanes x = dx - (Lanes(h.xx) * first + Lanes(h.xy) * second);
-    const Lanes y = dy - (Lanes(h.yx) * first + Lanes(h.yy) * second);
+    Lanes x = load(b.x + c), y = load(b.y + c);
+    cell.nearest(x, y);
     const Lanes length = Kokkos::sqrt(x * x + y * y);
     const Lanes overlap = load(b.radius_of_i + c) + load(b.radius_of_j + c) - length;
     store(x / length, b.x + c);

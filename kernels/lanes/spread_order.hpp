@@ -38,7 +38,7 @@ class SpreadOrder {
     sort_grains(rows, n);
     make_blocks(rows, n);
     slots_.resize(pairs);
-    seconds_.assign(blocks_.back().seconds * width, no_slot());
+    seconds_.assign(blocks_.back().seconds * width, static_cast<std::int32_t>(no_slot()));
     std::fill(second_count_.begin(), second_count_.end(), 0);
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t at = places_[i], first = static_cast<std::size_t>(rows[i]);
@@ -46,7 +46,7 @@ class SpreadOrder {
         slots_[p] = (blocks_[at / width].pairs + p - first) * width + at % width;
         const auto j = static_cast<std::size_t>(other_of(p));
         const std::size_t line = blocks_[places_[j] / width].seconds + static_cast<std::size_t>(second_count_[j]++);
-        seconds_[line * width + places_[j] % width] = slots_[p];
+        seconds_[line * width + places_[j] % width] = static_cast<std::int32_t>(slots_[p]);
       }
     }
   }
@@ -54,15 +54,16 @@ class SpreadOrder {
   /// One more than there are vectors of grains; the last one is the end.
   [[nodiscard]] std::span<const Block> blocks() const { return blocks_; }
   [[nodiscard]] std::size_t pair_blocks() const { return blocks_.back().pairs; }
-  [[nodiscard]] std::span<const std::size_t> places() const { return places_; }    ///< by grain: its lane of all lanes
-  [[nodiscard]] std::span<const std::size_t> slots() const { return slots_; }      ///< by pair: its lane of all lanes
-  [[nodiscard]] std::span<const std::size_t> seconds() const { return seconds_; }  ///< slots, or no_slot()
+  [[nodiscard]] std::span<const std::size_t> places() const { return places_; }     ///< by grain: its lane of all lanes
+  [[nodiscard]] std::span<const std::size_t> slots() const { return slots_; }       ///< by pair: its lane of all lanes
+  [[nodiscard]] std::span<const std::int32_t> seconds() const { return seconds_; }  ///< slots, or no_slot()
   /// A lane behind those of all pairs.
   [[nodiscard]] std::size_t no_slot() const { return pair_blocks() * width; }
 
  private:
   std::vector<Block> blocks_;
-  std::vector<std::size_t> places_, slots_, seconds_;
+  std::vector<std::size_t> places_, slots_;
+  std::vector<std::int32_t> seconds_;
   std::vector<int> second_count_;
   std::vector<std::size_t> sorted_;
 

@@ -76,7 +76,6 @@ class SpreadRve {
     branches_.assign(most, {zero, zero});
     torques_first_.assign(most, zero);
     torques_other_.assign(order_.pair_blocks() + 1, zero);
-    seconds_.assign(order_.seconds().begin(), order_.seconds().end());
     holds_ = true;
   }
 
@@ -163,7 +162,6 @@ class SpreadRve {
   std::vector<Two<V>> pair_forces_;               ///< on the first grains; the last one is zero
   std::vector<Two<V>> branches_;                  ///< of measuring sweeps
   std::vector<V> torques_first_, torques_other_;  ///< the last one of the latter is zero
-  std::vector<std::int32_t> seconds_;             ///< as those of the order
   std::vector<Two<V>> grain_forces_;              ///< of measuring sweeps, on the grains
 
   template <class T>
@@ -298,7 +296,7 @@ class SpreadRve {
     const auto& next = order_.blocks()[g + 1];
     GrainForces f{V(0), V(0), V(0)};
     for (std::size_t k = block.seconds; k < next.seconds; ++k) {
-      const std::int32_t* const slots = seconds_.data() + k * width;
+      const std::int32_t* const slots = order_.seconds().data() + k * width;
       const Two<V> force = gathered(pair_forces_.data(), slots);
       f.x = f.x - force.x;
       f.y = f.y - force.y;
