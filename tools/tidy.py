@@ -40,7 +40,7 @@ CONFIGURATION = ROOT / ".clang-tidy"
 CLEAN_REVISION = ROOT / "tools/tidy_clean_revision.txt"
 STAMPS = ROOT / "build/tidy"
 SOURCES = (".cpp", ".hpp")
-GCC_ONLY = ("-fno-gnu-unique",)
+GCC_ONLY = ("-fno-gnu-unique", "-fno-tree-loop-vectorize")
 # clang's analyzer follows all paths through the macros of GoogleTest, which takes six times as long as all other checks
 # together. The sanitizers see these paths, because they run the tests. A test that reads an optional without a value
 # fails, as it should.

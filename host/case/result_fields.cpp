@@ -1,8 +1,25 @@
 #include "host/case/result_fields.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "host/case/case.hpp"
+
 namespace voussoir::host {
+
+bool is_written(const ResultField& field, const OutputCase& output) {
+  const std::vector<std::string>& names = output.fields;
+  return is_asked_for(field, output.microstructure) &&
+         (names.empty() || std::find(names.begin(), names.end(), field.name) != names.end());
+}
+
+kernels::MicrostructureRequest written_quantities(const OutputCase& output) {
+  kernels::MicrostructureRequest written;
+  for (const ResultField& field : result_field_table) {
+    if (field.request != nullptr && is_written(field, output)) written.*field.request = true;
+  }
+  return written;
+}
 
 bool ask_for(std::string_view name, kernels::MicrostructureRequest& request) {
   using Request = kernels::MicrostructureRequest;

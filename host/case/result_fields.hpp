@@ -107,6 +107,14 @@ static constexpr const auto& result_field_table = result_field_rows::table;
   return field.request == nullptr || wanted.*field.request;
 }
 
+struct OutputCase;
+
+/// Whether result files hold a field, where the material has it.
+[[nodiscard]] bool is_written(const ResultField& field, const OutputCase& output);
+
+/// What `output.microstructure` asks for, without the quantities of which `output.fields` keeps no field.
+[[nodiscard]] kernels::MicrostructureRequest written_quantities(const OutputCase& output);
+
 /// Adds the quantity that an entry of `output.microstructure` names to the request; false where there is no such
 /// quantity.
 [[nodiscard]] bool ask_for(std::string_view name, kernels::MicrostructureRequest& request);

@@ -18,18 +18,12 @@ constexpr double contacts_a_grain = 1.93;
 constexpr double nodes_a_point = 0.79;  ///< of the study's meshes: 3.16 nodes an element
 constexpr double file_overhead = 30e3;  ///< attributes and groups of a result file
 
-bool is_wanted(const OutputCase& output, const ResultField& field) {
-  const auto& names = output.fields;
-  return is_asked_for(field, output.microstructure) &&
-         (names.empty() || std::find(names.begin(), names.end(), field.name) != names.end());
-}
-
 /// Size of a result file, with the copies for ParaView: vectors with a third component, and the means over the four
 /// points of an element.
 double result_file_bytes(const Case& input, double points, double nodes) {
   double bytes = file_overhead;
   for (const ResultField& field : result_field_table) {
-    if (!is_wanted(input.output, field) || (field.of_grains && input.material != MaterialKind::grains)) continue;
+    if (!is_written(field, input.output) || (field.of_grains && input.material != MaterialKind::grains)) continue;
     if (field.of_mix && input.packing.variety == 1) continue;
     if (field.of_accuracy && input.engine.accuracy == 0) continue;
     bytes += 8.0 * field.components * (field.location == io::FieldLocation::node ? 2.5 * nodes : 1.25 * points);

@@ -12,9 +12,9 @@
 #include "host/case/result_fields.hpp"
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
+#include "kernels/describe_committed.hpp"
 #include "kernels/device/device_residence.hpp"
 #include "kernels/state/committed_contacts.hpp"
-#include "kernels/state/describe_committed.hpp"
 #include "kernels/state/mobility.hpp"
 
 namespace voussoir::host {
@@ -63,6 +63,7 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
       least_areas_(least_areas(mix)),
       all_states_{batch_.committed, batch_.trial} {
   for (const kernels::Packing& packing : batch_.packings) {
+    solid_areas_.push_back(packing.solid_area());
     mobilities_.push_back(
         kernels::mean_mobility<kernels::PlainEngineLaw>(packing, kernels::EngineSettings{}.overlap_limit));
   }
@@ -196,13 +197,11 @@ std::vector<fem::PointField> RvePool::fields() const {
     out.push_back(std::move(field));
   };
   const auto& reports = committed_reports_;
-  const kernels::RveStates& s = batch_.committed;
+  std::vector<kernels::Microstructure> networks(microstructure_.any() ? size() : 0);
+  if (!networks.empty()) kernels::describe_committed(batch_, microstructure_, networks);
   add(result_field("void_ratio"), [&](std::size_t k) { return void_ratio_of(k); });
-  add(result_field("grain_rotation"), [&](std::size_t k) {
-    double sum = 0;
-    for (int i = 0; i < batch_.packing(k).size(); ++i) sum += s.rotation(k, static_cast<std::size_t>(i));
-    return sum / batch_.packing(k).size();
-  });
+  add(result_field("grain_rotation"),
+      [&](std::size_t k) { return networks.empty() ? kernels::mean_rotation(batch_, k) : networks[k].grain_rotation; });
   add(result_field("coordination"),
       [&](std::size_t k) { return 2.0 * reports[k].contacts / batch_.packing(k).size(); });
   add(result_field("rve_status"), [&](std::size_t k) { return static_cast<double>(reports[k].status); });
@@ -216,12 +215,10 @@ std::vector<fem::PointField> RvePool::fields() const {
     add(result_field("expected_error"),
         [&](std::size_t k) { return choose_inertial_number(engine_.accuracy, inertial_time_of(k)).error; });
   }
-  if (!microstructure_.any()) return out;
-  std::vector<kernels::Microstructure> all(size());
-  kernels::describe_committed(batch_, microstructure_, all);
+  if (networks.empty()) return out;
   for (const ResultField& row : result_field_table) {
     if (row.request == nullptr || !is_asked_for(row, microstructure_)) continue;
-    add(row, [&](std::size_t k) { return row.of_network(all[k]); });
+    add(row, [&](std::size_t k) { return row.of_network(networks[k]); });
   }
   return out;
 }
@@ -230,7 +227,7 @@ double RvePool::void_ratio_of(std::size_t rve) const {
   kernels::bring_committed(batch_);
   const kernels::RveStates& s = batch_.committed;
   return void_ratio(s.cell(rve, 0) * s.cell(rve, 3) - s.cell(rve, 1) * s.cell(rve, 2),
-                    batch_.packing(rve).solid_area());
+                    solid_areas_[static_cast<std::size_t>(batch_.packing_of[rve])]);
 }
 
 PackedRve RvePool::packed(std::size_t rve) const {

@@ -77,6 +77,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<fem::Gradient> increment_;  ///< of the last evaluation; only where some may be deferred
   bool steps_are_fixed_ = false;
   std::vector<double> least_areas_;                  ///< (RVE), see least_areas [m^2]
+  std::vector<double> solid_areas_;                  ///< of each packing [m^2]
   std::vector<double> mobilities_;                   ///< mean over the grains of each packing [m/N]
   std::vector<kernels::RveStates> all_states_;       ///< committed, trial and held ones
   std::vector<std::weak_ptr<const HeldRves>> held_;  ///< those that somebody holds, and such as were held

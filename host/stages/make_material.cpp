@@ -4,6 +4,7 @@
 
 #include "fem/linear_elastic.hpp"
 #include "host/case/engine.hpp"
+#include "host/case/result_fields.hpp"
 #include "host/material/mirrored_batch.hpp"
 #include "host/material/rve_pool.hpp"
 #include "host/ranks/session.hpp"
@@ -11,8 +12,8 @@
 namespace voussoir::host {
 namespace {
 
-/// Tolerance of the static tangents with which Newton iterates: they take 4 to 6 iterations and are off by 0.1 to 0.4
-/// %. A smaller tolerance does not save evaluations (kernels/README.md, "Static tangent").
+/// Tolerance of the static tangents with which Newton iterates: they are off by 1 % at most, as their error is
+/// estimated. A smaller tolerance does not save evaluations (kernels/README.md, "Static tangent").
 constexpr double newton_tangent_tolerance = 0.1;
 
 /// A pool with the chosen packings at the points.
@@ -41,7 +42,7 @@ MaterialCase material_case(const Case& input) {
           .elastic = input.elastic,
           .tangent = input.newton.tangent,
           .tangent_strain = input.newton.tangent_strain,
-          .microstructure = input.output.microstructure};
+          .microstructure = written_quantities(input.output)};
 }
 
 std::unique_ptr<fem::MaterialBatch> make_material(const MaterialCase& material, std::size_t n_points,

@@ -7,6 +7,15 @@
 
 namespace voussoir::kernels {
 
+/// The nearest integer, the even one of two that are equally near, of a number below 2^51. std::nearbyint gives the
+/// same, but calls a function where the processor is not known to have an instruction for it.
+/// @tparam Number double, or lanes of doubles
+template <class Number>
+[[nodiscard]] KOKKOS_INLINE_FUNCTION Number nearest_integer(const Number& x) {
+  const Number no_fraction(6755399441055744.0);  // 1.5 * 2^52: sums with it are rounded to integers
+  return (x + no_fraction) - no_fraction;
+}
+
 /// Periodic cell with its inverse, for nearest images.
 struct Cell {
   Mat2 h;  ///< columns are the periodic vectors [m]
@@ -23,12 +32,13 @@ struct Cell {
   }
 
   /// Replaces a difference vector by its nearest image. The image is chosen in the cell's own (sheared) coordinates,
-  /// which is exact for vectors shorter than half a height.
-  KOKKOS_INLINE_FUNCTION void nearest(double& dx, double& dy) const {
-    const double a = std::nearbyint(inverse.xx * dx + inverse.xy * dy);
-    const double b = std::nearbyint(inverse.yx * dx + inverse.yy * dy);
-    dx -= h.xx * a + h.xy * b;
-    dy -= h.yx * a + h.yy * b;
+  /// which is exact for vectors shorter than half a height. @tparam Number double, or lanes of doubles
+  template <class Number>
+  KOKKOS_INLINE_FUNCTION void nearest(Number& dx, Number& dy) const {
+    const Number a = nearest_integer(Number(inverse.xx) * dx + Number(inverse.xy) * dy);
+    const Number b = nearest_integer(Number(inverse.yx) * dx + Number(inverse.yy) * dy);
+    dx = dx - (Number(h.xx) * a + Number(h.xy) * b);
+    dy = dy - (Number(h.yx) * a + Number(h.yy) * b);
   }
 
   /// Distance between the two opposite sides that bound the cell along fractional axis 0 or 1.

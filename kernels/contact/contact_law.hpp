@@ -14,6 +14,8 @@
 ///   for_each_number(h, f)   calls f(k, number k) of a History, in that order
 ///   stable_rows(...)        row sums of a grain's stiffness at the largest overlap allowed; its scaled mass follows
 ///   normal_stiffness_of(...) d f_n/d delta of a grain against an equal one, for the control of stresses
+///   pushes_only(pair)       optional: whether that pair has neither f_t nor m, whatever its motion and history, so
+///                           that a step needs neither of them (packings consolidated without friction)
 ///   Law(pair)               the law of that pair, with the member functions
 ///     operator()(motion, history)    forces; the history becomes 0 where the grains do not touch
 ///     keep(changed, history)         copies the numbers that operator() can change from `changed` to `history`;
@@ -81,6 +83,16 @@ struct ContactMotion {
   V sliding;            ///< increment of the sliding of j past i along t [m]
   V rolling;            ///< increment of the relative rotation of j against i [rad]
 };
+
+/// Whether a pair of this law is known to have no force but f_n.
+template <class Law>
+[[nodiscard]] bool pushes_only(const typename Law::Pair& pair) {
+  if constexpr (requires { Law::pushes_only(pair); }) {
+    return Law::pushes_only(pair);
+  } else {
+    return false;
+  }
+}
 
 template <class V>
 struct ContactForce {

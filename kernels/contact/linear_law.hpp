@@ -95,6 +95,10 @@ struct LinearContactLaw {
             .moment_cap = rounded(caps.moment)};
   }
 
+  [[nodiscard]] static bool pushes_only(const Pair& pair) {
+    return pair.tangential_cap == 0 && (!Rolling || pair.moment_cap == 0);
+  }
+
   /// @param overlap largest, divided by R; the stiffness of the linear law does not depend on it
   [[nodiscard]] static double normal_stiffness_of(const GrainMaterial& m, double radius,
                                                   [[maybe_unused]] double overlap) {

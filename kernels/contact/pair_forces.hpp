@@ -127,6 +127,14 @@ KOKKOS_FORCEINLINE_FUNCTION PairAction<V> act(PairLanes<Law>& pair, const Shape&
   return action;
 }
 
+/// What `act` gives where the law pushes only, up to the signs of zeros.
+template <class Shape, class V>
+KOKKOS_FORCEINLINE_FUNCTION PairAction<V> push(const Shape& shape, const PairGeometry<V>& at) {
+  const PairDistance<V> distance = distance_of(at.gap, shape);
+  const V along = shape.law.secant(distance.overlap) * distance.excess;
+  return {-(along * at.branch_x), -(along * at.branch_y), V(0), V(0)};
+}
+
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION void add_stress(SweepSums<V>& sums, const PairAction<V>& p, const PairGeometry<V>& at) {
   sums.stress_xx = fused(p.force_x, at.branch_x, sums.stress_xx);

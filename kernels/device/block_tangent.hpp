@@ -17,8 +17,9 @@ struct Iteration {
   double rho = 0;     ///< squared residual
   double energy = 0;  ///< twice the energy of the motion so far
   double affine = 0;  ///< the same of the affine motion
-  double gained = 0, before = 0;
-  double rounding = 0;
+  double gained = 0;  ///< what the energy has lost in the last iteration
+  double before = 0;  ///< what it lost in the iteration before
+  double rounding = 0;  ///< squared residual below which a residual is rounding
 };
 
 /// Writes the springs of all touching pairs into the device's memory.
@@ -136,7 +137,7 @@ template <class Run, class Slot>
   });
   const double next = total(run, norm);
   now.energy -= alpha * now.rho;
-  now.gained += alpha * now.rho;
+  now.gained = alpha * now.rho;
   const V beta(static_cast<real>(next / now.rho));
   each_held(run, slot, run.grains, [&](int k, int) { slot[k].direction = plus(slot[k].residual, beta, slot[k].direction); });
   now.rho = next;
@@ -149,7 +150,6 @@ template <class Run, class Slot>
   const double energy = now.energy > floor ? now.energy : floor;
   const double error = loss_to_come(now.before, now.gained);
   now.before = now.gained;
-  now.gained = 0;
   return error > tolerance * tolerance * energy;
 }
 
@@ -161,8 +161,7 @@ template <class Run, class Slot>
   bool running = true;
   while (running && k < run.settings.tangent_iterations) {
     ++k;
-    running = iterate(run, slot, now);
-    if (running && k % tangent_look_interval == 0) running = goes_on(now, run.settings.tangent_tolerance);
+    running = iterate(run, slot, now) && goes_on(now, run.settings.tangent_tolerance);
   }
   each_held(run, slot, run.grains, [&](int s, int i) {
     const auto x = unscaled(slot[s].scale, slot[s].motion);

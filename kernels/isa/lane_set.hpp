@@ -5,12 +5,14 @@
 /// Inline functions of the standard library, of Kokkos and of our own headers, compiled for AVX-512, can therefore not
 /// become the copy that the linker keeps for the whole program.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "kernels/contact/cell.hpp"
 #include "kernels/isa/instruction_set.hpp"
+#include "kernels/state/network.hpp"
 #include "kernels/state/requests.hpp"
 #include "kernels/state/rve_batch.hpp"
 
@@ -31,6 +33,9 @@ struct LaneSet {
   /// Writes the candidate contacts of one RVE (lanes/neighbours.hpp).
   void (*find_candidates)(std::span<const double> positions, std::span<const double> radii, const Cell& cell,
                           double skin, std::vector<std::uint32_t>& keys);
+
+  /// Writes the contacts of one RVE for its network (lanes/committed_network.hpp).
+  void (*committed_network)(const RveBatch& batch, std::size_t rve, std::vector<NetworkContact>& out);
 
   [[nodiscard]] int width(Precision precision) const { return precision == Precision::float32 ? floats : doubles; }
 };

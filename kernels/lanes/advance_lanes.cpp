@@ -2,6 +2,7 @@
 
 #include "kernels/course/choose_instance.hpp"
 #include "kernels/isa/lane_set.hpp"
+#include "kernels/lanes/committed_network.hpp"
 #include "kernels/lanes/group_launch.hpp"
 #include "kernels/lanes/wide_lane.hpp"
 
@@ -50,4 +51,5 @@ extern "C" const kernels::LaneSet VOUSSOIR_NAME_OF_SET(VOUSSOIR_LANES) = {
     .advance_given = kernels::lanes::advance<kernels::StrainDrive>,
     .advance_servo = kernels::lanes::advance<kernels::ServoDrive>,
     .find_candidates = kernels::lanes::find_candidates,
+    .committed_network = kernels::lanes::committed_network,
 };

@@ -33,32 +33,39 @@ Homogenised<V> homogenise(GroupState<Law>& group) {
   return out;
 }
 
-/// Finite if and only if all grains' motions are.
-template <class Run>
-[[nodiscard]] bool grains_are_finite(const Run& run, std::size_t l) {
-  double all = 0;
-  for (const auto& g : run.group.grains) all += static_cast<double>(g.u_x[l] + g.u_y[l] + g.rotation[l]);
-  return std::isfinite(all);
+/// 0 in lanes in which all grains' motions are finite, NaN in the others.
+template <class Law, class V = typename Law::Value>
+[[nodiscard]] V finite_or_nan(const GroupState<Law>& group) {
+  V all(0);
+  for (const GrainLanes<V>& g : group.grains) all = fused(g.u_x + g.u_y + g.rotation, V(0), all);
+  return all;
 }
 
-/// Where a lane's contacts go, one after another.
+/// Where a lane's contacts go.
 struct ContactPlace {
-  std::uint32_t* key = nullptr;
-  double* history = nullptr;
+  std::uint32_t* keys = nullptr;
+  double* histories = nullptr;
+  std::ptrdiff_t count = 0;  ///< of those stored so far
 };
 
-/// Stores the contacts at the final positions with their histories, for the lanes that are `stored`.
+/// Stores the contacts at the final positions with their histories, for the lanes that are `stored`. Half of the lanes
+/// touch in a pair, and it cannot be foreseen which ones; so each lane writes, and where the pair does not touch, what
+/// it writes goes to a spare place.
 template <class Run>
 void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) {
+  using Law = typename Run::Law;
   using V = typename Run::Value;
+  constexpr auto numbers = static_cast<std::ptrdiff_t>(history_size<Law>);
   const RveStates& to = run.batch->trial;
   const auto rve_of = [&run](std::size_t l) { return static_cast<std::size_t>(run.lanes[l].rve); };
   std::array<ContactPlace, Run::width> place{};
+  std::uint32_t spare_key = 0;
+  std::array<double, static_cast<std::size_t>(numbers) + 1> spare_history{};
   unsigned wanted = 0;
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (!stored[l]) continue;
     wanted |= 1U << l;
-    place[l] = {&to.contact_key(rve_of(l), 0), to.histories_of(rve_of(l))};
+    place[l] = {&to.contact_key(rve_of(l), 0), to.histories_of(rve_of(l)), 0};
   }
   for (std::size_t i = 0; i < run.group.grains.size(); ++i) {
     const auto& gi = run.group.grains[i];
@@ -67,16 +74,22 @@ void store_contacts(const Run& run, const std::array<bool, Run::width>& stored) 
       const auto& gj = run.group.grains[static_cast<std::size_t>(j)];
       const auto& pair = run.group.pairs[p];
       const auto at = geometry_of(pair, run.group.motion, gj.u_x - gi.u_x, gj.u_y - gi.u_y);
-      for (unsigned touching = bits_of(at.gap < V(0)) & wanted; touching != 0; touching &= touching - 1) {
-        const auto l = static_cast<std::size_t>(std::countr_zero(touching));
-        *place[l].key++ = pair_key(static_cast<int>(i), j);
-        write_history<typename Run::Law>(
-            pair.history, l, [&](int, const auto& number) { *place[l].history++ = static_cast<double>(number); });
+      const unsigned touching = bits_of(at.gap < V(0)) & wanted;
+      if (touching == 0) continue;
+      const std::uint32_t key = pair_key(static_cast<int>(i), j);
+      for (std::size_t l = 0; l < Run::width; ++l) {
+        const std::ptrdiff_t touches = (touching >> l) & 1U;
+        ContactPlace& at_lane = place[l];
+        *(touches != 0 ? at_lane.keys + at_lane.count : &spare_key) = key;
+        double* const history = touches != 0 ? at_lane.histories + numbers * at_lane.count : spare_history.data();
+        write_history<Law>(pair.history, l,
+                           [history](int k, const auto& number) { history[k] = static_cast<double>(number); });
+        at_lane.count += touches;
       }
     }
   }
   for (std::size_t l = 0; l < Run::width; ++l) {
-    if (stored[l]) to.contact_count(rve_of(l)) = static_cast<int>(place[l].key - &to.contact_key(rve_of(l), 0));
+    if (stored[l]) to.contact_count(rve_of(l)) = static_cast<int>(place[l].count);
   }
 }
 
@@ -117,18 +130,19 @@ VOUSSOIR_OWN_SYMBOL void finish(Run& run, std::span<RveReport> reports) {
   const Region region(run.regions, "finish");
   for (std::size_t l = 0; l < Run::width; ++l) round_motion(run.lanes[l], run.group.motion, l);
   const auto sums = homogenise(run.group);
+  const auto finite = finite_or_nan(run.group);
   std::array<RveReport, Run::width> answers;
   for (std::size_t l = 0; l < Run::width; ++l) {
     const auto& lane = run.lanes[l];
     RveReport& report = answers[l];
     begin_report(lane, report);
     if (lane.rve >= 0 && !is_failure(report.status)) {
-      fill_report(lane, sums, l, volume_of(run, l), grains_are_finite(run, l), run.scales, run.settings, report);
+      fill_report(lane, sums, l, volume_of(run, l), finite[l] == 0, run.scales, run.settings, report);
     }
   }
   if (run.settings.tangent != TangentKind::contact) replace_tangents(run, answers);
   std::array<bool, Run::width> stored{};
-  const auto motion = motion_of(run.group);
+  const auto motion = motion_of_group(run);
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0) continue;
     RveReport& report = answers[l];

@@ -41,11 +41,12 @@ struct GroupRun {
   GroupState<Law> group;
   std::conditional_t<is_spread, SpreadRve<typename LawOver<Law, WideLane<real>>::type, Law>, NotSpread> spread;
   UnionBuilder<Law> builder;
-  SpringSystem<V> springs;             ///< empty unless the static tangent is asked for
-  StepSystem<V> step;                  ///< empty unless the loading tangent is asked for
-  std::vector<std::uint32_t> keys;     ///< scratch of a rebase
-  std::vector<KeptContact<Law>> kept;  ///< scratch of a restore or rebase
-  double tangent_seconds = 0;          ///< that the tangents of all groups so far have taken [s]
+  SpringSystem<V> springs;               ///< empty unless the static tangent is asked for
+  StepSystem<V> step;                    ///< empty unless the loading tangent is asked for
+  std::vector<std::uint32_t> keys;       ///< scratch of a rebase
+  std::vector<std::uint32_t> kept_keys;  ///< scratch of a rebase: contacts with history, and its numbers
+  std::vector<double> kept_histories;
+  double tangent_seconds = 0;  ///< that the tangents of all groups so far have taken [s]
   Regions regions;
 };
 

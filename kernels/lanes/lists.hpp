@@ -17,11 +17,13 @@
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
-/// A contact with the history it carries.
-template <class Law>
-struct KeptContact {
-  std::uint32_t key;
-  HistoryNumbers<Law, double> history;
+/// Greater than the key of any pair.
+inline constexpr std::uint32_t key_of_no_pair = 0xffffffffU;
+
+/// Contacts and the numbers of their histories, contact by contact; keys ascend.
+struct KeptContacts {
+  std::span<const std::uint32_t> keys;
+  const double* histories;
 };
 
 /// A candidate with the numbers that one lane has for it. @tparam numbers of the law's history
@@ -46,31 +48,72 @@ using ListedPairOf = ListedPair<real_of<typename Law::Value>, static_cast<std::s
 template <class Law>
 using LaneListOf = LaneList<real_of<typename Law::Value>, static_cast<std::size_t>(history_size<Law>)>;
 
+/// Finds the histories of pairs whose keys ascend, in one walk along the kept contacts. Half of the pairs have one, in
+/// no order that a processor could foresee, so the walk has no branch that depends on it.
+template <std::size_t numbers>
+class HistoryWalk {
+ public:
+  explicit HistoryWalk(const KeptContacts& kept)
+      : keys_(kept.keys.empty() ? &key_of_no_pair : kept.keys.data()),
+        histories_(kept.keys.empty() ? none.data() : kept.histories),
+        last_(kept.keys.empty() ? 0 : kept.keys.size() - 1) {}
+
+  /// The history of a pair, or zeros.
+  class History {
+   public:
+    History(const double* history, bool found) : history_(history), mask_(-static_cast<std::uint64_t>(found)) {}
+    [[nodiscard]] double operator[](std::size_t k) const {
+      return std::bit_cast<double>(std::bit_cast<std::uint64_t>(history_[k]) & mask_);
+    }
+
+   private:
+    const double* history_;
+    std::uint64_t mask_;
+  };
+
+  /// The history of a pair, which is zero where the pair is not kept.
+  [[nodiscard]] History of(std::uint32_t key) {
+    while (at_ < last_ && keys_[at_] < key) ++at_;  // rare: the contact before has been dropped
+    const bool found = keys_[at_] == key;
+    const History history(histories_ + numbers * at_, found);
+    at_ += static_cast<std::size_t>(found) & static_cast<std::size_t>(at_ < last_);
+    return history;
+  }
+
+ private:
+  static constexpr std::array<double, std::max(numbers, std::size_t{1})> none{};
+  const std::uint32_t* keys_;
+  const double* histories_;
+  std::size_t last_, at_ = 0;
+};
+
 /// Lists those of the pairs `keys` of a lane that are closer than the skin [m]. Branches and gaps are computed in
-/// double and rounded once; histories come from `kept`, whose keys ascend. A kept contact that is not listed has opened
-/// by more than the skin and is dropped.
+/// double and rounded once. A kept contact that is not listed has opened by more than the skin and is dropped. Each
+/// pair is written at the end of the list, and the list grows where the pair is near: a branch would often be foreseen
+/// wrongly.
 template <class Law>
 void list_pairs(LaneListOf<Law>& lane, std::span<const double> radii, double skin, std::span<const std::uint32_t> keys,
-                const std::vector<KeptContact<Law>>& kept) {
+                const KeptContacts& kept) {
   using real = real_of<typename Law::Value>;
   const Cell cell(lane.cell);
-  lane.pairs.clear();
-  lane.pairs.reserve(keys.size());
-  auto from = kept.begin();
+  lane.pairs.resize(keys.size() + 1);
+  HistoryWalk<static_cast<std::size_t>(history_size<Law>)> walk(kept);
+  auto* to = lane.pairs.data();
+  const double* const position = lane.position.data();
   for (const std::uint32_t key : keys) {
     const auto i = static_cast<std::size_t>(first_of(key)), j = static_cast<std::size_t>(second_of(key));
     const double sum = radii[i] + radii[j];
-    const PairReference at = pair_reference(lane.position[2 * j] - lane.position[2 * i],
-                                            lane.position[2 * j + 1] - lane.position[2 * i + 1], sum, cell);
-    if (at.gap >= skin * (2.0 * sum + skin)) continue;  // |b| >= R + skin
-    ListedPairOf<Law> pair{
-        key, static_cast<real>(at.branch_x), static_cast<real>(at.branch_y), static_cast<real>(at.gap), {}};
-    while (from != kept.end() && from->key < key) ++from;
-    if (from != kept.end() && from->key == key) {
-      for (std::size_t k = 0; k < pair.history.size(); ++k) pair.history[k] = static_cast<real>(from->history[k]);
-    }
-    lane.pairs.push_back(pair);
+    const PairReference at = pair_reference(position[2 * j] - position[2 * i],
+                                            position[2 * j + 1] - position[2 * i + 1], sum, cell);
+    const auto history = walk.of(key);
+    to->key = key;
+    to->branch_x = static_cast<real>(at.branch_x);
+    to->branch_y = static_cast<real>(at.branch_y);
+    to->gap = static_cast<real>(at.gap);
+    for (std::size_t k = 0; k < to->history.size(); ++k) to->history[k] = static_cast<real>(history[k]);
+    to += static_cast<std::ptrdiff_t>(!(at.gap >= skin * (2.0 * sum + skin)));  // |b| < R + skin
   }
+  lane.pairs.resize(static_cast<std::size_t>(to - lane.pairs.data()));
 }
 
 /// The constants of pair (i, j) of a packing, for the lanes.
@@ -83,71 +126,61 @@ PairShape<Law> shape_of(const Packing& packing, int i, int j) {
   return shape;
 }
 
-/// Writes the union of the lanes' lists into the group.
+/// Writes the union of the lanes' lists into the group. All lists are walked together, and the least key at which a
+/// lane stands comes next. Which lanes list it cannot be foreseen, so only rows and the end of the walk are branches.
 template <class Law>
 class UnionBuilder {
  public:
   using V = typename Law::Value;
   using real = real_of<V>;
-  static constexpr int width = lane_count<V>;
-  using Lanes = std::array<LaneListOf<Law>, static_cast<std::size_t>(width)>;
+  static constexpr std::size_t width = static_cast<std::size_t>(lane_count<V>);
+  using Lanes = std::array<LaneListOf<Law>, width>;
 
-  void build(GroupState<Law>& group, const Lanes& lanes, const Packing& packing) {
-    const int n = group.n_grains;
-    cursor_.fill(0);
-    listed_.assign((static_cast<std::size_t>(n) + 63) / 64, 0);
-    int count = 0;
-    for (int i = 0; i < n; ++i) {
-      group.row[static_cast<std::size_t>(i)] = count;
-      collect_row(lanes, i);
-      count = append_row(group, lanes, packing, i, count);
+  /// The lists are the same at the end.
+  void build(GroupState<Law>& group, Lanes& lanes, const Packing& packing) {
+    for (std::size_t l = 0; l < width; ++l) {
+      lanes[l].pairs.push_back({key_of_no_pair, real(0), real(0), real(0), {}});
+      next_[l] = lanes[l].pairs.data();
     }
-    group.row[static_cast<std::size_t>(n)] = count;
-    const auto used = static_cast<std::size_t>(count);
-    group.pair_shapes.resize(std::max(group.pair_shapes.size(), used + pairs_ahead));
-    for (std::size_t k = 0; k < pairs_ahead; ++k) group.pair_shapes[used + k].other_bytes = 0;
+    std::size_t count = 0, row = 0;
+    group.row[0] = 0;
+    for (std::uint32_t key = least(); key != key_of_no_pair; key = least()) {
+      const auto i = static_cast<std::size_t>(first_of(key)), j = static_cast<std::size_t>(second_of(key));
+      while (row < i) group.row[++row] = static_cast<int>(count);
+      if (count == group.pairs.size()) {
+        group.pairs.resize(2 * count + 64);
+        group.pair_shapes.resize(2 * count + 64 + pairs_ahead);
+      }
+      group.pair_shapes[count] = shape_of<Law>(packing, first_of(key), second_of(key));
+      fill(group.pairs[count], key, packing.radii[i] + packing.radii[j]);
+      ++count;
+    }
+    while (row < static_cast<std::size_t>(group.n_grains)) group.row[++row] = static_cast<int>(count);
+    for (auto& lane : lanes) lane.pairs.pop_back();
+    group.pair_shapes.resize(std::max(group.pair_shapes.size(), count + pairs_ahead));
+    for (std::size_t k = 0; k < pairs_ahead; ++k) group.pair_shapes[count + k].other_bytes = 0;
   }
 
  private:
-  std::array<std::size_t, static_cast<std::size_t>(width)> cursor_{};
-  std::vector<std::uint64_t> listed_;  ///< bit j: some lane lists (i, j)
+  std::array<const ListedPairOf<Law>*, width> next_{};
 
-  void collect_row(const Lanes& lanes, int i) {
-    for (std::size_t l = 0; l < static_cast<std::size_t>(width); ++l) {
-      const auto& pairs = lanes[l].pairs;
-      for (std::size_t c = cursor_[l]; c < pairs.size() && first_of(pairs[c].key) == i; ++c) {
-        const auto j = static_cast<std::size_t>(second_of(pairs[c].key));
-        listed_[j / 64] |= std::uint64_t{1} << (j % 64);
-      }
+  [[nodiscard]] std::uint32_t least() const {
+    std::array<std::uint32_t, width> keys;
+    for (std::size_t l = 0; l < width; ++l) keys[l] = next_[l]->key;
+    for (std::size_t half = width / 2; half > 0; half /= 2) {
+      for (std::size_t l = 0; l < half; ++l) keys[l] = std::min(keys[l], keys[l + half]);
     }
+    return keys[0];
   }
 
-  int append_row(GroupState<Law>& group, const Lanes& lanes, const Packing& packing, int i, int count) {
-    for (std::size_t w = static_cast<std::size_t>(i) / 64; w < listed_.size(); ++w) {
-      while (listed_[w] != 0) {
-        const int j = static_cast<int>(w * 64) + std::countr_zero(listed_[w]);
-        listed_[w] &= listed_[w] - 1;
-        const auto at = static_cast<std::size_t>(count);
-        if (at == group.pairs.size()) {
-          group.pairs.resize(2 * at + 64);
-          group.pair_shapes.resize(2 * at + 64 + pairs_ahead);
-        }
-        group.pair_shapes[at] = shape_of<Law>(packing, i, j);
-        fill(group.pairs[at], lanes, pair_key(i, j), packing);
-        ++count;
-      }
-    }
-    return count;
-  }
-
-  void fill(PairLanes<Law>& to, const Lanes& lanes, std::uint32_t key, const Packing& packing) {
-    const double sum = packing.radii[static_cast<std::size_t>(first_of(key))] +
-                       packing.radii[static_cast<std::size_t>(second_of(key))];
+  /// @param sum R [m]
+  void fill(PairLanes<Law>& to, std::uint32_t key, double sum) {
     const ListedPairOf<Law> inert{key, real(0), real(0), static_cast<real>(sum * sum), {}};
-    for (std::size_t l = 0; l < static_cast<std::size_t>(width); ++l) {
-      const auto& pairs = lanes[l].pairs;
-      const bool own = cursor_[l] < pairs.size() && pairs[cursor_[l]].key == key;
-      const ListedPairOf<Law>& from = own ? pairs[cursor_[l]++] : inert;
+    for (std::size_t l = 0; l < width; ++l) {
+      const ListedPairOf<Law>* const own = next_[l];
+      const bool lists = own->key == key;
+      const ListedPairOf<Law>& from = lists ? *own : inert;
+      next_[l] = own + static_cast<std::ptrdiff_t>(lists);
       to.branch_x[l] = from.branch_x;
       to.branch_y[l] = from.branch_y;
       to.gap[l] = from.gap;

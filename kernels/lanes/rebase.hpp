@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "kernels/lanes/group_run.hpp"
 
@@ -16,10 +17,10 @@ struct Motion {
   V finite = V(0);                   ///< 0, or NaN once a displacement is not finite
 };
 
-template <class Law, class V = typename Law::Value>
-[[nodiscard]] Motion<V> motion_of(const GroupState<Law>& group) {
+template <class V>
+[[nodiscard]] Motion<V> motion_of(const std::vector<GrainLanes<V>>& grains) {
   Motion<V> m;
-  for (const GrainLanes<V>& g : group.grains) {
+  for (const GrainLanes<V>& g : grains) {
     const V squared = fused(g.u_x, g.u_x, g.u_y * g.u_y);
     m.largest = larger(m.largest, squared);
     m.fastest = larger(m.fastest, fused(g.w_x, g.w_x, g.w_y * g.w_y));
@@ -28,17 +29,38 @@ template <class Law, class V = typename Law::Value>
   return m;
 }
 
+/// The motion of an RVE whose grains stand in all lanes.
+template <class One, class V>
+[[nodiscard]] Motion<One> over_all_lanes(const Motion<V>& wide) {
+  Motion<One> m;
+  for (std::size_t l = 0; l < static_cast<std::size_t>(lane_count<V>); ++l) {
+    m.largest = larger(m.largest, One(wide.largest[l]));
+    m.fastest = larger(m.fastest, One(wide.fastest[l]));
+    m.finite = m.finite + One(wide.finite[l]);
+  }
+  return m;
+}
+
+/// The motion of a group, wherever its grains are.
+template <class Run, class V = typename Run::Value>
+[[nodiscard]] Motion<V> motion_of_group(const Run& run) {
+  if constexpr (Run::is_spread) {
+    if (run.spread.holds()) return over_all_lanes<V>(motion_of(run.spread.grains()));
+  }
+  return motion_of(run.group.grains);
+}
+
 /// Makes the lane's current configuration its reference; histories are kept.
 template <class Run>
 void rebase(Run& run, std::size_t l) {
   auto& list = run.lists[l];
   auto& lane = run.lanes[l];
-  run.kept.clear();
+  run.kept_keys.clear();
+  run.kept_histories.clear();
   for (const auto& p : list.pairs) {
     if (std::all_of(p.history.begin(), p.history.end(), [](auto number) { return number == 0; })) continue;
-    auto& kept = run.kept.emplace_back();
-    kept.key = p.key;
-    std::copy(p.history.begin(), p.history.end(), kept.history.begin());
+    run.kept_keys.push_back(p.key);
+    run.kept_histories.insert(run.kept_histories.end(), p.history.begin(), p.history.end());
   }
   move_positions(run, l, list.position);
   list.cell = current_cell(lane, list.cell);
@@ -46,7 +68,8 @@ void rebase(Run& run, std::size_t l) {
   for (auto& g : run.group.grains) g.u_x[l] = g.u_y[l] = 0;
   if (!reduce_cell(run, list)) return discard(run, l, RveStatus::neighbour_overflow);
   find_candidates(list.position, run.packing->radii, Cell(list.cell), run.scales.skin, run.keys);
-  list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, run.keys, run.kept);
+  list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, run.keys,
+                                {run.kept_keys, run.kept_histories.data()});
   list.rebased = true;
 }
 
@@ -83,10 +106,7 @@ void check_lists(Run& run, int step) {
     due = due || (run.lanes[l].running && step_of(run, l, step) >= run.lanes[l].next_list_check);
   }
   if (!due) return;
-  if constexpr (Run::is_spread) {
-    if (run.spread.holds()) run.spread.give_grains(run.group);
-  }
-  const auto motion = motion_of(run.group);
+  const auto motion = motion_of_group(run);
   std::array<bool, Run::width> stale{};
   bool any = false;
   for (std::size_t l = 0; l < Run::width; ++l) {

@@ -1,7 +1,8 @@
 #pragma once
 /// Brings committed states into the lanes of a group.
 
-#include <numeric>
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "kernels/lanes/group_run.hpp"
@@ -36,8 +37,9 @@ template <class Run>
   const std::size_t n = run.group.grains.size();
   list.cell = {from.cell(rve, 0), from.cell(rve, 1), from.cell(rve, 2), from.cell(rve, 3)};
   list.position.assign(&from.position(rve, 0, 0), &from.position(rve, 0, 0) + 2 * n);
-  const double sum = std::accumulate(list.position.begin(), list.position.end(), list.cell.norm());
-  if (!lane.drive.possible() || !std::isfinite(sum) || !(list.cell.det() > 0)) {
+  const bool finite = std::isfinite(list.cell.norm()) && std::all_of(list.position.begin(), list.position.end(),
+                                                                     [](double x) { return std::isfinite(x); });
+  if (!lane.drive.possible() || !finite || !(list.cell.det() > 0)) {
     lane.status = RveStatus::not_finite;
     return false;
   }
@@ -46,13 +48,9 @@ template <class Run>
     return false;
   }
   const std::vector<std::uint32_t>& candidates = candidates_of(run, list, rve);
-  run.kept.clear();
-  for (std::size_t c = 0; c < static_cast<std::size_t>(from.contact_count(rve)); ++c) {
-    auto& kept = run.kept.emplace_back();
-    kept.key = from.contact_key(rve, c);
-    for (std::size_t k = 0; k < kept.history.size(); ++k) kept.history[k] = from.contact_history(rve, c, k);
-  }
-  list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, candidates, run.kept);
+  const KeptContacts kept{{&from.contact_key(rve, 0), static_cast<std::size_t>(from.contact_count(rve))},
+                          from.histories_of(rve)};
+  list_pairs<typename Run::Law>(list, run.packing->radii, run.scales.skin, candidates, kept);
   list.rebased = false;
   set_rate(lane, 0);
   return true;

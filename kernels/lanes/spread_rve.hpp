@@ -7,13 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <span>
 #include <type_traits>
 #include <vector>
 
 #include "kernels/contact/grain_motion.hpp"
 #include "kernels/contact/pair_forces.hpp"
-#include "kernels/lanes/wide_lane.hpp"
+#include "kernels/lanes/spread_order.hpp"
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
@@ -22,29 +24,8 @@ template <class Law>
 struct SpreadShapes {
   using V = typename Law::Value;
   V inverse_sum, minus_inverse_sum_squared, minus_half_sum;
-  V radius_first, radius_other;
+  V radius_other;
   Law law;
-};
-
-/// Quantities of all pairs, quantity by quantity, with room for whole vectors.
-template <class V, std::size_t quantities>
-class PairTable {
- public:
-  using real = real_of<V>;
-
-  void resize(std::size_t vectors) {
-    vectors_ = vectors;
-    values_.assign(quantities * vectors, V(0));
-  }
-  [[nodiscard]] V& at(std::size_t quantity, std::size_t b) { return values_[quantity * vectors_ + b]; }
-  /// The numbers of one quantity, pair by pair.
-  [[nodiscard]] real* numbers(std::size_t quantity) {
-    return reinterpret_cast<real*>(values_.data() + quantity * vectors_);
-  }
-
- private:
-  std::size_t vectors_ = 0;
-  std::vector<V> values_;
 };
 
 /// Sets lane `l` of a law to the law of another pair, whose lanes are all alike. A law holds nothing but values.
@@ -83,28 +64,35 @@ class SpreadRve {
 
   /// Takes the pairs and grains over from the group.
   void take(const GroupState<Single>& group) {
-    rows_.assign(group.row.begin(), group.row.end());
+    order_.make(group.row, [&](std::size_t p) { return group.pair_shapes[p].other; });
     take_grains(group);
     take_pairs(group);
+    const V zero(0);
+    std::size_t most = 0;  // vectors of pairs in a window
+    for (std::size_t g = 0; g < grains_.size(); g += Order::window)
+      most = std::max(most,
+                      order_.blocks()[std::min(g + Order::window, grains_.size())].pairs - order_.blocks()[g].pairs);
+    pair_forces_.assign(order_.pair_blocks() + 1, {zero, zero});
+    branches_.assign(most, {zero, zero});
+    torques_first_.assign(most, zero);
+    torques_other_.assign(order_.pair_blocks() + 1, zero);
     holds_ = true;
   }
 
-  /// Writes the motions of the grains back.
-  void give_grains(GroupState<Single>& group) const {
+  [[nodiscard]] const std::vector<GrainLanes<V>>& grains() const { return grains_; }  ///< `width` grains in each
+
+  /// Writes grains and histories back; the group has them alone from now on.
+  void give(GroupState<Single>& group) {
     for (std::size_t i = 0; i < group.grains.size(); ++i) {
-      const GrainLanes<V>& from = grains_[i / width];
-      const std::size_t l = i % width;
+      const GrainLanes<V>& from = grains_[order_.places()[i] / width];
+      const std::size_t l = order_.places()[i] % width;
       group.grains[i] = {One(from.u_x[l]),     One(from.u_y[l]),    One(from.w_x[l]),
                          One(from.w_y[l]),     One(from.spin[l]),   One(from.force_x[l]),
                          One(from.force_y[l]), One(from.torque[l]), One(from.rotation[l])};
     }
-  }
-
-  /// Writes grains and histories back; the group has them alone from now on.
-  void give(GroupState<Single>& group) {
-    give_grains(group);
-    for (std::size_t p = 0; p < pair_count(); ++p) {
-      copy_history<Law, Single>(pairs_[p / width].history, p % width, group.pairs[p].history, 0);
+    for (std::size_t p = 0; p < order_.slots().size(); ++p) {
+      const std::size_t slot = order_.slots()[p];
+      copy_history<Law, Single>(pairs_[slot / width].history, slot % width, group.pairs[p].history, 0);
     }
     holds_ = false;
   }
@@ -112,53 +100,97 @@ class SpreadRve {
   /// As sweep_pairs.
   template <Sweep mode>
   void sweep(const CellMotion<One>& cell, double local_damping, SweepSums<One>& sums) {
-    const CellMotion<V> motion = in_all_lanes(cell);
-    compare_grains();
-    V largest(0);
-    for (std::size_t b = 0; b < pairs_.size(); ++b) act_on<mode>(b, motion, largest);
-    if constexpr (mode == Sweep::measure) {
-      for (std::size_t l = 0; l < width; ++l) sums.largest_measure = larger(sums.largest_measure, One(largest[l]));
-    }
-    add_up<mode>(sums);
-    const V damping(static_cast<real>(local_damping));
-    for (std::size_t g = 0; g < grains_.size(); ++g) {
-      GrainLanes<V>& grain = grains_[g];
-      integrate(grain, shapes_[g], motion, damping, V(grain.force_x), V(grain.force_y), V(grain.torque));
-    }
+    forces_ == Forces::all ? sweep_with<mode, Forces::all>(cell, local_damping, sums)
+                           : sweep_with<mode, Forces::normal>(cell, local_damping, sums);
   }
 
  private:
-  static constexpr std::size_t numbers_of_grain = sizeof(GrainLanes<V>) / sizeof(V);
+  using Order = SpreadOrder<width>;
+  /// The forces that the contacts have.
+  enum class Forces { all, normal };
+
+  template <Sweep mode, Forces forces>
+  void sweep_with(const CellMotion<One>& cell, double local_damping, SweepSums<One>& sums) {
+    const CellMotion<V> motion = in_all_lanes(cell);
+    const V damping(static_cast<real>(local_damping));
+    Serial serial{sums};
+    V largest(0);
+    for (std::size_t first = 0; first < grains_.size(); first += Order::window) {
+      const std::size_t last = std::min(first + Order::window, grains_.size());
+      for (std::size_t g = first; g < last; ++g)
+        act_on_rows<mode, forces>(g, order_.blocks()[first].pairs, motion, largest);
+      for (std::size_t g = first; g < last; ++g) {
+        const GrainForces f = forces_on<forces>(g, order_.blocks()[first].pairs);
+        integrate(grains_[g], shapes_[g], motion, damping, f.x, f.y, f.torque);
+        show_motion<forces>(g);
+        if constexpr (mode == Sweep::measure) {
+          store_side_by_side(f.x, f.y, grain_forces_[g]);
+          add_some(serial, g, first, last);
+        }
+      }
+    }
+    if constexpr (mode == Sweep::measure) {
+      add_rest(serial);
+      for (std::size_t l = 0; l < width; ++l) {
+        serial.sums.largest_measure = larger(serial.sums.largest_measure, One(largest[l]));
+      }
+      sums = serial.sums;
+    }
+  }
+
+  /// The sums of a vector of grains.
+  struct GrainForces {
+    V x, y, torque;
+  };
+  /// Sums over all pairs and grains, one after the other. Each waits for the one before, so they are taken beside the
+  /// work on vectors, as far behind it as the order asks for.
+  struct Serial {
+    SweepSums<One> sums;
+    std::size_t pairs = 0, grains = 0;  ///< that have been added
+  };
 
   bool holds_ = false;
-  std::vector<int> rows_;
-  std::vector<GrainLanes<V>> grains_;  ///< `width` grains in each
+  Forces forces_ = Forces::all;
+  Order order_;
+  std::vector<GrainLanes<V>> grains_;
   std::vector<GrainShape<V>> shapes_;  ///< of these
-  std::vector<PairLanes<Law>> pairs_;  ///< `width` pairs in each; the last ones are filled up with inert ones
+  std::vector<PairLanes<Law>> pairs_;  ///< idle lanes hold inert pairs
   std::vector<SpreadShapes<Law>> pair_shapes_;
-  std::vector<std::size_t> other_;  ///< by pair: where the second grain's numbers begin
-  enum Motion : std::size_t { du_x, du_y, dw_x, dw_y, spin_first, spin_other, motions };
-  enum Action : std::size_t { force_x, force_y, torque_first, torque_other, branch_x, branch_y, actions };
-  PairTable<V, motions> motions_;  ///< of the second grain of a pair against the first one
-  PairTable<V, actions> actions_;  ///< of a pair on its grains, with its branch
+  std::vector<std::int32_t> others_;  ///< by slot: the place of the second grain; in idle lanes that of the first
+  std::vector<Two<V>> displacements_, velocities_;  ///< of the grains
+  std::vector<V> spins_;
+  std::vector<Two<V>> pair_forces_;               ///< on the first grains; the last one is zero
+  std::vector<Two<V>> branches_;                  ///< of measuring sweeps
+  std::vector<V> torques_first_, torques_other_;  ///< the last one of the latter is zero
+  std::vector<Two<V>> grain_forces_;              ///< of measuring sweeps, on the grains
 
-  [[nodiscard]] std::size_t pair_count() const { return static_cast<std::size_t>(rows_.back()); }
-
-  /// Where the numbers of a grain begin; they are `width` apart.
-  [[nodiscard]] static std::size_t place_of(std::size_t grain) {
-    return grain / width * numbers_of_grain * width + grain % width;
+  template <class T>
+  [[nodiscard]] static const real* numbers(const std::vector<T>& values) {
+    return reinterpret_cast<const real*>(values.data());
   }
-  [[nodiscard]] real* numbers() { return reinterpret_cast<real*>(grains_.data()); }
+
+  template <Forces forces>
+  VOUSSOIR_LANES_INLINE void show_motion(std::size_t g) {
+    const GrainLanes<V>& grain = grains_[g];
+    store_side_by_side(grain.u_x, grain.u_y, displacements_[g]);
+    if constexpr (forces == Forces::normal) return;
+    store_side_by_side(grain.w_x, grain.w_y, velocities_[g]);
+    spins_[g] = grain.spin;
+  }
 
   void take_grains(const GroupState<Single>& group) {
-    const std::size_t n = group.grains.size(), blocks = (n + width - 1) / width;
+    const std::size_t n = group.grains.size(), blocks = order_.blocks().size() - 1;
     const V zero(0);
     grains_.assign(blocks, {zero, zero, zero, zero, zero, zero, zero, zero, zero});
     shapes_.assign(blocks, {zero, zero, zero, zero, zero});
+    grain_forces_.assign(blocks, {zero, zero});
+    displacements_.resize(blocks, {zero, zero});
+    velocities_.resize(blocks, {zero, zero});
+    spins_.resize(blocks, zero);
     for (std::size_t i = 0; i < n; ++i) {
-      const std::size_t l = i % width;
+      const std::size_t at = order_.places()[i], l = at % width;
       const GrainLanes<One>& from = group.grains[i];
-      GrainLanes<V>& to = grains_[i / width];
+      GrainLanes<V>& to = grains_[at / width];
       to.u_x[l] = from.u_x[0];
       to.u_y[l] = from.u_y[0];
       to.w_x[l] = from.w_x[0];
@@ -166,31 +198,38 @@ class SpreadRve {
       to.spin[l] = from.spin[0];
       to.rotation[l] = from.rotation[0];
       const GrainShape<real>& shape = group.shapes[i];
-      GrainShape<V>& spread = shapes_[i / width];
+      GrainShape<V>& spread = shapes_[at / width];
       spread.radius[l] = shape.radius;
       spread.mobility[l] = shape.mobility;
       spread.rotational_mobility[l] = shape.rotational_mobility;
       spread.half_mobility[l] = shape.half_mobility;
       spread.half_rotational_mobility[l] = shape.half_rotational_mobility;
     }
+    for (std::size_t g = 0; g < blocks; ++g) show_motion<Forces::all>(g);
   }
 
   void take_pairs(const GroupState<Single>& group) {
-    const std::size_t n = pair_count(), blocks = (n + width - 1) / width;
+    const std::size_t blocks = order_.pair_blocks();
     const V zero(0), one(1);
     pairs_.assign(blocks, {zero, zero, one, no_history<Law>()});
-    pair_shapes_.assign(blocks, {zero, zero, zero, zero, zero, Law(law_of(group.pair_shapes[0]))});
-    motions_.resize(blocks);
-    actions_.resize(blocks);
-    other_.resize(n);
-    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
-      for (auto p = static_cast<std::size_t>(rows_[i]); p < static_cast<std::size_t>(rows_[i + 1]); ++p)
-        take_pair(group, i, p);
+    pair_shapes_.assign(blocks, {zero, zero, zero, zero, Law(law_of(group.pair_shapes[0]))});
+    others_.resize(blocks * width);
+    for (std::size_t g = 0; g < grains_.size(); ++g) {
+      for (std::size_t k = order_.blocks()[g].pairs * width; k < order_.blocks()[g + 1].pairs * width; ++k)
+        others_[k] = static_cast<std::int32_t>(g * width + k % width);
+    }
+    for (std::size_t p = 0; p < order_.slots().size(); ++p) take_pair(group, p);
+    const auto shapes = std::span(group.pair_shapes).first(order_.slots().size());
+    const bool pushes = std::all_of(shapes.begin(), shapes.end(),
+                                    [](const PairShape<Single>& shape) { return pushes_only<Single>(shape.law); });
+    forces_ = pushes ? Forces::normal : Forces::all;
+    if (pushes) {
+      for (PairLanes<Law>& pair : pairs_) pair.history = no_history<Law>();
     }
   }
 
-  void take_pair(const GroupState<Single>& group, std::size_t i, std::size_t p) {
-    const std::size_t b = p / width, l = p % width;
+  void take_pair(const GroupState<Single>& group, std::size_t p) {
+    const std::size_t slot = order_.slots()[p], b = slot / width, l = slot % width;
     const PairLanes<Single>& from = group.pairs[p];
     PairLanes<Law>& to = pairs_[b];
     to.branch_x[l] = from.branch_x[0];
@@ -202,10 +241,9 @@ class SpreadRve {
     spread.inverse_sum[l] = shape.inverse_sum;
     spread.minus_inverse_sum_squared[l] = shape.minus_inverse_sum_squared;
     spread.minus_half_sum[l] = shape.minus_half_sum;
-    spread.radius_first[l] = group.shapes[i].radius;
     spread.radius_other[l] = shape.radius_other;
     set_lane(spread.law, l, Law(law_of(shape)));
-    other_[p] = place_of(static_cast<std::size_t>(shape.other));
+    others_[slot] = static_cast<std::int32_t>(order_.places()[static_cast<std::size_t>(shape.other)]);
   }
 
   /// The constants of a law do not depend on the number of lanes.
@@ -222,81 +260,90 @@ class SpreadRve {
             all(m.e_xx), all(m.e_xy), all(m.e_yx), all(m.e_yy), all(m.rotation), all(m.alive)};
   }
 
-  /// Fills `motions_`.
-  void compare_grains() {
-    const real* const grains = numbers();
-    real* const to_u_x = motions_.numbers(du_x);
-    real* const to_u_y = motions_.numbers(du_y);
-    real* const to_w_x = motions_.numbers(dw_x);
-    real* const to_w_y = motions_.numbers(dw_y);
-    real* const first = motions_.numbers(spin_first);
-    real* const second = motions_.numbers(spin_other);
-    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
-      const real* const gi = grains + place_of(i);
-      const real ux = gi[0], uy = gi[width], wx = gi[2 * width], wy = gi[3 * width], spin = gi[4 * width];
-      for (auto p = static_cast<std::size_t>(rows_[i]); p < static_cast<std::size_t>(rows_[i + 1]); ++p) {
-        const real* const gj = grains + other_[p];
-        to_u_x[p] = gj[0] - ux;
-        to_u_y[p] = gj[width] - uy;
-        to_w_x[p] = gj[2 * width] - wx;
-        to_w_y[p] = gj[3 * width] - wy;
-        first[p] = spin;
-        second[p] = gj[4 * width];
+  /// Computes the actions of the pairs in the rows of a vector of grains.
+  template <Sweep mode, Forces forces>
+  VOUSSOIR_LANES_INLINE void act_on_rows(std::size_t g, std::size_t first, const CellMotion<V>& cell, V& largest) {
+    const GrainLanes<V>& gi = grains_[g];
+    const V ux = gi.u_x, uy = gi.u_y, wx = gi.w_x, wy = gi.w_y;
+    const GrainRim<V> rim = rim_of(shapes_[g].radius, gi.spin);
+    const std::size_t end = order_.blocks()[g + 1].pairs;
+    for (std::size_t b = order_.blocks()[g].pairs; b < end; ++b) {
+      const std::int32_t* const other = others_.data() + b * width;
+      const Two<V> u = gathered(displacements_.data(), other);
+      const PairGeometry<V> at = geometry_of(pairs_[b], cell, u.x - ux, u.y - uy);
+      PairAction<V> on;
+      if constexpr (forces == Forces::all) {
+        const Two<V> w = gathered(velocities_.data(), other);
+        on = act(pairs_[b], pair_shapes_[b], at, cell, w.x - wx, w.y - wy, rim, gathered<V>(numbers(spins_), other));
+        torques_first_[b - first] = on.torque_i;
+        torques_other_[b] = on.torque_j;
+      } else {
+        on = push(pair_shapes_[b], at);
+      }
+      store_side_by_side(on.force_x, on.force_y, pair_forces_[b]);
+      if constexpr (mode == Sweep::measure) {
+        store_side_by_side(at.branch_x, at.branch_y, branches_[b - first]);
+        largest = larger(largest, overlap_measure(at, pair_shapes_[b]));
       }
     }
   }
 
-  template <Sweep mode>
-  void act_on(std::size_t b, const CellMotion<V>& cell, V& largest) {
-    const SpreadShapes<Law>& shape = pair_shapes_[b];
-    const PairGeometry<V> at = geometry_of(pairs_[b], cell, motions_.at(du_x, b), motions_.at(du_y, b));
-    const PairAction<V> on = act(pairs_[b], shape, at, cell, motions_.at(dw_x, b), motions_.at(dw_y, b),
-                                 rim_of(shape.radius_first, motions_.at(spin_first, b)), motions_.at(spin_other, b));
-    actions_.at(force_x, b) = on.force_x;
-    actions_.at(force_y, b) = on.force_y;
-    actions_.at(torque_first, b) = on.torque_i;
-    actions_.at(torque_other, b) = on.torque_j;
-    if constexpr (mode == Sweep::measure) {
-      actions_.at(branch_x, b) = at.branch_x;
-      actions_.at(branch_y, b) = at.branch_y;
-      largest = larger(largest, overlap_measure(at, shape));
+  /// Adds the actions on a vector of grains up, first those of earlier rows. A sum begins with 0, is therefore never
+  /// -0, and keeps its bits where an idle lane adds or subtracts a zero.
+  template <Forces forces>
+  [[nodiscard]] VOUSSOIR_LANES_INLINE GrainForces forces_on(std::size_t g, std::size_t first) const {
+    const auto& block = order_.blocks()[g];
+    const auto& next = order_.blocks()[g + 1];
+    GrainForces f{V(0), V(0), V(0)};
+    for (std::size_t k = block.seconds; k < next.seconds; ++k) {
+      const std::int32_t* const slots = order_.seconds().data() + k * width;
+      const Two<V> force = gathered(pair_forces_.data(), slots);
+      f.x = f.x - force.x;
+      f.y = f.y - force.y;
+      if constexpr (forces == Forces::all) f.torque = f.torque + gathered<V>(numbers(torques_other_), slots);
     }
+    for (std::size_t b = block.pairs; b < next.pairs; ++b) {
+      const Two<V> force = load_side_by_side(pair_forces_[b]);
+      f.x = f.x + force.x;
+      f.y = f.y + force.y;
+      if constexpr (forces == Forces::all) f.torque = f.torque + torques_first_[b - first];
+    }
+    return f;
   }
 
-  /// Adds the actions of all pairs to the sums of their grains, and to those of the RVE.
-  template <Sweep mode>
-  void add_up(SweepSums<One>& sums) {
-    real* const grains = numbers();
-    const real* const px = actions_.numbers(force_x);
-    const real* const py = actions_.numbers(force_y);
-    const real* const on_first = actions_.numbers(torque_first);
-    const real* const on_other = actions_.numbers(torque_other);
-    const real* const bx = actions_.numbers(branch_x);
-    const real* const by = actions_.numbers(branch_y);
-    SweepSums<One> all = sums;
-    for (std::size_t i = 0; i + 1 < rows_.size(); ++i) {
-      real* const gi = grains + place_of(i);
-      real fx = gi[5 * width], fy = gi[6 * width], torque = gi[7 * width];
-      for (auto p = static_cast<std::size_t>(rows_[i]); p < static_cast<std::size_t>(rows_[i + 1]); ++p) {
-        real* const gj = grains + other_[p];
-        fx = fx + px[p];
-        fy = fy + py[p];
-        torque = torque + on_first[p];
-        gj[5 * width] = gj[5 * width] - px[p];
-        gj[6 * width] = gj[6 * width] - py[p];
-        gj[7 * width] = gj[7 * width] + on_other[p];
-        if constexpr (mode == Sweep::measure) {
-          add_stress(all, PairAction<One>{One(px[p]), One(py[p]), One(0), One(0)},
-                     PairGeometry<One>{One(bx[p]), One(by[p]), One(0)});
-        }
-      }
-      gi[5 * width] = fx;
-      gi[6 * width] = fy;
-      gi[7 * width] = torque;
-      if constexpr (mode == Sweep::measure)
-        all.force_squared = fused(One(fx), One(fx), fused(One(fy), One(fy), all.force_squared));
+  /// Goes on with the sums after grains g of a window, whose pairs are known, and so are the forces of the window
+  /// before.
+  VOUSSOIR_LANES_INLINE void add_some(Serial& serial, std::size_t g, std::size_t first, std::size_t last) const {
+    const std::size_t before = order_.blocks()[first].whole, pairs = order_.blocks()[last].whole - before;
+    const std::size_t due = before + pairs * (g + 1 - first) / (last - first);
+    const std::size_t offset = 2 * order_.blocks()[first].pairs * width;
+    SweepSums<One> sums = serial.sums;
+    for (; serial.pairs + width <= due; serial.pairs += width) {
+      for (std::size_t k = 0; k < width; ++k) add_pair(sums, serial.pairs + k, offset);
     }
-    sums = all;
+    if (g + 1 == last) {
+      for (; serial.pairs < due; ++serial.pairs) add_pair(sums, serial.pairs, offset);
+    }
+    if (serial.grains + width <= first * width) {
+      for (std::size_t k = 0; k < width; ++k) add_grain(sums, serial.grains + k);
+      serial.grains += width;
+    }
+    serial.sums = sums;
+  }
+
+  VOUSSOIR_LANES_INLINE void add_pair(SweepSums<One>& sums, std::size_t p, std::size_t offset) const {
+    const std::size_t at = 2 * order_.slots()[p];
+    const real* const f = numbers(pair_forces_) + at;
+    const real* const b = numbers(branches_) + (at - offset);
+    add_stress(sums, PairAction<One>{One(f[0]), One(f[1]), One(0), One(0)},
+               PairGeometry<One>{One(b[0]), One(b[1]), One(0)});
+  }
+  VOUSSOIR_LANES_INLINE void add_grain(SweepSums<One>& sums, std::size_t i) const {
+    const real* const f = numbers(grain_forces_) + 2 * order_.places()[i];
+    sums.force_squared = fused(One(f[0]), One(f[0]), fused(One(f[1]), One(f[1]), sums.force_squared));
+  }
+  VOUSSOIR_LANES_INLINE void add_rest(Serial& serial) const {
+    for (; serial.grains < order_.places().size(); ++serial.grains) add_grain(serial.sums, serial.grains);
   }
 };
 

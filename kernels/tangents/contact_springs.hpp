@@ -67,7 +67,7 @@ struct SolverGrain {
   StrainDofs<V> image;   ///< of the direction: through the backward substitution, or the matrix (loading_tangent.hpp)
   StrainDofs<V> answer;  ///< of the forward substitution
   Triangle<V> scale;     ///< the inverse of the Cholesky factor of the grain's own block of K; 0 where K is
-  GrainDofs<V> inverse_diagonal;  ///< of K; 0 where the grain has no stiffness
+  GrainDofs<V> inverse_diagonal;  ///< of K, for a loading tangent; 0 where the grain has no stiffness
 };
 
 /// A spring in the row of its grain of the larger number.
@@ -76,10 +76,10 @@ struct SpringAbove {
   int spring;  ///< its place in `springs`
 };
 
-/// The stiffness K of a group as its springs. The arrays are reused from group to group.
+/// The stiffness K of a group as its springs. The arrays are reused from group to group and never shrink.
 template <class V>
 struct SpringSystem {
-  std::vector<int> row;  ///< springs of grain i: row[i] .. row[i + 1]
+  std::vector<int> row;  ///< springs of grain i: row[i] .. row[i + 1]; the first row.back() springs are in use
   std::vector<SpringLanes<V>> springs;
   std::vector<SpringShape<real_of<V>>> shapes;
   std::vector<V> overlaps;               ///< delta/R by spring [-]; 0 in lanes where the pair does not touch
@@ -88,6 +88,8 @@ struct SpringSystem {
   std::vector<SpringAbove> above;
   std::vector<real_of<V>> radii;
   std::vector<SolverGrain<V>> grains;
+
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(row.back()); }
 };
 
 /// Adds to (dx, dy) the displacement of a branch's far end under unit strain `a`.
@@ -166,9 +168,15 @@ void collect_springs(const GroupState<Law>& group, TangentKind kind, SpringSyste
   system.row.assign(n + 1, 0);
   system.radii.resize(n);
   system.grains.resize(n);
-  system.springs.clear();
-  system.shapes.clear();
-  system.overlaps.clear();
+  const auto most = static_cast<std::size_t>(group.row[n]);
+  if (system.springs.size() < most) {
+    system.springs.resize(most);
+    system.shapes.resize(most);
+    system.overlaps.resize(most);
+    system.blocks.resize(most);
+    system.above.resize(most);
+  }
+  std::size_t used = 0;
   for (std::size_t i = 0; i < n; ++i) {
     system.radii[i] = group.shapes[i].radius;
     for (auto p = static_cast<std::size_t>(group.row[i]); p < static_cast<std::size_t>(group.row[i + 1]); ++p) {
@@ -178,11 +186,12 @@ void collect_springs(const GroupState<Law>& group, TangentKind kind, SpringSyste
       const auto at = geometry_of(pair, group.motion, gj.u_x - group.grains[i].u_x, gj.u_y - group.grains[i].u_y);
       if (!Kokkos::Experimental::any_of(at.gap < zero)) continue;
       const PairDistance<V> distance = distance_of(at.gap, shape);
-      system.springs.push_back(spring_of(pair, shape, at, distance, share));
-      system.shapes.push_back({shape.other, shape.radius_other, static_cast<int>(p)});
-      system.overlaps.push_back(distance.overlap);
+      system.springs[used] = spring_of(pair, shape, at, distance, share);
+      system.shapes[used] = {shape.other, shape.radius_other, static_cast<int>(p)};
+      if (kind == TangentKind::loading) system.overlaps[used] = distance.overlap;
+      ++used;
     }
-    system.row[i + 1] = static_cast<int>(system.springs.size());
+    system.row[i + 1] = static_cast<int>(used);
   }
 }
 

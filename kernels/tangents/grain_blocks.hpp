@@ -115,8 +115,7 @@ template <class V>
 void list_above(SpringSystem<V>& system) {
   const std::size_t n = system.radii.size();
   system.column.assign(n + 1, 0);
-  system.above.resize(system.shapes.size());
-  for (const auto& shape : system.shapes) ++system.column[static_cast<std::size_t>(shape.other)];
+  for (std::size_t c = 0; c < system.size(); ++c) ++system.column[static_cast<std::size_t>(system.shapes[c].other)];
   int end = 0;
   for (int& entry : system.column) {  // from the number of a grain's entries to their end; filling makes it their start
     end += entry;
@@ -168,13 +167,13 @@ VOUSSOIR_LANES_INLINE void substitute_backward(SpringSystem<V>& system, const Tu
 }
 
 /// Computes the blocks, the scaled residuals of grains that do not move by themselves under the unit strains, and twice
-/// the energies of this affine motion.
+/// the energies of this affine motion. @param diagonal whether `inverse_diagonal` is wanted
 template <class V>
-void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
+void load_springs(SpringSystem<V>& system, bool diagonal, PerStrain<V>& energy) {
   const V zero(0);
   const GrainDofs<V> none{zero, zero, zero};
   for (SolverGrain<V>& g : system.grains) {
-    g.motion = g.residual = g.direction = {none, none, none};
+    g.motion = g.residual = {none, none, none};
     g.scale = {zero, zero, zero, zero, zero, zero};
   }
   for_each_spring(system, [&](std::size_t c, SolverGrain<V>& gi, SolverGrain<V>& gj, const V& ri, const V& rj) {
@@ -190,11 +189,12 @@ void load_springs(SpringSystem<V>& system, PerStrain<V>& energy) {
     }
   });
   for (SolverGrain<V>& g : system.grains) {
-    g.inverse_diagonal = {inverse_or_zero(g.scale.xx), inverse_or_zero(g.scale.yy), inverse_or_zero(g.scale.ss)};
+    if (diagonal) {
+      g.inverse_diagonal = {inverse_or_zero(g.scale.xx), inverse_or_zero(g.scale.yy), inverse_or_zero(g.scale.ss)};
+    }
     g.scale = scale_of(g.scale);
     for (GrainDofs<V>& r : g.residual) r = scaled(g.scale, r);
   }
-  system.blocks.resize(system.springs.size());
   for_each_spring(system, [&](std::size_t c, SolverGrain<V>& gi, SolverGrain<V>& gj, const V& ri, const V& rj) {
     system.blocks[c] = coupling(system.springs[c], ri, rj, gi.scale, gj.scale);
   });

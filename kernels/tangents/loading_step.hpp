@@ -74,9 +74,9 @@ VOUSSOIR_LANES_INLINE V carried_tangential(const Law& law, const V& overlap, con
 /// Sets the sizes of the arrays and the forces that contacts carry; to be called after collect_springs.
 template <class Law, class V>
 void prepare_step(const GroupState<Law>& group, const SpringSystem<V>& system, StepSystem<V>& step) {
-  step.springs.resize(system.springs.size());
+  step.springs.resize(system.size());
   step.grains.resize(system.grains.size());
-  for (std::size_t c = 0; c < system.springs.size(); ++c) {
+  for (std::size_t c = 0; c < system.size(); ++c) {
     const SpringLanes<V>& s = system.springs[c];
     const auto p = static_cast<std::size_t>(system.shapes[c].pair);
     const V& overlap = system.overlaps[c];

@@ -21,7 +21,6 @@
 
 namespace voussoir::kernels {
 
-inline constexpr int tangent_look_interval = 2;  ///< iterations between looks at the energies
 inline constexpr double softest = 1e-2;  ///< energies are resolved down to this share of the affine energy, because
                                          ///< mechanisms have no energy
 
@@ -62,9 +61,13 @@ template <class V>
   return norm;
 }
 
-/// direction = residual + beta direction, and its image.
+/// direction = residual + beta direction, and its image. The first directions are the residuals.
 template <class V>
-void turn_directions(SpringSystem<V>& system, const PerStrain<V>& beta) {
+void turn_directions(SpringSystem<V>& system, bool first, const PerStrain<V>& beta) {
+  if (first) {
+    substitute_backward(system, [](SolverGrain<V>& g) -> const StrainDofs<V>& { return g.direction = g.residual; });
+    return;
+  }
   substitute_backward(system, [&](SolverGrain<V>& g) -> const StrainDofs<V>& {
     for (std::size_t a = 0; a < unit_strains; ++a) g.direction[a] = plus(g.residual[a], beta[a], g.direction[a]);
     return g.direction;
@@ -75,11 +78,11 @@ void turn_directions(SpringSystem<V>& system, const PerStrain<V>& beta) {
 template <class V>
 struct Progress {
   PerStrain<V> running;
-  PerStrain<V> energy;                    ///< twice the energy of the motion so far: the diagonal of V D
-  PerStrain<V> affine;                    ///< the same of the affine motion
-  PerStrain<V> rounding;                  ///< squared residual below which a residual is rounding
-  PerStrain<V> gained{V(0), V(0), V(0)};  ///< its decrease since the last look
-  PerStrain<V> before;                    ///< its decrease between the two looks before
+  PerStrain<V> energy;    ///< twice the energy of the motion so far: the diagonal of V D
+  PerStrain<V> affine;    ///< the same of the affine motion
+  PerStrain<V> rounding;  ///< squared residual below which a residual is rounding
+  PerStrain<V> gained;    ///< its decrease in the last iteration
+  PerStrain<V> before;    ///< its decrease in the iteration before
 };
 
 /// Completes the products of the matrix with the directions, image + answer, and returns the step lengths: rho /
@@ -109,13 +112,20 @@ template <class V>
   return alpha;
 }
 
-/// Goes along the directions. Returns the squared norms of the new residuals.
+/// Goes along the directions.
 template <class V>
-[[nodiscard]] PerStrain<V> advance_motions(SpringSystem<V>& system, const PerStrain<V>& alpha) {
+void advance_motions(SpringSystem<V>& system, const PerStrain<V>& alpha) {
+  for (SolverGrain<V>& g : system.grains) {
+    for (std::size_t a = 0; a < unit_strains; ++a) g.motion[a] = plus(g.motion[a], alpha[a], g.image[a]);
+  }
+}
+
+/// Brings the residuals to the new motions. Returns their squared norms.
+template <class V>
+[[nodiscard]] PerStrain<V> reduce_residuals(SpringSystem<V>& system, const PerStrain<V>& alpha) {
   PerStrain<V> norm{V(0), V(0), V(0)};
   for (SolverGrain<V>& g : system.grains) {
     for (std::size_t a = 0; a < unit_strains; ++a) {
-      g.motion[a] = plus(g.motion[a], alpha[a], g.image[a]);
       g.residual[a] = plus(g.residual[a], -alpha[a], plus(g.image[a], g.answer[a]));
       norm[a] = dot(g.residual[a], g.residual[a], norm[a]);
     }
@@ -123,7 +133,7 @@ template <class V>
   return norm;
 }
 
-/// The part of the energy that is still to be lost, if the losses go on as those between the last three looks (the sum
+/// The part of the energy that is still to be lost, if the losses go on as those of the last two iterations (the sum
 /// of a geometric series); at least the last loss.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION double loss_to_come(double before, double last) {
   if (!(last > 0)) return last;  // NaN too
@@ -146,7 +156,6 @@ template <class V>
       if (!(error > tolerance * tolerance * energy)) progress.running[a][l] = 0;  // NaN ends here too
       lane_runs = lane_runs || progress.running[a][l] > 0;
       progress.before[a][l] = progress.gained[a][l];
-      progress.gained[a][l] = 0;
     }
     if (!lane_runs && !out.converged[l]) {
       out.converged[l] = true;
@@ -170,17 +179,20 @@ void relax_springs(SpringSystem<V>& system, Progress<V>& progress, StaticTangent
     progress.before[a] = V(std::numeric_limits<real_of<V>>::max());
   }
   for (int k = 1; k <= settings.tangent_iterations; ++k) {
-    turn_directions(system, beta);
+    turn_directions(system, k == 1, beta);
     const PerStrain<V> alpha = step_lengths(system, rho, progress);
-    const PerStrain<V> next = advance_motions(system, alpha);
+    advance_motions(system, alpha);
     for (std::size_t a = 0; a < unit_strains; ++a) {
       const V gain = alpha[a] * rho[a];
       progress.energy[a] = progress.energy[a] - gain;
-      progress.gained[a] = progress.gained[a] + gain;
+      progress.gained[a] = gain;
+    }
+    if (!look_at(progress, out, k, settings.tangent_tolerance)) return;
+    const PerStrain<V> next = reduce_residuals(system, alpha);
+    for (std::size_t a = 0; a < unit_strains; ++a) {
       beta[a] = Kokkos::Experimental::condition((zero < alpha[a]) && (zero < rho[a]), next[a] / rho[a], zero);
     }
     rho = next;
-    if (k % tangent_look_interval == 0 && !look_at(progress, out, k, settings.tangent_tolerance)) return;
   }
   for (std::size_t l = 0; l < V::size(); ++l) {
     if (!out.converged[l]) out.iterations[l] = settings.tangent_iterations;
@@ -200,7 +212,7 @@ StaticTangent<V> static_tangent(const GroupState<Law>& group, SpringSystem<V>& s
     for (std::size_t l = 0; l < V::size(); ++l) progress.running[a][l] = live[l] ? real_of<V>(1) : real_of<V>(0);
   }
   collect_springs(group, settings.tangent, system);
-  load_springs(system, progress.energy);
+  load_springs(system, settings.tangent == TangentKind::loading, progress.energy);
   out.affine = progress.affine = progress.energy;
   relax_springs(system, progress, out, settings);
   for (SolverGrain<V>& g : system.grains) {

@@ -7,6 +7,7 @@
 
 #include "host/case/result_fields.hpp"
 #include "host/stages/biaxial_bvp.hpp"
+#include "host/stages/make_material.hpp"
 #include "tests/format_page.hpp"
 
 namespace voussoir::host {
@@ -70,6 +71,37 @@ TEST(ResultFields, ARunOfGrainsWritesNoNetworkUnlessAskedFor) {
 TEST(ResultFields, ARunWithoutGrainsWritesTheMeshesFieldsAlone) {
   const Case input = one_element(MaterialKind::linear_elastic, "elastic");
   expect_rows(written_by(input), [](const ResultField& row) { return !row.of_grains; });
+}
+
+TEST(ResultFields, QuantitiesThatNoFileHoldsAreNotComputed) {
+  Case input;
+  input.output.microstructure = everything;
+  input.output.fields = {"stress", "fabric_direction"};
+  const kernels::MicrostructureRequest computed = material_case(input).microstructure;
+  EXPECT_TRUE(computed.fabric);
+  EXPECT_FALSE(computed.coordination || computed.strong_networks);
+  input.output.fields = {"stress"};
+  EXPECT_FALSE(material_case(input).microstructure.any());
+  input.output.fields = {"strong_coordination_2"};
+  input.output.microstructure = {.fabric = true};
+  EXPECT_FALSE(material_case(input).microstructure.any()) << "it was not asked for";
+  input.output.fields = {};
+  EXPECT_TRUE(material_case(input).microstructure.fabric) << "no names stand for all fields";
+}
+
+TEST(ResultFields, AChoiceOfFieldsChangesNoneOfThem) {
+  Case input = one_element(MaterialKind::grains, "all_fields");
+  input.output.microstructure = everything;
+  const auto all = written_by(input);
+  input = one_element(MaterialKind::grains, "some_fields");
+  input.output.microstructure = everything;
+  input.output.fields = {"grain_rotation", "void_ratio", "fabric_anisotropy"};
+  const auto some = written_by(input);
+  ASSERT_EQ(some.size(), input.output.fields.size());
+  for (const auto& [name, field] : some) EXPECT_EQ(field.values, all.at(name).values) << name;
+  input = one_element(MaterialKind::grains, "fields_without_networks");
+  const auto plain = written_by(input);
+  for (const auto& [name, field] : plain) EXPECT_EQ(field.values, all.at(name).values) << name;
 }
 
 /// Such as "gauss, Pa, 1, asked for by fabric".

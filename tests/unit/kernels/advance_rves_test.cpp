@@ -125,6 +125,37 @@ TEST_F(Engine, SameBitsAloneInAnyGroupAndBesideANaN) {
   }
 }
 
+/// Beside others a pair without friction has its law's forces of zero; alone it leaves them out. The histories of
+/// before, which the law forgets at once, are gone in both.
+TEST_F(Engine, SameBitsAloneAndInAGroupWithoutFriction) {
+  reference::Rve rve = dense;
+  rve.material.friction = 0;
+  const ServoAxis axis{.stress_controlled = true, .target = -1.05e5};  // stresses are summed in every step
+  const ServoRequest squeeze{.x = axis, .y = axis, .max_rate = 2e-5, .max_steps = 300};
+  for (const bool rolls : {true, false}) {
+    if (!rolls) rve.material.rolling_stiffness = rve.material.rolling_limit = 0;
+    for (const Precision precision : {Precision::float32, Precision::float64}) {
+      SCOPED_TRACE(static_cast<int>(precision));
+      const EngineSettings settings{.precision = precision};
+      RveBatch alone = clones(rve, 1), group = clones(rve, 5);
+      const std::vector<ServoRequest> one{squeeze}, five(5, squeeze);
+      std::vector<RveReport> expected(1), reports(5);
+      advance(alone, std::span<const ServoRequest>(one), settings, expected);
+      advance(group, std::span<const ServoRequest>(five), settings, reports);
+      EXPECT_TRUE(same_bits(reports[2], expected[0]));
+      for (std::size_t i = 0; i < rve.radii.size(); ++i) {
+        ASSERT_EQ(group.trial.position(2, i, 0), alone.trial.position(0, i, 0)) << i;
+        ASSERT_EQ(group.trial.rotation(2, i), alone.trial.rotation(0, i)) << i;
+      }
+      ASSERT_EQ(group.trial.contact_count(2), alone.trial.contact_count(0));
+      for (int c = 0; c < alone.trial.contact_count(0); ++c) {
+        const auto k = static_cast<std::size_t>(c);
+        ASSERT_EQ(group.trial.contact_history(2, k, 0), alone.trial.contact_history(0, k, 0)) << c;
+      }
+    }
+  }
+}
+
 TEST_F(Engine, RigidRotationRotatesStressAndNothingElse) {
   RveBatch batch = clones(dense, 2);
   const auto reports = run(batch,

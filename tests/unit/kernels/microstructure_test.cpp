@@ -1,5 +1,5 @@
 // Contact networks with known fabric and connectivity; forces against the oracle and against the engine's own stress.
-#include "kernels/state/describe_committed.hpp"
+#include "kernels/describe_committed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "kernels/isa/choose_lanes.hpp"
 #include "kernels/state/committed_contacts.hpp"
 #include "tests/engine_support.hpp"
 
@@ -88,6 +89,16 @@ TEST(Connectivity, OfStrongNetworksByHand) {
   EXPECT_DOUBLE_EQ(describe(contacts, 30).strong_coordination[1], 2.0);
   contacts.push_back({1, 3, 1, 0, 20});  // a bridge of the chain at 2.5: 4 contacts, grain 0 with one: (8 - 1)/(4 - 1)
   EXPECT_DOUBLE_EQ(describe(contacts, 30).strong_coordination[2], 7.0 / 3.0);
+}
+
+TEST(Connectivity, OfAsManyContactsAsAGrainCanHave) {
+  constexpr int grains = 65535;  // a grain in the middle of all others; every second contact is strong
+  std::vector<NetworkContact> contacts;
+  for (int k = 1; k < grains; ++k) contacts.push_back({0, k, 1, 0, k % 2 == 1 ? 3.0 : 1.0});
+  const Microstructure m = describe(contacts, grains);
+  EXPECT_DOUBLE_EQ(m.mechanical_coordination, grains - 1.0);
+  EXPECT_DOUBLE_EQ(m.strong_coordination[0], (grains - 1.0) / 2.0);
+  EXPECT_EQ(m.strong_coordination[1], 0.0);
 }
 
 TEST(Connectivity, WithoutContactsThereIsNone) {
@@ -174,6 +185,43 @@ TEST_F(OfAPacking, ForcesAreTheOracles) {
     slid = std::max(slid, std::abs(expected[c].tangential_force));
   }
   EXPECT_GT(slid, 0.1 * largest) << "no tangential force: the test shows nothing";
+}
+
+/// The network of an RVE by a set of lanes, against the contacts one by one.
+void expect_network_of_contacts(const LaneSet& set, const RveBatch& batch, std::size_t rve) {
+  SCOPED_TRACE(name_of(set.isa));
+  std::vector<CommittedContact> contacts;
+  committed_contacts(batch, rve, contacts);
+  std::vector<NetworkContact> network(7);
+  set.committed_network(batch, rve, network);
+  ASSERT_EQ(network.size(), contacts.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    EXPECT_EQ(network[c].i, contacts[c].i);
+    EXPECT_EQ(network[c].j, contacts[c].j);
+    EXPECT_EQ(network[c].normal_x, contacts[c].normal_x) << c;
+    EXPECT_EQ(network[c].normal_y, contacts[c].normal_y) << c;
+    EXPECT_EQ(network[c].normal_force, contacts[c].normal_force) << c;
+  }
+}
+
+TEST_F(OfAPacking, NetworksHaveTheBitsOfTheContactsInEverySet) {
+  RveBatch of_one_class = clones(sheared, 2), of_classes = clones(sheared, 2);
+  of_classes.packings[0].materials.push_back({.modulus = 7.0e8});
+  of_classes.packings[0].class_of.resize(sheared.radii.size());
+  for (std::size_t i = 0; i < sheared.radii.size(); i += 3) of_classes.packings[0].class_of[i] = 1;
+  of_one_class.committed.contact_count(0) = 0;
+  const RveBatch of_many_contacts = settled(reference::hexagonal_packing(9, 6, 1e-3, 1e-6, reference::Material{}), 1);
+  ASSERT_GT(of_many_contacts.committed.contact_count(0), 128) << "they are to be read in several blocks";
+  for (const LaneSet* set : compiled_lanes()) {
+    if (set->isa > processor_set()) continue;
+    choose_lanes(set->isa);
+    for (const std::size_t rve : {std::size_t{0}, std::size_t{1}}) {
+      expect_network_of_contacts(*set, of_one_class, rve);
+      expect_network_of_contacts(*set, of_classes, rve);
+    }
+    expect_network_of_contacts(*set, of_many_contacts, 0);
+  }
+  choose_lanes({});
 }
 
 TEST_F(OfAPacking, ForcesGiveTheReportedStress) {

@@ -1,4 +1,4 @@
-#include "kernels/state/describe_committed.hpp"
+#include "kernels/describe_committed.hpp"
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
@@ -6,37 +6,34 @@
 #include <exception>
 #include <vector>
 
-#include "kernels/state/committed_contacts.hpp"
+#include "kernels/isa/choose_lanes.hpp"
 
 namespace voussoir::kernels {
 
 namespace {
 
-/// Working arrays of one RVE.
-struct Scratch {
-  std::vector<CommittedContact> contacts;
-  std::vector<NetworkContact> network;
-};
-
-Microstructure describe(const RveBatch& batch, std::size_t rve, const MicrostructureRequest& wanted, Scratch& scratch) {
+Microstructure describe(const RveBatch& batch, std::size_t rve, const MicrostructureRequest& wanted,
+                        const LaneSet& lanes, std::vector<NetworkContact>& contacts) {
   Microstructure out;
-  const int grains = batch.packing(rve).size();
-  for (int i = 0; i < grains; ++i) out.grain_rotation += batch.committed.rotation(rve, i);
-  out.grain_rotation /= grains;
-  committed_contacts(batch, rve, scratch.contacts);
-  scratch.network.clear();
-  for (const CommittedContact& c : scratch.contacts) {
-    scratch.network.push_back({c.i, c.j, c.normal_x, c.normal_y, c.normal_force});
-  }
-  describe_network(scratch.network, grains, wanted, out);
+  out.grain_rotation = mean_rotation(batch, rve);
+  lanes.committed_network(batch, rve, contacts);
+  describe_network(contacts, batch.packing(rve).size(), wanted, out);
   return out;
 }
 
 }  // namespace
 
+double mean_rotation(const RveBatch& batch, std::size_t rve) {
+  const int grains = batch.packing(rve).size();
+  double sum = 0;
+  for (int i = 0; i < grains; ++i) sum += batch.committed.rotation(rve, i);
+  return sum / grains;
+}
+
 void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<Microstructure> out) {
   using Space = Kokkos::DefaultHostExecutionSpace;
-  constexpr std::size_t share = 16;  // RVEs that reuse one worker's arrays
+  constexpr std::size_t share = 16;  // RVEs that reuse one worker's array
+  const LaneSet& lanes = *chosen_lanes().lanes;
   std::exception_ptr failure;
   std::atomic_flag failed;
   Kokkos::parallel_for(
@@ -44,9 +41,9 @@ void describe_committed(const RveBatch& batch, const MicrostructureRequest& want
       Kokkos::RangePolicy<Space, Kokkos::Schedule<Kokkos::Dynamic>>(0, (batch.size() + share - 1) / share),
       [&](std::size_t block) {
         try {
-          Scratch scratch;
+          std::vector<NetworkContact> contacts;
           const std::size_t last = std::min(batch.size(), (block + 1) * share);
-          for (std::size_t k = block * share; k < last; ++k) out[k] = describe(batch, k, wanted, scratch);
+          for (std::size_t k = block * share; k < last; ++k) out[k] = describe(batch, k, wanted, lanes, contacts);
         } catch (...) {  // for example where memory runs out
           if (!failed.test_and_set()) failure = std::current_exception();
         }
