@@ -8,7 +8,8 @@
 #include <array>
 
 #include "kernels/device/block_advance.hpp"
-#include "kernels/device/cuda/cuda_errors.hpp"
+#include "kernels/device/block_copy.hpp"
+#include "kernels/device/cuda/pinned_way.hpp"
 
 namespace voussoir::kernels::device {
 
@@ -48,7 +49,14 @@ __global__ void __launch_bounds__(Of::threads, Of::blocks)
                       number, in_registers ? Of::grains : batch.packings.stride, in_registers ? Of::pairs : pairs});
 }
 
+/// A block for each RVE. @tparam Threads is a parameter so that every file may have the kernel
+template <int Threads>
+__global__ void copy_kernel(const __grid_constant__ DeviceStates from, const __grid_constant__ DeviceStates to) {
+  copy_committed_state(CudaBlock<Threads>(), from, to, static_cast<int>(blockIdx.x));
+}
+
 struct CudaBackend {
+  using WayBeside = PinnedWay;
   static constexpr bool follows_stresses = false;  // few RVEs are made or tested under stresses, and lanes serve them
   static constexpr int levels = 6;  ///< three instances in registers, three with ever more room in memory
 
@@ -63,6 +71,13 @@ struct CudaBackend {
   }
   static void copy_down(void* to, const void* from, std::size_t bytes) {
     if (bytes > 0) check_cuda(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "a copy from the device failed");
+  }
+
+  static void copy_committed(const DeviceStates& from, const DeviceStates& to) {
+    constexpr int threads = 128;
+    copy_kernel<threads><<<static_cast<unsigned>(from.rves), threads>>>(from, to);
+    check_cuda(cudaGetLastError(), "the kernel was not launched");
+    check_cuda(cudaDeviceSynchronize(), "the kernel failed");
   }
 
   [[nodiscard]] static int first_level(int grains) {
