@@ -49,6 +49,8 @@ __global__ void __launch_bounds__(Of::threads, Of::blocks)
                       number, in_registers ? Of::grains : batch.packings.stride, in_registers ? Of::pairs : pairs});
 }
 
+inline constexpr int copy_threads = 128;
+
 /// A block for each RVE. @tparam Threads is a parameter so that every file may have the kernel
 template <int Threads>
 __global__ void copy_kernel(const __grid_constant__ DeviceStates from, const __grid_constant__ DeviceStates to) {
@@ -74,10 +76,8 @@ struct CudaBackend {
   }
 
   static void copy_committed(const DeviceStates& from, const DeviceStates& to) {
-    constexpr int threads = 128;
-    copy_kernel<threads><<<static_cast<unsigned>(from.rves), threads>>>(from, to);
-    check_cuda(cudaGetLastError(), "the kernel was not launched");
-    check_cuda(cudaDeviceSynchronize(), "the kernel failed");
+    copy_kernel<copy_threads><<<static_cast<unsigned>(from.rves), copy_threads>>>(from, to);
+    await_kernel();
   }
 
   [[nodiscard]] static int first_level(int grains) {
@@ -102,6 +102,12 @@ struct CudaBackend {
   }
 
  private:
+  /// Waits for the kernel launched last, and not for copies beside it.
+  static void await_kernel() {
+    check_cuda(cudaGetLastError(), "the kernel was not launched");
+    check_cuda(cudaStreamSynchronize(nullptr), "the kernel failed");
+  }
+
   /// The slow memory of all blocks of a launch; it is kept from launch to launch.
   [[nodiscard]] static char* slow_memory(std::size_t bytes) {
     static char* memory = nullptr;
@@ -137,8 +143,7 @@ struct CudaBackend {
       part.drives = batch.drives + first;
       part.reports = batch.reports + first;
       kernel<<<static_cast<unsigned>(count), Of::threads, sizes.fast_bytes>>>(part, settings, pairs, memory, slow);
-      check_cuda(cudaGetLastError(), "the kernel was not launched");
-      check_cuda(cudaDeviceSynchronize(), "the kernel failed");
+      await_kernel();
     }
   }
 };
