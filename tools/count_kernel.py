@@ -25,16 +25,17 @@ import step_wavefronts
 ROOT = Path(__file__).resolve().parent.parent
 PREFIX = ROOT / ".prefix"
 PACKING = ROOT / "tests/data/packings/cps_d_150_particles.csv"
+GRAINS = {"Small": 300, "Middle": 700, "Large": 1500}  # of the RVEs for which a plan is meant
 SKIN = 0.08  # of the lists, over the mean diameter: the default of engine.skin
 # An H100 SXM. Registers and shared memory of compute capability 9.0; each block takes 1 KiB more than it asks for.
 MULTIPROCESSORS, CLOCK, ISSUED_A_CYCLE = 132, 1.98e9, 4
 REGISTERS_OF_SM, FAST_OF_SM, RESERVED, THREADS_OF_SM = 65536, 227 * 1024, 1024, 2048
 # What the prototype's variants used of the data stage of L1 and of the issue slots (docs/measurements/gpu.md): 70 % and 53 %
-# as it was designed, with 16 warps and a branch on touching like this kernel; 91 % and 67 % at best.
-DESIGNED, BEST = (0.70, 0.53), (0.91, 0.67)
+# as it was designed; 91 % and 67 % at best, with 24 warps. Lists and a look every 16 steps left it 0.84 of its rate.
+DESIGNED, BEST, WITH_LISTS = (0.70, 0.53), (0.91, 0.67), 0.84
 TEAM_INSTRUCTIONS, TEAM_WAVEFRONTS = 17.4, 28.7  # of a particle-step of the team kernel that this engine replaced
 # The plan Middle in float, as it is compiled by CUDA 13.0 for sm_90.
-EXPECTED_INSTRUCTIONS, EXPECTED_FAST, EXPECTED_BLOCKS = 1099, 80880, 2
+EXPECTED_INSTRUCTIONS, EXPECTED_FAST = 1089, 80880
 
 KERNEL = """
 #include "kernels/device/cuda/cuda_backend.hpp"
@@ -83,14 +84,15 @@ class Compiled:
 class Loop:
     """Instructions of the loop of steps by its parts."""
 
-    pairs: list  # of all slots of a thread
-    cell: list  # one warp a block carries the cell on
-    grain: list  # of one grain, without those of its pairs
-    turn: list  # of one pair of a grain
+    pairs: list[str]  # of all slots of a thread
+    cell: list[str]  # one warp of a block carries the cell on
+    grains: list[str]  # between the barriers, of each warp once
+    grain: list[str]  # of one grain, without its pairs
+    turn: list[str]  # of one pair of a grain
 
     @property
-    def all(self):
-        return self.pairs + self.cell + self.grain + self.turn
+    def all(self) -> list[str]:
+        return self.pairs + self.cell + self.grains + self.grain + self.turn
 
 
 def found_in(pattern, text):
@@ -143,10 +145,8 @@ def memory_of(precision, plan, folder):
     """Bytes of fast and of slow memory of a block."""
     source, target = folder / "sizes.cpp", folder / "sizes"
     source.write_text(SIZES.format(real=precision, **vars(plan)))
-    kokkos = PREFIX / "kokkos"
-    words = ["g++", "-std=c++20", "-O1", "-fopenmp", f"-I{ROOT}", f"-I{kokkos / 'include'}", source]
-    words += [kokkos / "lib/libkokkoscore.a", "-ldl", "-o", target]
-    subprocess.run([str(w) for w in words], check=True)
+    words = [tool("g++"), "-std=c++20", "-O1", "-fopenmp", f"-I{ROOT}", f"-I{PREFIX / 'kokkos/include'}"]
+    subprocess.run([str(w) for w in [*words, source, "-o", target]], check=True)
     out = subprocess.run([str(target)], check=True, capture_output=True, text=True).stdout
     return [int(x) for x in out.split()]
 
@@ -200,3 +200,126 @@ def step_loop(code):
     if not loops:
         sys.exit("no loop with two barriers and no call was found in the machine code")
     return max(loops, key=len)
+
+
+def parts_of(code):
+    """The parts of the loop of steps. The cell's part is skipped by all warps but one: it ends where the first branch
+    behind the barrier leads to. The loop over a grain's pairs is the shortest one, that over grains surrounds it."""
+    texts = [text for _, text in code]
+    barrier = next(k for k, t in enumerate(texts) if "BAR.SYNC" in t)
+    loops = [loop for loop in backward_branches(code) if loop[0] > barrier]
+    if len(loops) < 2:
+        sys.exit("the loop over grains, or that over a grain's pairs, was not found in the machine code")
+    turn = min(loops, key=lambda loop: loop[1] - loop[0])
+    grain = min((loop for loop in loops if loop != turn and loop[0] <= turn[0]), key=lambda loop: loop[1] - loop[0])
+    skip = next(k for k in range(barrier, grain[0]) if re.search(r"\bBRA\b", texts[k]))
+    address = int(found_in(r"(0x[0-9a-f]+)", texts[skip]), 16)
+    cell_end = next(k for k, (at, _) in enumerate(code) if at == address)
+    return Loop(
+        pairs=texts[: barrier + 1],
+        cell=texts[skip + 1 : cell_end],
+        grains=texts[barrier + 1 : skip + 1] + texts[cell_end : grain[0]] + texts[grain[1] + 1 :],
+        grain=texts[grain[0] : turn[0]] + texts[turn[1] + 1 : grain[1] + 1],
+        turn=texts[turn[0] : turn[1] + 1],
+    )
+
+
+def local_accesses(loop):
+    """Instructions that move spilled numbers."""
+    return sum(kind(text) in ("LDL", "STL") for text in loop.all)
+
+
+def instructions_of(loop, plan, grains, cost):
+    """Warp instructions a particle-step of an RVE of so many grains."""
+    of_warps = plan.threads / 32 * len(loop.grains) / grains
+    of_grain = len(loop.grain) + cost.turns * len(loop.turn)
+    return (
+        cost.pair_warps * len(loop.pairs) / plan.pair_slots
+        + cost.grain_warps * of_grain
+        + of_warps
+        + len(loop.cell) / grains
+    )
+
+
+def report(name, precision, of, loop, packing):
+    plan = plan_of(name)
+    grains, pairs = plan.threads * plan.grain_slots, plan.threads * plan.pair_slots
+    print(f"{name}, {precision}: {plan.threads} threads, up to {grains} grains and {pairs} pairs")
+    print(f"registers {of.registers}, stack {of.stack} bytes, spilled {of.spilled} bytes (all code of the kernel)")
+    print(
+        f"fast memory {of.fast} bytes and memory of the device {of.slow} bytes a block; {of.blocks} blocks and "
+        f"{of.blocks * plan.threads // 32} warps a multiprocessor"
+    )
+    counts = Counter(kind(text) for text in loop.all)
+    shown = ("FFMA", "FMUL", "FADD", "MUFU", "DFMA", "DMUL", "DADD", "LDS", "STS", "LDG", "STG", "LDL", "STL", "BRA")
+    print(
+        f"loop of steps: {len(loop.all)} instructions ({len(loop.pairs)} for {plan.pair_slots} pairs, {len(loop.grain)} for a "
+        f"grain and {len(loop.turn)} for each of its pairs, {len(loop.cell)} for the cell, {len(loop.grains)} others): "
+        + ", ".join(f"{kind_} {counts[kind_]}" for kind_ in shown if counts[kind_])
+    )
+    print(f"local memory in the loop of steps: {local_accesses(loop)} instructions")
+    radius, position, cell = step_wavefronts.read_packing(packing)
+    lists = step_wavefronts.lists_of(radius, position, cell, SKIN)
+    cost = step_wavefronts.step_cost(lists, 4 if precision == "float" else 8)
+    issued, wavefronts = instructions_of(loop, plan, GRAINS[name], cost), cost.pair_wavefronts + cost.grain_wavefronts
+    print(
+        f"{packing.name}: {lists.grains} grains, {lists.listed:.2f} listed pairs a grain; a warp goes {cost.turns:.1f} times "
+        f"through the loop over a grain's pairs"
+    )
+    print(
+        f"a particle-step of {GRAINS[name]} such grains: {issued:.1f} warp instructions (team kernel {TEAM_INSTRUCTIONS}), {wavefronts:.1f} wavefronts of "
+        f"shared memory ({cost.pair_wavefronts:.1f} pairs, {cost.grain_wavefronts:.1f} grains; team kernel {TEAM_WAVEFRONTS})"
+    )
+    rates = [
+        MULTIPROCESSORS * CLOCK * min(of_l1 / wavefronts, of_issue * ISSUED_A_CYCLE / issued) / 1e9
+        for of_l1, of_issue in (DESIGNED, BEST)
+    ]
+    print(
+        f"estimate for an H100 ({MULTIPROCESSORS} SM, {CLOCK / 1e9:.2f} GHz) with many RVEs: {rates[0]:.0f} to {rates[1]:.0f} G "
+        f"particle-steps/s in steps alone, if {DESIGNED[0]:.0%} to {BEST[0]:.0%} of the wavefronts and {DESIGNED[1]:.0%} to "
+        f"{BEST[1]:.0%} of the issue slots are used, as by the prototype; with lists and looks {WITH_LISTS * rates[0]:.0f} to "
+        f"{WITH_LISTS * rates[1]:.0f} G; restoring and finishing are not counted"
+    )
+
+
+def faults_of(of, loop, plan):
+    """What differs from the counts that were written down."""
+    limit = REGISTERS_OF_SM // (plan.threads * plan.blocks)
+    count = len(loop.all)
+    if local_accesses(loop) > 0:
+        yield f"the loop of steps moves spilled numbers with {local_accesses(loop)} instructions"
+    if of.registers > limit:
+        yield f"{of.registers} registers a thread are more than the plan's {limit}"
+    if of.fast != EXPECTED_FAST:
+        yield f"a block has {of.fast} bytes of fast memory instead of {EXPECTED_FAST}"
+    if of.blocks != plan.blocks:
+        yield f"{of.blocks} blocks share a multiprocessor instead of {plan.blocks}"
+    if abs(count - EXPECTED_INSTRUCTIONS) > 0.1 * EXPECTED_INSTRUCTIONS:
+        yield f"the loop of steps has {count} instructions instead of {EXPECTED_INSTRUCTIONS} within 10 %"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--precision", choices=("float", "double"), default="float")
+    parser.add_argument("--plan", choices=tuple(GRAINS), default="Middle")
+    parser.add_argument("--packing", type=Path, default=PACKING, help="a stored packing, or a file NAME_particles.csv")
+    parser.add_argument("--check", action="store_true", help="compare the plan Middle in float with what was written down")
+    args = parser.parse_args()
+    if args.check:
+        args.precision, args.plan = "float", "Middle"
+    try:
+        with tempfile.TemporaryDirectory() as name:
+            target, of = compiled(args.precision, args.plan, Path(name))
+            loop = parts_of(step_loop(machine_code(target)))
+    except Missing as missing:
+        print(f"skipped: {missing}")
+        return 77
+    report(args.plan, args.precision, of, loop, args.packing)
+    faults = list(faults_of(of, loop, plan_of(args.plan))) if args.check else []
+    for fault in faults:
+        print(f"FAILED: {fault}", file=sys.stderr)
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -3,8 +3,8 @@ often a warp goes through the loop over a grain's pairs.
 
 A wavefront is one cycle of shared memory: 32 banks of 4 bytes. An access of 8 or 16 bytes a thread is served to 16 or 8
 threads at a time, and takes as many wavefronts as the most loaded bank has different words. The layout is that of
-kernels/device/block_run.hpp: list and order of pairs as kernels/device/block_lists.hpp makes them, pair and grain number
-k of a warp at thread k."""
+kernels/device/block_run.hpp, and lists are in the order in which kernels/device/block_lists.hpp makes them: thread k of a
+warp has the warp's pair, or grain, number k."""
 
 import csv
 import json
@@ -24,7 +24,6 @@ class Lists:
     grains: int
     first: np.ndarray  # grain i < j of each pair, in the order of the list
     second: np.ndarray
-    touching: np.ndarray  # whether the pair is a contact
     row: np.ndarray  # entries of grain i: row[i] .. row[i + 1]
     entries: np.ndarray  # pairs by grain
 
@@ -46,7 +45,7 @@ class StepCost:
 
 
 def read_packing(file):
-    """Radii [m], positions [m] and cell of a stored packing (.h5) or of a file NAME_particles.csv with NAME_meta.json."""
+    """Radii, positions and cell [m] of a stored packing (.h5), or of NAME_particles.csv with NAME_meta.json."""
     if file.suffix == ".h5":
         with h5py.File(file) as h:
             return h["radius"][()], np.column_stack([h["x"][()], h["y"][()]]), h["cell"][()]
@@ -68,7 +67,7 @@ def lists_of(radius, position, cell, skin):
     ends = np.concatenate([first, second])
     order = np.lexsort((np.tile(np.arange(len(first)), 2), ends))
     row = np.searchsorted(ends[order], np.arange(len(radius) + 1))
-    return Lists(len(radius), first, second, (distance < reach)[first, second], row, order % len(first))
+    return Lists(len(radius), first, second, row, order % len(first))
 
 
 def served(items, size):
@@ -93,12 +92,10 @@ def count_pairs(lists, real):
     """Wavefronts of all pairs, with numbers of `real` bytes."""
     total = 0
     for p in warps(len(lists.first)):
-        touching = p[lists.touching[p]]
         total += served(p, 4) + served(p, real)  # key, gap
         for grain in (lists.first, lists.second):
-            total += served(grain[p], 4 * real)  # u, w
-            total += served(grain[touching], 2 * real)  # spin, radius
-        total += served(touching, 4 * real) + served(p[~lists.touching[p]], 4 * real)  # action
+            total += served(grain[p], 4 * real) + served(grain[p], 2 * real)  # u, w; spin, radius
+        total += served(p, 4 * real)  # action
     return total
 
 
@@ -113,7 +110,8 @@ def count_grains(lists, real):
             total += served(q, 2) + served(lists.entries[q], 4 * real)
         turns += longest
         total += 2 * served(i, 2)  # row
-        total += 2 * served(i, 4 * real) + 3 * served(i, 2 * real) + 2 * served(i, real)  # u, w; spin, mobility; rotation
+        # u and w; spin and radius, mobility; rotation
+        total += 2 * served(i, 4 * real) + 3 * served(i, 2 * real) + 2 * served(i, real)
     return total, turns
 
 

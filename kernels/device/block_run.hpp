@@ -16,7 +16,7 @@
 namespace voussoir::kernels::device {
 
 inline constexpr int threads_of_group = 16;     ///< whose numbers one thread sums up
-inline constexpr int most_sums = 5;             ///< numbers that `reduce` joins at once
+inline constexpr int most_sums = 6;             ///< numbers that `reduce` joins at once
 inline constexpr int candidates_per_pair = 2;   ///< room for candidates, by room for pairs
 inline constexpr double candidate_skin = 1.5;   ///< of the candidates, over that of the list
 

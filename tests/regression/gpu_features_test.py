@@ -24,11 +24,11 @@ def words(folder, settings, *further, case="column"):
     return command(case, folder, settings, "--threads", "1", *further)
 
 
-def both(name, settings, *fields, most):
+def both(name, settings, *fields, most, case="column"):
     """Runs a case by lanes and on the device. `most` is how far the fields may be apart, of their largest value."""
     lanes, device = fresh(f"{name}_lanes"), fresh(f"{name}_device")
-    run(words(lanes, settings))
-    run(on_device(words(device, settings)))
+    run(words(lanes, settings, case=case))
+    run(on_device(words(device, settings, case=case)))
     check("on the device" not in log_of(lanes), f"{name}: lanes speak of a device")
     check("grains on the device emulated device 0" in log_of(device), f"{name}: the device was not used")
     for field in fields:

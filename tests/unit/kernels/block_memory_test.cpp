@@ -24,7 +24,7 @@ void expect_room() {
         const Memory<real> at(device::no_memory(), device::no_memory(), grains, pairs, threads);
         const auto room = static_cast<std::size_t>(reinterpret_cast<char*>(at.row) - reinterpret_cast<char*>(at.action));
         const int groups = (threads + 15) / 16;
-        EXPECT_GE(room, sizeof(double) * static_cast<std::size_t>(5 * (threads + groups))) << "sums";
+        EXPECT_GE(room, sizeof(double) * static_cast<std::size_t>(6 * (threads + groups))) << "sums";
         EXPECT_GE(room, sizeof(int) * static_cast<std::size_t>(4 * grains + 1)) << "bins";
         EXPECT_GE(room, 4 * sizeof(real) * static_cast<std::size_t>(pairs)) << "actions";
         EXPECT_GE(room, sizeof(int) * static_cast<std::size_t>(device::candidates_per_pair * pairs)) << "candidates";
