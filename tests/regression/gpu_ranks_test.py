@@ -14,7 +14,7 @@ SETTINGS = [
     "packing.candidates=1",
     "packing.folder=packings",
     "column.elements=3",
-    "gravity.uniform_step=0.1",
+    "gravity.uniform_step=0.2",
 ]
 
 
