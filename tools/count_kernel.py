@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Counts what one particle-step of the GPU engine costs, from its compiled code and a packing: registers, spills, fast
-memory, blocks that share a multiprocessor, instructions of the loop of steps, wavefronts of shared memory, and from these
-an estimate of the rate on an H100. Needs nvcc and Kokkos for CUDA (tools/setup --cuda) and no GPU.
+memory, blocks that share a multiprocessor, instructions of the loop of steps, wavefronts of shared memory, and from
+these an estimate of the rate on an H100. Needs nvcc and Kokkos for CUDA (tools/setup --cuda) and no GPU.
 
     tools/count_kernel.py [--precision float|double] [--plan Small|Middle|Large] [--packing FILE]
     tools/count_kernel.py --check
 
---check compares the plan Middle in float with the counts that were written down here and exits with 1 where they differ, with 77
-where nvcc or a tool that reads machine code is missing."""
+--check compares the plan Middle in float with the counts that were written down here and exits with 1 where they
+differ, with 77 where nvcc or a tool that reads machine code is missing."""
 
 import argparse
 import os
@@ -30,8 +30,9 @@ SKIN = 0.08  # of the lists, over the mean diameter: the default of engine.skin
 # An H100 SXM. Registers and shared memory of compute capability 9.0; each block takes 1 KiB more than it asks for.
 MULTIPROCESSORS, CLOCK, ISSUED_A_CYCLE = 132, 1.98e9, 4
 REGISTERS_OF_SM, FAST_OF_SM, RESERVED, THREADS_OF_SM = 65536, 227 * 1024, 1024, 2048
-# What the prototype's variants used of the data stage of L1 and of the issue slots (docs/measurements/gpu.md): 70 % and 53 %
-# as it was designed; 91 % and 67 % at best, with 24 warps. Lists and a look every 16 steps left it 0.84 of its rate.
+# What the prototype's variants used of the data stage of L1 and of the issue slots (docs/measurements/gpu.md): 70 % and
+# 53 % as it was designed; 91 % and 67 % at best, with 24 warps. Lists and a look every 16 steps left it 0.84 of its
+# rate.
 DESIGNED, BEST, WITH_LISTS = (0.70, 0.53), (0.91, 0.67), 0.84
 TEAM_INSTRUCTIONS, TEAM_WAVEFRONTS = 17.4, 28.7  # of a particle-step of the team kernel that this engine replaced
 # The plan Middle in float, as it is compiled by CUDA 13.0 for sm_90.
@@ -52,7 +53,9 @@ using namespace voussoir::kernels;
 int main() {{
   using Plan = device::BlockPlan<{pair_slots}, {grain_slots}>;
   using Memory = device::BlockMemory<EngineLaw<SingleLane<{real}>, true>, StrainDrive, Plan>;
-  const Memory sizes(device::no_memory(), device::no_memory(), {threads} * {grain_slots}, {threads} * {pair_slots}, {threads});
+  constexpr int threads = {threads};
+  char* const none = device::no_memory();
+  const Memory sizes(none, none, threads * {grain_slots}, threads * {pair_slots}, threads);
   std::printf("%zu %zu\\n", sizes.fast_bytes, sizes.slow_bytes);
 }}
 """
@@ -241,44 +244,52 @@ def instructions_of(loop, plan, grains, cost):
     )
 
 
-def report(name, precision, of, loop, packing):
+def report_code(name, precision, of, loop):
+    """What the compiler made of the kernel."""
     plan = plan_of(name)
     grains, pairs = plan.threads * plan.grain_slots, plan.threads * plan.pair_slots
     print(f"{name}, {precision}: {plan.threads} threads, up to {grains} grains and {pairs} pairs")
     print(f"registers {of.registers}, stack {of.stack} bytes, spilled {of.spilled} bytes (all code of the kernel)")
-    print(
-        f"fast memory {of.fast} bytes and memory of the device {of.slow} bytes a block; {of.blocks} blocks and "
-        f"{of.blocks * plan.threads // 32} warps a multiprocessor"
-    )
+    print(f"a block has {of.fast} bytes of fast memory and {of.slow} bytes of the device's memory")
+    print(f"a multiprocessor has {of.blocks} blocks, {of.blocks * plan.threads // 32} warps")
     counts = Counter(kind(text) for text in loop.all)
     shown = ("FFMA", "FMUL", "FADD", "MUFU", "DFMA", "DMUL", "DADD", "LDS", "STS", "LDG", "STG", "LDL", "STL", "BRA")
+    print(f"loop of steps: {len(loop.all)} instructions: " + ", ".join(f"{k} {counts[k]}" for k in shown if counts[k]))
     print(
-        f"loop of steps: {len(loop.all)} instructions ({len(loop.pairs)} for {plan.pair_slots} pairs, {len(loop.grain)} for a "
-        f"grain and {len(loop.turn)} for each of its pairs, {len(loop.cell)} for the cell, {len(loop.grains)} others): "
-        + ", ".join(f"{kind_} {counts[kind_]}" for kind_ in shown if counts[kind_])
+        f"of them {len(loop.pairs)} for {plan.pair_slots} pairs, {len(loop.grain)} for a grain, {len(loop.turn)} for "
+        f"each of its pairs, {len(loop.cell)} for the cell"
     )
     print(f"local memory in the loop of steps: {local_accesses(loop)} instructions")
+
+
+def report_step(name, precision, loop, packing):
+    """What a particle-step takes on a packing, and the rate that follows."""
     radius, position, cell = step_wavefronts.read_packing(packing)
     lists = step_wavefronts.lists_of(radius, position, cell, SKIN)
     cost = step_wavefronts.step_cost(lists, 4 if precision == "float" else 8)
-    issued, wavefronts = instructions_of(loop, plan, GRAINS[name], cost), cost.pair_wavefronts + cost.grain_wavefronts
+    issued = instructions_of(loop, plan_of(name), GRAINS[name], cost)
+    wavefronts = cost.pair_wavefronts + cost.grain_wavefronts
     print(
-        f"{packing.name}: {lists.grains} grains, {lists.listed:.2f} listed pairs a grain; a warp goes {cost.turns:.1f} times "
-        f"through the loop over a grain's pairs"
+        f"{packing.name}: {lists.grains} grains, {lists.listed:.2f} listed pairs a grain; a warp goes {cost.turns:.1f} "
+        f"times through the loop over a grain's pairs"
     )
     print(
-        f"a particle-step of {GRAINS[name]} such grains: {issued:.1f} warp instructions (team kernel {TEAM_INSTRUCTIONS}), {wavefronts:.1f} wavefronts of "
-        f"shared memory ({cost.pair_wavefronts:.1f} pairs, {cost.grain_wavefronts:.1f} grains; team kernel {TEAM_WAVEFRONTS})"
+        f"a particle-step of {GRAINS[name]} such grains: {issued:.1f} warp instructions (team kernel "
+        f"{TEAM_INSTRUCTIONS}), {wavefronts:.1f} wavefronts of shared memory ({cost.pair_wavefronts:.1f} of pairs, "
+        f"{cost.grain_wavefronts:.1f} of grains; team kernel {TEAM_WAVEFRONTS})"
     )
-    rates = [
+    low, high = (
         MULTIPROCESSORS * CLOCK * min(of_l1 / wavefronts, of_issue * ISSUED_A_CYCLE / issued) / 1e9
         for of_l1, of_issue in (DESIGNED, BEST)
-    ]
+    )
     print(
-        f"estimate for an H100 ({MULTIPROCESSORS} SM, {CLOCK / 1e9:.2f} GHz) with many RVEs: {rates[0]:.0f} to {rates[1]:.0f} G "
-        f"particle-steps/s in steps alone, if {DESIGNED[0]:.0%} to {BEST[0]:.0%} of the wavefronts and {DESIGNED[1]:.0%} to "
-        f"{BEST[1]:.0%} of the issue slots are used, as by the prototype; with lists and looks {WITH_LISTS * rates[0]:.0f} to "
-        f"{WITH_LISTS * rates[1]:.0f} G; restoring and finishing are not counted"
+        f"estimate for an H100 ({MULTIPROCESSORS} SM, {CLOCK / 1e9:.2f} GHz) with many RVEs: {low:.0f} to {high:.0f} G "
+        f"particle-steps/s in steps alone, if {DESIGNED[0]:.0%} to {BEST[0]:.0%} of the wavefronts and "
+        f"{DESIGNED[1]:.0%} to {BEST[1]:.0%} of the issue slots are used, as by the prototype"
+    )
+    print(
+        f"with lists and looks {WITH_LISTS * low:.0f} to {WITH_LISTS * high:.0f} G; restoring, finishing and tangents "
+        f"are not counted"
     )
 
 
@@ -303,7 +314,7 @@ def main():
     parser.add_argument("--precision", choices=("float", "double"), default="float")
     parser.add_argument("--plan", choices=tuple(GRAINS), default="Middle")
     parser.add_argument("--packing", type=Path, default=PACKING, help="a stored packing, or a file NAME_particles.csv")
-    parser.add_argument("--check", action="store_true", help="compare the plan Middle in float with what was written down")
+    parser.add_argument("--check", action="store_true", help="compare Middle in float with the counts written down")
     args = parser.parse_args()
     if args.check:
         args.precision, args.plan = "float", "Middle"
@@ -314,7 +325,8 @@ def main():
     except Missing as missing:
         print(f"skipped: {missing}")
         return 77
-    report(args.plan, args.precision, of, loop, args.packing)
+    report_code(args.plan, args.precision, of, loop)
+    report_step(args.plan, args.precision, loop, args.packing)
     faults = list(faults_of(of, loop, plan_of(args.plan))) if args.check else []
     for fault in faults:
         print(f"FAILED: {fault}", file=sys.stderr)

@@ -3,8 +3,8 @@ often a warp goes through the loop over a grain's pairs.
 
 A wavefront is one cycle of shared memory: 32 banks of 4 bytes. An access of 8 or 16 bytes a thread is served to 16 or 8
 threads at a time, and takes as many wavefronts as the most loaded bank has different words. The layout is that of
-kernels/device/block_run.hpp, and lists are in the order in which kernels/device/block_lists.hpp makes them: thread k of a
-warp has the warp's pair, or grain, number k."""
+kernels/device/block_run.hpp, and lists are in the order in which kernels/device/block_lists.hpp makes them: thread k of
+a warp has the warp's pair, or grain, number k."""
 
 import csv
 import json

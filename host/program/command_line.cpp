@@ -150,9 +150,8 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
   what->add_flag("--cpu", a.cpu, "print instead which instruction set the lanes take on this processor, and why");
   what->add_flag("--devices", a.devices, "print instead which GPUs were found, or why none was");
   what->require_option(1);
-  info->callback([&] {
-    outcome = a.cpu ? command_info_cpu() : (a.devices ? command_info_devices() : command_info(a.file));
-  });
+  info->callback(
+      [&] { outcome = a.cpu ? command_info_cpu() : (a.devices ? command_info_devices() : command_info(a.file)); });
 }
 
 int complain(Outcome outcome, const std::string& sentence) {

@@ -17,7 +17,9 @@ SETTINGS = [
 
 
 def devices(**environment):
-    out = subprocess.run([PROGRAM, "info", "--devices"], check=False, capture_output=True, text=True, env=os.environ | environment)
+    out = subprocess.run(
+        [PROGRAM, "info", "--devices"], check=False, capture_output=True, text=True, env=os.environ | environment
+    )
     check(out.returncode == 0, f"info --devices ended with {out.returncode}: {out.stderr}")
     return out.stdout
 
@@ -30,7 +32,9 @@ check("device 1: emulated device 1" in two, "the second device is not named")
 none = devices(**EMULATED, VOUSSOIR_EMULATED_GPUS="0")
 check("devices: none: the driver knows no device" in none, f"a library without devices says {none}")
 wrong = devices(VOUSSOIR_GPU_LIBRARY=PROGRAM)
-check("devices: none: the library cannot be opened" in wrong or "another version" in wrong, f"a wrong file says {wrong}")
+check(
+    "devices: none: the library cannot be opened" in wrong or "another version" in wrong, f"a wrong file says {wrong}"
+)
 
 # Without a device nothing changes; whoever asks for one is told that there is none.
 lanes = fresh("lanes")
@@ -41,7 +45,9 @@ check_same(lanes, deviceless)
 asked = fresh("asked")
 words = command("column", asked, [*SETTINGS, 'engine.backend="gpu"'])
 refused = subprocess.run(words, check=False, capture_output=True, text=True)
-check(refused.returncode == 2 and "none can be used" in refused.stderr, f"a missing device is not said: {refused.stderr}")
+check(
+    refused.returncode == 2 and "none can be used" in refused.stderr, f"a missing device is not said: {refused.stderr}"
+)
 check(not asked.exists(), "a case that was refused has left a folder")
 by_lanes, ignored = [*SETTINGS, 'engine.backend="lanes"'], fresh("ignored")
 run(command("column", asked, by_lanes))
