@@ -4,17 +4,15 @@
 
 #include <filesystem>
 #include <span>
-#include <stdexcept>
 
-#include "fem/mesh_tunnel.hpp"
 #include "host/record/provenance.hpp"
 #include "host/record/remarks.hpp"
 #include "host/stages/column.hpp"
 #include "host/stages/gravity.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/ground_run.hpp"
+#include "host/stages/tunnel_mesh.hpp"
 #include "host/stages/volume_loss.hpp"
-#include "io/input_error.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -48,24 +46,6 @@ RunStatus run_stages(const Case& input, const K0Table& k0, GroundRun& run) {
 }
 
 }  // namespace
-
-fem::Mesh tunnel_mesh(const GroundCase& soil) {
-  const auto refuse = [](const std::exception& error) {  // a mesh depends on nothing but the case
-    return io::InputError("[ground]", "", fmt::format("makes no mesh: {}", error.what()));
-  };
-  try {
-    return fem::make_half_tunnel({.width = soil.width,
-                                  .height = soil.height,
-                                  .diameter = soil.diameter,
-                                  .cover = soil.cover(),
-                                  .size_near = soil.mesh_size_opening,
-                                  .size_far = soil.mesh_size_far});
-  } catch (const std::invalid_argument& error) {
-    throw refuse(error);
-  } catch (const std::runtime_error& error) {
-    throw refuse(error);
-  }
-}
 
 RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   const fem::Mesh mesh = tunnel_mesh(input.ground);
