@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <span>
 #include <stdexcept>
 
@@ -114,14 +113,6 @@ StoredMesh load_mesh(const std::filesystem::path& path) {
   if (file.integer_attribute("/", "content") != content_of(mesh))
     throw std::runtime_error(fmt::format("{}: its mesh was changed after this program had written it", name));
   return mesh;
-}
-
-std::string stored_mesh_content(const std::filesystem::path& path) {
-  try {
-    return std::to_string(content_of(load_mesh(path)));
-  } catch (const std::exception&) {
-    return {};  // whoever reads the mesh itself says what is wrong
-  }
 }
 
 }  // namespace voussoir::io

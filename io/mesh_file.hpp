@@ -31,8 +31,4 @@ void save_mesh(const std::filesystem::path& path, const StoredMesh& mesh);
 /// numbers were changed, or where they make no mesh: sizes that disagree, nodes of no element, elements without area.
 [[nodiscard]] StoredMesh load_mesh(const std::filesystem::path& path);
 
-/// The checksum of a stored mesh as text, which is the same for the same mesh in another file; empty where the file
-/// cannot be used.
-[[nodiscard]] std::string stored_mesh_content(const std::filesystem::path& path);
-
 }  // namespace voussoir::io

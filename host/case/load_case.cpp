@@ -17,7 +17,6 @@
 #include "host/case/packing_origin.hpp"
 #include "io/case_file.hpp"
 #include "io/hash.hpp"
-#include "io/mesh_file.hpp"
 #include "io/text_file.hpp"
 
 namespace voussoir::host {
@@ -156,8 +155,6 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   input.fingerprint = text.fingerprint(keys_without_results);
   for (const std::filesystem::path& packing : input.packing.files)
     input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(packing));
-  if (!input.ground.mesh_file.empty())
-    input.fingerprint = io::fingerprint_of(input.fingerprint + io::stored_mesh_content(input.ground.mesh_file));
   return input;
 }
 

@@ -12,9 +12,9 @@
 
 namespace voussoir::host {
 
-/// The keys and tables that change no number of a result and may differ where a run is resumed: a preset acts only
-/// through the values that it gives to other keys, and a file of a mesh through the mesh in it, of which the
-/// fingerprint is made besides.
+/// The keys and tables that change no number of a result and may differ where a run is resumed. A preset acts only
+/// through the values that it gives to other keys. A stored mesh is the one that would be generated, and a run that is
+/// resumed compares its mesh with that of its start.
 inline const std::array<std::string, 6> keys_without_results{"title",         "output",     "packing.folder",
                                                              "engine.preset", "engine.isa", "ground.mesh_file"};
 

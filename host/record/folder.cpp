@@ -99,8 +99,7 @@ void check_damaged_index(const RunOptions& options, const std::string& reason) {
 /// A sentence that names the keys in which a run's case and this case differ.
 std::string difference(const io::Provenance& theirs, const CaseIdentity& wanted) {
   std::string otherwise = "all keys agree, but the fingerprint is " + theirs.fingerprint + " and not " +
-                          wanted.fingerprint +
-                          ": the files of packing.file or ground.mesh_file, or the program, have changed";
+                          wanted.fingerprint + ": the files of packing.file, or the program, have changed";
   try {
     const std::vector<io::KeyDifference> keys = io::differences(wanted.resolved, theirs.input, keys_without_results);
     return keys.empty() ? otherwise : io::describe(keys, "the run");

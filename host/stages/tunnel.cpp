@@ -2,8 +2,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <span>
+#include <stdexcept>
 
 #include "host/record/provenance.hpp"
 #include "host/record/remarks.hpp"
@@ -13,6 +16,8 @@
 #include "host/stages/ground_run.hpp"
 #include "host/stages/tunnel_mesh.hpp"
 #include "host/stages/volume_loss.hpp"
+#include "io/input_error.hpp"
+#include "io/result_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -45,10 +50,33 @@ RunStatus run_stages(const Case& input, const K0Table& k0, GroundRun& run) {
   return lose_volume(run, input.ground, input.volume_loss, k0, losing);
 }
 
+/// A run goes on only on the mesh of its start; a stored mesh may be from another version of Gmsh.
+/// @throws io::InputError
+void confirm_mesh(const io::MeshData& mesh, const RunOptions& options, double height) {
+  const std::filesystem::path index = options.folder / "run.h5";
+  if (!options.resume || !std::filesystem::exists(index)) return;
+  io::MeshData theirs;
+  try {
+    theirs = io::read_mesh(index);
+  } catch (const std::runtime_error&) {
+    return;  // the index is damaged; the run makes it anew
+  }
+  const auto close = [height](double a, double b) { return std::abs(a - b) <= 1e-9 * height; };
+  const bool same = theirs.connectivity == mesh.connectivity &&
+                    std::equal(theirs.coordinates.begin(), theirs.coordinates.end(), mesh.coordinates.begin(),
+                               mesh.coordinates.end(), close);
+  if (same) return;
+  throw io::InputError("--resume", options.folder.string(),
+                       fmt::format("was begun on another mesh, of {} elements and not {}: it needs the file of "
+                                   "ground.mesh_file, or the version of Gmsh, that made its mesh",
+                                   theirs.elements(), mesh.elements()));
+}
+
 }  // namespace
 
 RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   const fem::Mesh mesh = tunnel_mesh(input.ground);
+  confirm_mesh(mesh_data(mesh, input.ground), options, input.ground.height);
   RunLog log = open_log(options);
   tell_circumstances(options, log);
   GroundRun run(options, provenance_of(options, input, "tunnel"), mesh, mesh_data(mesh, input.ground),

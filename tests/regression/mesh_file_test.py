@@ -17,7 +17,7 @@ MESH = fresh("meshes") / "tunnel.h5"
 
 
 def words(verb, settings, *further, program=PROGRAM):
-    return [program, verb, CASE, *further, *(word for setting in settings for word in ("--set", setting))]
+    return [program, verb, str(CASE), *map(str, further), *(word for setting in settings for word in ("--set", setting))]
 
 
 def on(file, *further):
@@ -44,28 +44,28 @@ with h5py.File(MESH) as opened:
     corners, quads = opened["corners"][:], opened["quads"][:]
 check(quads.min() == 0 and quads.max() == len(corners) - 1, "the nodes are not those of the elements")
 
-# The same bits from the file, from a file under another name on --resume, and without Gmsh.
+# The same bits from the file, also without Gmsh; a run that was begun in one way goes on in the other.
 made, stored, portable = fresh("made"), fresh("stored"), fresh("portable")
 run(command("tunnel_elastic", made, SETTINGS))
 run(command("tunnel_elastic", stored, on(MESH)))
-check_same(made, stored)
-moved = fresh("moved_meshes") / "elsewhere.h5"
-moved.parent.mkdir()
-shutil.copy(MESH, moved)
-again = run(command("tunnel_elastic", stored, on(moved), "--resume")).stdout
-check("finished" in again or "nothing" in again, f"a moved file is another case: {again}")
+check_same(made, stored, but=["input"])
 run([WITHOUT_GMSH, *command("tunnel_elastic", portable, on(MESH))[1:]])
-check_same(made, portable)
+check_same(made, portable, but=["input"])
+run([WITHOUT_GMSH, *command("tunnel_elastic", made, on(MESH), "--resume")[1:]])
 expect_refusal(words("check", SETTINGS, program=WITHOUT_GMSH), "built without Gmsh", "ground.mesh_file")
 expect_refusal(words("mesh", GROUND, "-o", "none.h5", program=WITHOUT_GMSH), "built without Gmsh")
 
-# Another mesh of the same ground is another case.
+# A file whose numbers were changed is refused; a run does not go on on another mesh.
 other = MESH.parent / "other.h5"
 shutil.copy(MESH, other)
 with h5py.File(other, "r+") as opened:
     opened["corners"][len(corners) // 2, 0] += 1e-9
+    del opened["corners"].attrs["checksum"]
 expect_refusal(words("check", on(other)), "ground.mesh_file", "other.h5", "its mesh was changed")
-expect_refusal(words("run", SETTINGS, "-o", stored, "--resume"), "--resume", "ground.mesh_file")
+with h5py.File(made / "run.h5", "r+") as opened:
+    opened["mesh/coordinates"][len(corners) // 2, 0] += 1e-3
+    del opened["mesh/coordinates"].attrs["checksum"]
+expect_refusal(command("tunnel_elastic", made, SETTINGS, "--resume"), "--resume", "was begun on another mesh")
 
 # Another ground, wrong files, kinds without such a mesh.
 for key, value, file_has in (

@@ -93,13 +93,16 @@ TEST(TunnelMesh, QuadrilateralsOfAnotherOutlineAreRefused) {
   expect_refused([](QuadMesh& m) { m.corners.row(0) *= 1.01; }, "an outer edge is on no named boundary");
   expect_refused([](QuadMesh& m) { m.quads.push_back(m.quads.back()); }, "an edge belongs to more than two elements");
   expect_refused(
-      [](QuadMesh& m) {  // the last column of the ground is left out but for its outline: a gap
-        m.quads.clear();
+      [](QuadMesh& m) {  // the ground without a tunnel
         m.corners = Coordinates{{0, 35, 35, 0}, {0, 0, 35, 35}};
-        m.quads.push_back({0, 1, 2, 3});
+        m.quads = {{0, 1, 2, 3}};
       },
       "the mesh has no boundary 'opening'");
-  expect_refused([](QuadMesh& m) { std::swap(m.quads[0][1], m.quads[0][3]); }, "tunnel mesh");
+  expect_refused(
+      [](QuadMesh& m) {
+        for (Quad& quad : m.quads) std::swap(quad[1], quad[3]);  // clockwise
+      },
+      "its outline has a gap or a crossing");
 }
 
 TEST(TunnelMesh, IsFinerAtTheOpeningAndAboveIt) {
