@@ -60,11 +60,11 @@ other = MESH.parent / "other.h5"
 shutil.copy(MESH, other)
 with h5py.File(other, "r+") as opened:
     opened["corners"][len(corners) // 2, 0] += 1e-9
-    del opened["corners"].attrs["checksum"]
+    opened["corners"].attrs.pop("checksum", None)  # arrays of 4096 bytes have none
 expect_refusal(words("check", on(other)), "ground.mesh_file", "other.h5", "its mesh was changed")
 with h5py.File(made / "run.h5", "r+") as opened:
     opened["mesh/coordinates"][len(corners) // 2, 0] += 1e-3
-    del opened["mesh/coordinates"].attrs["checksum"]
+    opened["mesh/coordinates"].attrs.pop("checksum", None)
 expect_refusal(command("tunnel_elastic", made, SETTINGS, "--resume"), "--resume", "was begun on another mesh")
 
 # Another ground, wrong files, kinds without such a mesh.
