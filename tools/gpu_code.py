@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Names the code for devices that a CUDA library holds, from its fat binaries: machine code (sm_80) and PTX (compute_90).
+"""Names the code for devices that a CUDA library holds: machine code (sm_80) and PTX (compute_90).
 
     tools/gpu_code.py FILE
 
-The layout of fat binaries is not documented; it is that of CUDA 11 to 13 (a header of 16 bytes, then entries of kind, size of
-the header, size of the code and, 28 bytes from the entry's start, the architecture).
+The layout of the fat binaries in which it stands is not documented; it is that of CUDA 11 to 13: a header of 16 bytes,
+then entries of kind, size of the entry's header, size of its code and, 28 bytes from its start, the architecture.
 """
 
 import struct

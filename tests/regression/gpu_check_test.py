@@ -44,7 +44,9 @@ def gpu_check(programs, parts, *further, library=NOTHING, code=0):
 real = folder_of("real", voussoir=Path(PROGRAM), device_agreement=AGREEMENT)
 shown, summary = gpu_check(real, "machine,agreement,rates,memcheck,racecheck,counters")
 check("machine            done" in shown, f"the machine is not described: {shown}")
-check(shown.count(f"skipped: no device: there is no {NOTHING}") == 5, f"a missing device is not said five times: {shown}")
+check(
+    shown.count(f"skipped: no device: there is no {NOTHING}") == 5, f"a missing device is not said five times: {shown}"
+)
 check(summary[1] == f"device: none: there is no {NOTHING}", f"the summary says {summary[1]}")
 
 if AGREEMENT.exists():

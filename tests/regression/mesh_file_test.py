@@ -1,5 +1,5 @@
-"""Stored meshes (`voussoir mesh`, ground.mesh_file): a run on the file has the bits of a run on the mesh that Gmsh makes
-at once, also in a program that was built without Gmsh. Wrong files and files of another ground are refused."""
+"""Stored meshes (`voussoir mesh`, ground.mesh_file): a run on the file has the bits of a run on the mesh that Gmsh
+makes at once, also in a program that was built without Gmsh. Wrong files and files of another ground are refused."""
 
 import os
 import shutil
@@ -17,7 +17,13 @@ MESH = fresh("meshes") / "tunnel.h5"
 
 
 def words(verb, settings, *further, program=PROGRAM):
-    return [program, verb, str(CASE), *map(str, further), *(word for setting in settings for word in ("--set", setting))]
+    return [
+        program,
+        verb,
+        str(CASE),
+        *map(str, further),
+        *(word for setting in settings for word in ("--set", setting)),
+    ]
 
 
 def on(file, *further):

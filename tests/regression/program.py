@@ -126,7 +126,7 @@ def content(file):
 
 
 def check_same(first, second, but=()):
-    """Two result folders hold the same bits: every increment, and run.h5 but for its provenance, and for the datasets of
+    """Two result folders hold the same bits: every increment, and run.h5 but for its provenance and the datasets
     `but`."""
     names = [sorted(p.relative_to(folder).as_posix() for p in Path(folder).rglob("*.h5")) for folder in (first, second)]
     check(names[0] == names[1], f"{first} and {second} hold different files: {names[0]} and {names[1]}")
