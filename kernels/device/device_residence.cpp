@@ -1,6 +1,5 @@
 #include "kernels/device/device_residence.hpp"
 
-#include <numeric>
 #include <stdexcept>
 
 namespace voussoir::kernels::device {
@@ -10,9 +9,9 @@ namespace {
 class DeviceResidence final : public Residence {
  public:
   DeviceResidence(const RveBatch& batch, std::shared_ptr<Device> device, Precision precision)
-      : device_(std::move(device)), precision_(precision), rves_(device_->hold(plain(batch), precision)) {
-    all_.resize(batch.size());
-    std::iota(all_.begin(), all_.end(), 0);
+      : device_(std::move(device)), precision_(precision), rves_(device_->hold(plain(batch), precision)) {}
+  ~DeviceResidence() override {
+    if (arriving_.valid()) arriving_.wait();
   }
 
   Work advance(const RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
@@ -24,41 +23,55 @@ class DeviceResidence final : public Residence {
     return advance_with(batch, requests, settings, reports, rves);
   }
   void commit(std::span<const int> kept) override {
-    rves_->commit(kept);
+    add(rves_->commit(kept));
     ahead_ = true;
   }
-  void bring(const RveStates& to) override {
-    if (!ahead_) return;
-    rves_->download(plain(to), all_, false);
+  [[nodiscard]] std::shared_future<void> begin_bringing(const RveStates& to) override {
+    if (!ahead_) return arriving_;
+    if (arriving_.valid()) arriving_.wait();
+    rves_->copy_committed();
     ahead_ = false;
+    arriving_ = std::async(std::launch::async, [this, to] { bytes_brought_ += rves_->bring_copy(plain(to)); }).share();
+    return arriving_;
   }
   void forget() override {
     outdated_ = true;
     ahead_ = false;
   }
   [[nodiscard]] bool is_ahead() const override { return ahead_; }
-  [[nodiscard]] const DeviceWork& work() const { return work_; }
+  [[nodiscard]] DeviceWork work() const {
+    if (arriving_.valid()) arriving_.wait();
+    DeviceWork all = work_;
+    all.bytes_down += bytes_brought_;
+    return all;
+  }
 
  private:
   std::shared_ptr<Device> device_;  ///< lives as long as its RVEs
   Precision precision_;
   std::unique_ptr<ResidentRves> rves_;
-  std::vector<int> all_;
+  std::shared_future<void> arriving_;  ///< the states that come down, or came down last
   bool ahead_ = false;     ///< the device's committed states are newer
   bool outdated_ = false;  ///< the host's are
   DeviceWork work_;
+  std::size_t bytes_brought_ = 0;  ///< of states; the thread that brings them counts
+
+  void add(const DeviceWork& did) {
+    work_.particle_steps += did.particle_steps;
+    work_.bytes_up += did.bytes_up;
+    work_.bytes_down += did.bytes_down;
+    work_.enlarged += did.enlarged;
+  }
 
   template <class Request>
   Work advance_with(const RveBatch& batch, std::span<const Request> requests, const EngineSettings& settings,
                     std::span<RveReport> reports, std::span<const int> rves) {
     if (settings.precision != precision_) throw std::logic_error("a batch on a device keeps its precision");
+    if (outdated_ && arriving_.valid()) arriving_.get();
     if (outdated_) rves_->upload(plain(batch.committed));
     outdated_ = false;
     const DeviceWork did = rves_->advance(requests, settings, reports, rves);
-    work_.particle_steps += did.particle_steps;
-    work_.bytes_up += did.bytes_up;
-    work_.bytes_down += did.bytes_down;
-    work_.enlarged += did.enlarged;
+    add(did);
     return {.particle_steps = did.particle_steps, .lane_steps = did.particle_steps};
   }
 };

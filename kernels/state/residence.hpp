@@ -2,6 +2,7 @@
 /// The RVEs of a batch on a device that keeps their states from evaluation to evaluation. A batch without a residence
 /// is advanced by the host. kernels/device makes residences; this file is what a batch knows of one.
 
+#include <future>
 #include <span>
 
 #include "kernels/state/requests.hpp"
@@ -26,8 +27,10 @@ class Residence {
                        std::span<RveReport> reports, std::span<const int> rves) = 0;
   /// Makes the trial states on the device the committed ones, but for those of the RVEs `kept`.
   virtual void commit(std::span<const int> kept) = 0;
-  /// Writes the committed states into the arrays of the batch, where the device has newer ones.
-  virtual void bring(const RveStates& to) = 0;
+  /// Begins to write the committed states into the arrays `to` of the batch, where the device has newer ones, while RVEs
+  /// may be advanced. Until the future is ready, nobody may touch the arrays; its get() throws what the device failed
+  /// with. Invalid where the arrays had the newest states already.
+  [[nodiscard]] virtual std::shared_future<void> begin_bringing(const RveStates& to) = 0;
   /// The committed states of the batch were written to by the host, and the device takes them before it runs.
   virtual void forget() = 0;
   /// Whether the committed states on the device are newer than those of the batch.
