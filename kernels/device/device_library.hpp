@@ -26,7 +26,7 @@ struct DeviceSearch {
 
 /// The form of the functions that a library exports under the names below. The interface's number is raised with every
 /// change of the types that cross the border.
-inline constexpr int interface_number = 1;
+inline constexpr int interface_number = 2;
 inline constexpr const char* interface_symbol = "voussoir_device_interface";
 inline constexpr const char* count_symbol = "voussoir_device_count";
 inline constexpr const char* open_symbol = "voussoir_device_open";

@@ -24,13 +24,20 @@ class DeviceResidence final : public Residence {
     return advance_with(batch, requests, settings, reports, rves);
   }
   void commit(std::span<const int> kept) override {
-    rves_->commit(kept);
+    work_ += rves_->commit(kept);
     ahead_ = true;
   }
   void bring(const RveStates& to) override {
     if (!ahead_) return;
-    rves_->download(plain(to), all_, false);
+    download(to, all_);
     ahead_ = false;
+  }
+  void bring_one(const RveStates& to, int rve) override {
+    if (ahead_) download(to, std::span(&rve, 1));
+  }
+  void describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) override {
+    if (!ahead_) throw std::logic_error("the host describes the states that it has");
+    work_ += rves_->describe(wanted, out);
   }
   void forget() override {
     outdated_ = true;
@@ -48,17 +55,23 @@ class DeviceResidence final : public Residence {
   bool outdated_ = false;  ///< the host's are
   DeviceWork work_;
 
+  void download(const RveStates& to, std::span<const int> rves) {
+    const HostStates states = plain(to);
+    rves_->download(states, rves, false);
+    work_.bytes_down += rves.size() * bytes_of_rve(states);
+  }
   template <class Request>
   Work advance_with(const RveBatch& batch, std::span<const Request> requests, const EngineSettings& settings,
                     std::span<RveReport> reports, std::span<const int> rves) {
     if (settings.precision != precision_) throw std::logic_error("a batch on a device keeps its precision");
-    if (outdated_) rves_->upload(plain(batch.committed));
+    if (outdated_) {
+      const HostStates states = plain(batch.committed);
+      rves_->upload(states);
+      work_.bytes_up += batch.size() * bytes_of_rve(states);
+    }
     outdated_ = false;
     const DeviceWork did = rves_->advance(requests, settings, reports, rves);
-    work_.particle_steps += did.particle_steps;
-    work_.bytes_up += did.bytes_up;
-    work_.bytes_down += did.bytes_down;
-    work_.enlarged += did.enlarged;
+    work_ += did;
     return {.particle_steps = did.particle_steps, .lane_steps = did.particle_steps};
   }
 };

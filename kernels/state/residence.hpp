@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "kernels/state/network_sums.hpp"
 #include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
@@ -28,6 +29,10 @@ class Residence {
   virtual void commit(std::span<const int> kept) = 0;
   /// Writes the committed states into the arrays of the batch, where the device has newer ones.
   virtual void bring(const RveStates& to) = 0;
+  /// The same for one RVE. The device stays ahead.
+  virtual void bring_one(const RveStates& to, int rve) = 0;
+  /// Sums over the committed states that the device has, which must be ahead. The states stay there.
+  virtual void describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) = 0;
   /// The committed states of the batch were written to by the host, and the device takes them before it runs.
   virtual void forget() = 0;
   /// Whether the committed states on the device are newer than those of the batch.

@@ -145,6 +145,10 @@ void bring_committed(const RveBatch& batch) {
   if (batch.residence) batch.residence->bring(batch.committed);
 }
 
+void bring_committed(const RveBatch& batch, std::size_t rve) {
+  if (batch.residence) batch.residence->bring_one(batch.committed, static_cast<int>(rve));
+}
+
 void forget_candidates(RveBatch& batch) {
   if (batch.residence) batch.residence->forget();
   CandidateCache& c = batch.candidates;

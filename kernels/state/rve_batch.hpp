@@ -154,6 +154,8 @@ void commit(RveBatch& batch, std::span<const int> kept = {});
 /// Brings the committed states from the device that has newer ones to `batch.committed`. To be called before they are
 /// read; without a device it does nothing.
 void bring_committed(const RveBatch& batch);
+/// The same for one RVE.
+void bring_committed(const RveBatch& batch, std::size_t rve);
 
 /// Whether any grain resists rolling; where none does, an engine runs from which that part of the law is compiled out.
 [[nodiscard]] bool rolls(const RveBatch& batch);

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "kernels/device/block_advance.hpp"
+#include "kernels/device/block_network.hpp"
 #include "kernels/device/cuda/cuda_errors.hpp"
 
 namespace voussoir::kernels::device {
@@ -48,6 +49,13 @@ __global__ void __launch_bounds__(Of::threads, Of::blocks)
                       number, in_registers ? Of::grains : batch.packings.stride, in_registers ? Of::pairs : pairs});
 }
 
+inline constexpr int network_threads = 128;  ///< of a block that describes a contact network
+
+template <int Threads>
+__global__ void __launch_bounds__(Threads) network_kernel(const __grid_constant__ NetworkBatch batch) {
+  describe_block(CudaBlock<Threads>(), batch, static_cast<int>(blockIdx.x));
+}
+
 struct CudaBackend {
   static constexpr bool follows_stresses = false;  // few RVEs are made or tested under stresses, and lanes serve them
   static constexpr int levels = 6;  ///< three instances in registers, three with ever more room in memory
@@ -84,6 +92,13 @@ struct CudaBackend {
     if (level == 1) return launch_plan<Law, Drive, MiddlePlan, classes>(batch, settings, blocks, pairs);
     if (level == 2) return launch_plan<Law, Drive, LargePlan, classes>(batch, settings, blocks, pairs);
     launch_plan<Law, Drive, MemoryPlan, classes>(batch, settings, blocks, pairs);
+  }
+
+  static void describe(const NetworkBatch& batch) {
+    const NetworkMemory sizes(no_memory(), network_threads);
+    network_kernel<network_threads><<<static_cast<unsigned>(batch.states.rves), network_threads, sizes.bytes>>>(batch);
+    check_cuda(cudaGetLastError(), "the kernel of contact networks was not launched");
+    check_cuda(cudaDeviceSynchronize(), "the kernel of contact networks failed");
   }
 
  private:
