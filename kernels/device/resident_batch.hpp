@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernels/course/choose_instance.hpp"
+#include "kernels/device/block_network.hpp"
 #include "kernels/device/block_run.hpp"
 #include "kernels/device/held_arrays.hpp"
 
@@ -101,10 +102,10 @@ class ResidentBatch final : public ResidentRves {
     throw std::invalid_argument("the device follows given motions only: lanes control stresses");
   }
   DeviceWork commit(std::span<const int> kept) override {
-    const std::vector<std::uint8_t> changes = states_.commit(kept);  // flags of one byte: one array down, two up
+    DeviceWork work;
+    const std::vector<std::uint8_t> changes = states_.commit(kept, work);
     const std::size_t n = changes.size();
     std::vector<double> skin(n), spent(n), spending(n);
-    DeviceWork work{.bytes_up = 2 * n, .bytes_down = n};
     work.bytes_down += candidate_skin_.read(skin) + candidate_spent_.read(spent) + candidate_spending_.read(spending);
     for (std::size_t k = 0; k < n; ++k) {
       if (changes[k] == 0) continue;
@@ -113,6 +114,14 @@ class ResidentBatch final : public ResidentRves {
     }
     work.bytes_up += candidate_skin_.write(skin) + candidate_spent_.write(spent);
     return work;
+  }
+  DeviceWork describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) override {
+    const bool tallies = needs_tally(wanted);
+    if (tallies) contact_counts_.at_least(size() * static_cast<std::size_t>(packings_.grains()));
+    committed_sums_.at_least(size());
+    Backend::describe({packings_.exact(), states_.view(), packing_of_.data(), contact_counts_.data(),
+                       committed_sums_.data(), network_thresholds(), needs_contact_sums(wanted), tallies});
+    return {.bytes_down = committed_sums_.read(out)};
   }
 
  private:
@@ -128,6 +137,8 @@ class ResidentBatch final : public ResidentRves {
   DeviceArray<int, Backend> candidate_count_;
   DeviceArray<double, Backend> candidate_skin_, candidate_spent_, candidate_spending_;
   int candidate_capacity_ = 0;
+  DeviceArray<ContactCounts, Backend> contact_counts_;
+  DeviceArray<CommittedSums, Backend> committed_sums_;
   CallArrays<StrainDrive, Backend> strain_;
   CallArrays<ServoControl, Backend> servo_;
 

@@ -47,6 +47,10 @@ class ListedRves final : public device::ResidentRves {
     note("commit");
     return {.bytes_up = 1, .bytes_down = 2};
   }
+  device::DeviceWork describe(const MicrostructureRequest&, std::span<CommittedSums>) override {
+    note("describe");
+    return {};
+  }
 
  private:
   Calls& calls_;
