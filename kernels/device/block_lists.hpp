@@ -80,7 +80,7 @@ struct Bins {
   }
 };
 
-/// The scratch of find_candidates, in the memory of the pairs' actions.
+/// The scratch of find_candidates, in the memory of the pairs' actions (room_of_bins).
 struct BinScratch {
   int *begin, *next, *row;  ///< of a bin; where it is filled next; candidates of the grains before
   int* grain;               ///< bin by bin
@@ -181,6 +181,7 @@ template <class Run>
                                     static_cast<std::size_t>(run.rve) * static_cast<std::size_t>(from.capacity);
   const int candidates = from.count[run.rve];
   if (candidates > most_candidates(run)) return Listing::too_many;
+  static_assert(candidates_per_pair * sizeof(int) <= sizeof(Four<typename Run::real>), "a flag for each candidate");
   int* const flag = reinterpret_cast<int*>(run.at.action);
   std::uint32_t* const chosen = run.at.keys;
   const Cell cell(run.at.control->cell);

@@ -16,6 +16,7 @@
 namespace voussoir::kernels::device {
 
 inline constexpr int threads_of_group = 16;     ///< whose numbers one thread sums up
+inline constexpr int most_sums = 6;             ///< numbers that `reduce` joins at once
 inline constexpr int candidates_per_pair = 2;   ///< room for candidates, by room for pairs
 inline constexpr double candidate_skin = 1.5;   ///< of the candidates, over that of the list
 
@@ -50,6 +51,23 @@ struct SolverSlot {
   GrainDofs<V> motion, residual, direction;
   GrainDofs<V> image;  ///< minus the product of K with the direction
 };
+
+/// Numbers that `reduce` needs for `count` sums: one of each thread, and one of each group of threads.
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION constexpr int room_of_sums(int count, int threads) {
+  return count * (threads + (threads + threads_of_group - 1) / threads_of_group);
+}
+/// Numbers of the bins' scratch: three by grain, and one more by bin, of which there are as many as grains at most.
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION constexpr int room_of_bins(int grains) { return 4 * grains + 1; }
+
+/// Entries of BlockMemory::action: those of the pairs, and at least the room for sums and bins.
+template <class real>
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION constexpr int room_of_action(int grains, int capacity, int threads) {
+  constexpr int entry = static_cast<int>(sizeof(Four<real>));
+  const int sums = room_of_sums(most_sums, threads) * static_cast<int>(sizeof(double));
+  const int bins = room_of_bins(grains) * static_cast<int>(sizeof(int));
+  const int scratch = ((sums < bins ? bins : sums) + entry - 1) / entry;
+  return capacity < scratch ? scratch : capacity;
+}
 
 template <class Law, class Drive, class Plan>
 struct BlockMemory {
@@ -94,7 +112,7 @@ struct BlockMemory {
     rotation = of_grains.template take<real>(n);
     keys = of_grains.template take<std::uint32_t>(capacity);
     gap = of_grains.template take<real>(capacity);
-    action = of_grains.template take<Four<real>>(capacity);
+    action = of_grains.template take<Four<real>>(room_of_action<real>(n, capacity, threads));
     row = of_grains.template take<Index>(n + 1);
     entries = of_grains.template take<Index>(2 * capacity);
     kept_key = in_slow.take<std::uint32_t>(capacity);

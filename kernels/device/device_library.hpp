@@ -21,6 +21,9 @@ struct DeviceSearch {
 /// libvoussoir_gpu.so beside the program, in its folder ../lib, or in ../../cuda, where the preset `cuda` builds it.
 [[nodiscard]] DeviceSearch find_devices();
 
+/// The number of devices. Where it is 0, `why` says the reason.
+[[nodiscard]] std::size_t count_devices(std::string& why);
+
 /// Opens device `number` (from 0). Null where there is none, and then `why` says the reason.
 [[nodiscard]] std::shared_ptr<Device> open_device(std::size_t number, std::string& why);
 

@@ -1,0 +1,65 @@
+// The memory of a block: the actions of pairs are also the scratch of sums and bins, for which they must have room
+// however few pairs a block is made for.
+
+#include <gtest/gtest.h>
+
+#include "kernels/contact/engine_law.hpp"
+#include "kernels/course/drives.hpp"
+#include "kernels/device/block_run.hpp"
+#include "tests/device_blocks.hpp"
+#include "tests/same_answers.hpp"
+
+namespace voussoir::kernels {
+namespace {
+
+template <class real>
+using Memory = device::BlockMemory<EngineLaw<SingleLane<real>, true>, StrainDrive, device::InMemory>;
+
+template <class real>
+void expect_room() {
+  for (const int grains : {4, 300}) {
+    for (const int pairs : {1, 64, 2100}) {
+      for (const int threads : {1, 16, 31, 1024}) {
+        SCOPED_TRACE(testing::Message() << grains << " grains, " << pairs << " pairs, " << threads << " threads");
+        const Memory<real> at(device::no_memory(), device::no_memory(), grains, pairs, threads);
+        const auto room = static_cast<std::size_t>(reinterpret_cast<char*>(at.row) - reinterpret_cast<char*>(at.action));
+        const int groups = (threads + 15) / 16;
+        EXPECT_GE(room, sizeof(double) * static_cast<std::size_t>(6 * (threads + groups))) << "sums";
+        EXPECT_GE(room, sizeof(int) * static_cast<std::size_t>(4 * grains + 1)) << "bins";
+        EXPECT_GE(room, 4 * sizeof(real) * static_cast<std::size_t>(pairs)) << "actions";
+        EXPECT_GE(room, sizeof(int) * static_cast<std::size_t>(device::candidates_per_pair * pairs)) << "candidates";
+      }
+    }
+  }
+}
+
+TEST(BlockMemory, ActionsHaveRoomForTheScratch) {
+  expect_room<float>();
+  expect_room<double>();
+}
+
+TEST(BlockMemory, ManyThreadsAnswerWithRoomForHardlyAPair) {
+  // Two of 40 grains touch, the others are far from each other. All of them are listed with room for a few pairs, which
+  // is far less than the bins of 40 grains and the sums of 48 threads need.
+  reference::Rve apart = reference::loose_packing(40, 1e-3, 1e-3, 4, reference::Material{});
+  apart.rotations.assign(apart.radii.size(), 0.0);
+  for (double& r : apart.radii) r = 4e-4;
+  apart.radii[0] = apart.radii[1] = 1.5e-3;
+  const RveBatch batch = clones(apart, 2);
+  EngineSettings settings;
+  settings.guard_interval = 2;
+  const std::vector<StrainRequest> requests(2, {.f_rel = {0.97, 0, 0, 0.97}, .strain_steps = 60, .hold_cap = 20});
+  std::vector<RveReport> reports(2), expected(2);
+  for (const Precision precision : {Precision::float32, Precision::float64}) {
+    settings.precision = precision;
+    const Blocks usual{BlockKind::in_memory, 48}, few{BlockKind::in_memory, 48, 20};
+    advance_held(*hold(batch, precision, usual), requests, settings, expected, first_rves(2));
+    const auto work = advance_held(*hold(batch, precision, few), requests, settings, reports, first_rves(2));
+    EXPECT_EQ(work.enlarged, 0U) << "the test wants a block with little room";
+    EXPECT_GT(expected[0].contacts, 0) << "no grain touches: the test shows nothing";
+    for (std::size_t k = 0; k < 2; ++k) expect_same_report(reports[k], expected[k], k);
+  }
+}
+
+}  // namespace
+}  // namespace voussoir::kernels
