@@ -1,8 +1,6 @@
 """What a case may ask for, on the device that is the host: each feature answers as with lanes, and what a device cannot
 do is left to lanes or refused."""
 
-import subprocess
-
 import numpy as np
 from devices import far_from, log_of, on_device
 from program import PROGRAM, ROOT, check, check_same, command, fresh, run, table
@@ -75,15 +73,6 @@ settings = [
     "gravity.uniform_step=0.3",
 ]
 both("gravel", settings, "gauss/stress", most=1e-3, case=gravel.resolve())
-
-# RVEs that fail: the whole weight in one step fails on the device as with lanes, and both end with cuts.
-lanes, device = fresh("failed_lanes"), fresh("failed_device")
-settings = [*SETTINGS, "gravity.uniform_step=1", "newton.smallest_cut=1"]
-ends = [
-    subprocess.run(line, check=False, capture_output=True, text=True)
-    for line in (words(lanes, settings), on_device(words(device, settings)))
-]
-print([end.returncode for end in ends], ends[0].stderr, ends[1].stderr)
 
 # What a device does not compute: lanes run and the log says why, or the case is refused before anything is written.
 loading = [*SETTINGS, 'newton.tangent="loading"']

@@ -44,11 +44,11 @@ TEST(BlockMemory, ManyThreadsAnswerWithRoomForHardlyAPair) {
   reference::Rve apart = reference::loose_packing(40, 1e-3, 1e-3, 4, reference::Material{});
   apart.rotations.assign(apart.radii.size(), 0.0);
   for (double& r : apart.radii) r = 4e-4;
-  apart.radii[0] = apart.radii[1] = 1.5e-3;
+  apart.positions[1] = {apart.positions[0].x + 7.98e-4, apart.positions[0].y};
   const RveBatch batch = clones(apart, 2);
   EngineSettings settings;
   settings.guard_interval = 2;
-  const std::vector<StrainRequest> requests(2, {.f_rel = {0.97, 0, 0, 0.97}, .strain_steps = 60, .hold_cap = 20});
+  const std::vector<StrainRequest> requests(2, {.f_rel = {0.999, 0, 0, 0.999}, .strain_steps = 12, .hold_cap = 4});
   std::vector<RveReport> reports(2), expected(2);
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     settings.precision = precision;
