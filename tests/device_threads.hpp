@@ -130,6 +130,8 @@ struct ThreadBackend {
   static void release(void* p) { HostBackend::release(p); }
   static void copy_up(void* to, const void* from, std::size_t bytes) { HostBackend::copy_up(to, from, bytes); }
   static void copy_down(void* to, const void* from, std::size_t bytes) { HostBackend::copy_down(to, from, bytes); }
+  static void copy_committed(const DeviceStates& from, const DeviceStates& to) { HostBackend::copy_committed(from, to); }
+  using WayBeside = HostBackend::WayBeside;
 
   [[nodiscard]] static int first_level(int grains) {
     if (Plan::in_registers) return grains <= Plan::grain_slots * threads ? 0 : 1;

@@ -3,6 +3,7 @@
 /// as somebody holds them, so that neither a relaxation nor a checkpoint needs a copy of millions of grains.
 
 #include <cstdint>
+#include <future>
 #include <vector>
 
 #include "fem/material_batch.hpp"
@@ -18,6 +19,12 @@ struct HeldRves final : public fem::HeldState {
   std::vector<std::size_t> grains;            ///< of each RVE
   std::uint64_t identity = 0;                 ///< RvePool::identity
 
+  std::shared_future<void> arriving;          ///< valid where a device has the states, which then come beside the run
+
+  /// Waits until the states are here. @throws what the device failed with
+  void wait() const {
+    if (arriving.valid()) arriving.get();
+  }
   [[nodiscard]] std::size_t size() const override;
   void write(const Sink& sink) const override;
   /// The record of one RVE (state_records.hpp).

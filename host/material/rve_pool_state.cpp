@@ -99,11 +99,13 @@ std::uint64_t RvePool::identity() const {
 }
 
 void HeldRves::write_record(std::size_t rve, std::vector<std::byte>& bytes) const {
+  wait();
   io::ByteWriter write(bytes);
   transfer_record(write, *this, rve);
 }
 
 std::size_t HeldRves::size() const {
+  wait();
   std::vector<std::byte> head;
   write_head(head, identity, grains.size());
   ByteCounter count{head.size() + grains.size() * sizeof(std::uint64_t)};
@@ -112,6 +114,7 @@ std::size_t HeldRves::size() const {
 }
 
 void HeldRves::write(const Sink& sink) const {
+  wait();
   std::vector<std::byte> bytes;
   write_head(bytes, identity, grains.size());
   sink(bytes);
@@ -125,8 +128,8 @@ void HeldRves::write(const Sink& sink) const {
 }
 
 HeldRves RvePool::committed_rves() const {
-  kernels::bring_committed(batch_);
   HeldRves held;
+  held.arriving = kernels::begin_bringing_committed(batch_);
   held.states = batch_.committed;
   held.reports = committed_reports_;
   held.identity = identity();
@@ -152,6 +155,7 @@ std::shared_ptr<const fem::HeldState> RvePool::hold() {
 
 void RvePool::return_to(const fem::HeldState& held) {
   const auto& rves = dynamic_cast<const HeldRves&>(held);
+  rves.wait();
   batch_.committed = rves.states;
   committed_reports_ = rves.reports;
   for (std::size_t k = 0; k < rves.deferred.size(); ++k) deferral_.committed(k) = rves.deferred[k];

@@ -42,11 +42,37 @@ void check_packings(const Case& input) {
   }
 }
 
-/// Refuses a ground of so many elements that its mesh alone has no room, before the mesh is made, which would take
-/// minutes or hours. No mesh has fewer elements than half the squares of the size `mesh_size_far` that cover the
-/// ground; the study's meshes have seven times as many as these squares, since they are finer at the opening.
+/// Refuses more packings than there are points to hold them.
+void refuse_idle_packings(const Case& input, const CaseSize& size) {
+  const auto variety = static_cast<std::size_t>(input.packing.variety);
+  if (size.points == 0 || !has_grains(input) || variety <= size.points) return;
+  throw io::InputError(
+      place_of(input, "packing.variety"), "packing.variety",
+      fmt::format("asks for {} packings, but the mesh has only {} points to hold them", variety, size.points));
+}
+
+/// The size of the case. What the mesh generator refuses is a fault of the ground's lengths, or of the file that holds
+/// the mesh.
+CaseSize checked_size(const Case& input) {
+  const char* key = input.ground.mesh_file.empty() ? "ground" : "ground.mesh_file";
+  try {
+    return case_size(input);
+  } catch (const std::invalid_argument& fault) {
+    throw io::InputError(place_of(input, key), key, fault.what());
+  } catch (const std::runtime_error& fault) {
+    throw io::InputError(place_of(input, key), key, fault.what());
+  }
+}
+
+}  // namespace
+
+std::string place_of(const Case& input, const std::string& key) {
+  const auto found = input.places.find(key);
+  return found != input.places.end() && !found->second.empty() ? found->second : input.name;
+}
+
 void refuse_endless_mesh(const Case& input) {
-  if (input.kind != CaseKind::tunnel) return;
+  if (input.kind != CaseKind::tunnel || !input.ground.mesh_file.empty()) return;
   const GroundCase& ground = input.ground;
   const double squares = ground.width * ground.height / (ground.mesh_size_far * ground.mesh_size_far);
   const double needed = mesh_memory(4 * 0.5 * squares), there = memory_limit();
@@ -57,33 +83,6 @@ void refuse_endless_mesh(const Case& input) {
                   "and {} of memory, but this machine allows {}",
                   ground.mesh_size_far, ground.width, ground.height, 2 * squares, bytes_text(needed),
                   bytes_text(there)));
-}
-
-/// Refuses more packings than there are points to hold them.
-void refuse_idle_packings(const Case& input, const CaseSize& size) {
-  const auto variety = static_cast<std::size_t>(input.packing.variety);
-  if (size.points == 0 || !has_grains(input) || variety <= size.points) return;
-  throw io::InputError(
-      place_of(input, "packing.variety"), "packing.variety",
-      fmt::format("asks for {} packings, but the mesh has only {} points to hold them", variety, size.points));
-}
-
-/// The size of the case. What the mesh generator refuses is a fault of the ground's lengths.
-CaseSize checked_size(const Case& input) {
-  try {
-    return case_size(input);
-  } catch (const std::invalid_argument& fault) {
-    throw io::InputError(place_of(input, "ground"), "ground", fault.what());
-  } catch (const std::runtime_error& fault) {
-    throw io::InputError(place_of(input, "ground"), "ground", fault.what());
-  }
-}
-
-}  // namespace
-
-std::string place_of(const Case& input, const std::string& key) {
-  const auto found = input.places.find(key);
-  return found != input.places.end() && !found->second.empty() ? found->second : input.name;
 }
 
 AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

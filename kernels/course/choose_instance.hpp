@@ -31,7 +31,7 @@ auto choose_precision(Precision precision, const Body& body) {
 template <template <class> class Value, class Body>
 auto choose_instance(const RveBatch& batch, Precision precision, const Body& body) {
   const auto with = [&]<class V>(Instance<V>) {
-    return rolls(batch) ? body(Instance<EngineLaw<V, true>>{}) : body(Instance<EngineLaw<V, false>>{});
+    return rolls(batch.packings) ? body(Instance<EngineLaw<V, true>>{}) : body(Instance<EngineLaw<V, false>>{});
   };
   return choose_precision(precision, [&]<class real>(Instance<real>) {
     if constexpr (!std::is_same_v<Value<real>, SingleLane<real>>) {

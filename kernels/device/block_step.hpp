@@ -38,7 +38,8 @@ template <class Run>
   return geometry_of(pair_of(run, p), cell, V(to.x - from.x), V(to.y - from.y));
 }
 
-/// Computes contacts and law of all pairs.
+/// Computes contacts and law of all pairs. Those that do not touch are computed too, and the law gives them no force: a
+/// branch that most threads of a warp take costs more than the work that it saves (docs/measurements/gpu.md, "Variants").
 template <Sweep mode, class Run>
 KOKKOS_FORCEINLINE_FUNCTION void press_pairs(const Run& run, BlockSlots<Run>& held,
                                              const CellMotion<typename Run::V>& motion,
@@ -51,11 +52,6 @@ KOKKOS_FORCEINLINE_FUNCTION void press_pairs(const Run& run, BlockSlots<Run>& he
     const int i = first_of(run.at.keys[p]), j = second_of(run.at.keys[p]);
     const Four<real> from = run.at.motion[i], to = run.at.motion[j];
     const PairGeometry<V> now = geometry_of(pair, cell, V(to.x - from.x), V(to.y - from.y));
-    if (!(now.gap[0] < 0)) {
-      held.pair[k].history = no_history<typename Run::Law>();
-      run.at.action[p] = {0, 0, 0, 0};
-      return;
-    }
     const Two<real> rim_i = run.at.rim[i], rim_j = run.at.rim[j];
     const auto shape = shape_of(run, i, j, rim_i.y, rim_j.y);
     const PairAction<V> on = act(pair, shape, now, cell, V(to.z - from.z), V(to.w - from.w),

@@ -99,9 +99,9 @@ template <class Run, class Slot>
   Iteration out;
   out.energy = out.affine = total(run, energy);
   out.rho = total(run, norm);
-  constexpr double resolution = 8 * std::numeric_limits<typename Run::real>::epsilon();
+  constexpr double resolution = 8 * Kokkos::Experimental::epsilon_v<typename Run::real>;
   out.rounding = resolution * resolution * out.rho;
-  out.before = std::numeric_limits<double>::max();
+  out.before = Kokkos::Experimental::finite_max_v<double>;
   return out;
 }
 

@@ -18,7 +18,7 @@ std::vector<std::filesystem::path> places() {
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) return {};
   const std::filesystem::path folder = program.parent_path();
-  return {folder / file_name, folder / ".." / "lib" / file_name};
+  return {folder / file_name, folder / ".." / "lib" / file_name, folder / ".." / ".." / "cuda" / file_name};
 }
 
 /// An opened library. It stays open, because its devices need its code.

@@ -18,19 +18,22 @@ struct DeviceSearch {
 };
 
 /// Looks for the library and its devices: the file that the environment variable VOUSSOIR_GPU_LIBRARY names, or
-/// libvoussoir_gpu.so beside the program or in its folder ../lib.
+/// libvoussoir_gpu.so beside the program, in its folder ../lib, or in ../../cuda, where the preset `cuda` builds it.
 [[nodiscard]] DeviceSearch find_devices();
 
 /// Opens device `number` (from 0). Null where there is none, and then `why` says the reason.
 [[nodiscard]] std::shared_ptr<Device> open_device(std::size_t number, std::string& why);
 
-/// The form of the functions that a library exports under the names below. The interface's number is raised with every
-/// change of the types that cross the border.
-inline constexpr int interface_number = 2;
+/// The form of the functions that a library exports under the names below. The number tells a library of another version
+/// of the program: it is raised with every change of what crosses the border, and it changes with the sizes of what does.
+inline constexpr std::size_t interface_number =
+    2 + 1000 * (sizeof(RveReport) + 7 * sizeof(StrainRequest) + 11 * sizeof(ServoRequest) +
+                13 * sizeof(EngineSettings) + 17 * sizeof(Packing) + 19 * sizeof(HostStates) + 23 * sizeof(DeviceWork) +
+                 29 * sizeof(CommittedSums));
 inline constexpr const char* interface_symbol = "voussoir_device_interface";
 inline constexpr const char* count_symbol = "voussoir_device_count";
 inline constexpr const char* open_symbol = "voussoir_device_open";
-using InterfaceFunction = int (*)();
+using InterfaceFunction = std::size_t (*)();
 /// Number of devices; with 0, the text says why.
 using CountFunction = std::size_t (*)(std::string* why);
 /// Opens a device; null and a text where that fails.

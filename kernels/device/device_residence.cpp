@@ -1,6 +1,5 @@
 #include "kernels/device/device_residence.hpp"
 
-#include <numeric>
 #include <stdexcept>
 
 namespace voussoir::kernels::device {
@@ -10,9 +9,9 @@ namespace {
 class DeviceResidence final : public Residence {
  public:
   DeviceResidence(const RveBatch& batch, std::shared_ptr<Device> device, Precision precision)
-      : device_(std::move(device)), precision_(precision), rves_(device_->hold(plain(batch), precision)) {
-    all_.resize(batch.size());
-    std::iota(all_.begin(), all_.end(), 0);
+      : device_(std::move(device)), precision_(precision), rves_(device_->hold(plain(batch), precision)) {}
+  ~DeviceResidence() override {
+    if (arriving_.valid()) arriving_.wait();
   }
 
   Work advance(const RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
@@ -27,43 +26,56 @@ class DeviceResidence final : public Residence {
     work_ += rves_->commit(kept);
     ahead_ = true;
   }
-  void bring(const RveStates& to) override {
-    if (!ahead_) return;
-    download(to, all_);
+  [[nodiscard]] std::shared_future<void> begin_bringing(const RveStates& to) override {
+    if (!ahead_) return arriving_;
+    if (arriving_.valid()) arriving_.wait();
+    rves_->copy_committed();
     ahead_ = false;
+    arriving_ = std::async(std::launch::async, [this, to] { bytes_brought_ += rves_->bring_copy(plain(to)); }).share();
+    return arriving_;
   }
   void bring_one(const RveStates& to, int rve) override {
-    if (ahead_) download(to, std::span(&rve, 1));
+    if (arriving_.valid()) {
+      if (!ahead_) return arriving_.get();
+      arriving_.wait();
+    }
+    if (!ahead_) return;
+    const HostStates states = plain(to);
+    rves_->download(states, std::span(&rve, 1), false);
+    work_.bytes_down += bytes_of_rve(states);
   }
   void describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) override {
-    if (!ahead_) throw std::logic_error("the host describes the states that it has");
+    if (outdated_) throw std::logic_error("a device cannot describe states that it does not have");
     work_ += rves_->describe(wanted, out);
   }
+  [[nodiscard]] bool has_committed() const override { return !outdated_; }
   void forget() override {
     outdated_ = true;
     ahead_ = false;
   }
   [[nodiscard]] bool is_ahead() const override { return ahead_; }
-  [[nodiscard]] const DeviceWork& work() const { return work_; }
+  [[nodiscard]] DeviceWork work() const {
+    if (arriving_.valid()) arriving_.wait();
+    DeviceWork all = work_;
+    all.bytes_down += bytes_brought_;
+    return all;
+  }
 
  private:
   std::shared_ptr<Device> device_;  ///< lives as long as its RVEs
   Precision precision_;
   std::unique_ptr<ResidentRves> rves_;
-  std::vector<int> all_;
+  std::shared_future<void> arriving_;  ///< the states that come down, or came down last
   bool ahead_ = false;     ///< the device's committed states are newer
   bool outdated_ = false;  ///< the host's are
   DeviceWork work_;
+  std::size_t bytes_brought_ = 0;  ///< of states; the thread that brings them counts
 
-  void download(const RveStates& to, std::span<const int> rves) {
-    const HostStates states = plain(to);
-    rves_->download(states, rves, false);
-    work_.bytes_down += rves.size() * bytes_of_rve(states);
-  }
   template <class Request>
   Work advance_with(const RveBatch& batch, std::span<const Request> requests, const EngineSettings& settings,
                     std::span<RveReport> reports, std::span<const int> rves) {
     if (settings.precision != precision_) throw std::logic_error("a batch on a device keeps its precision");
+    if (outdated_ && arriving_.valid()) arriving_.get();
     if (outdated_) {
       const HostStates states = plain(batch.committed);
       rves_->upload(states);

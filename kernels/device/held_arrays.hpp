@@ -58,26 +58,26 @@ class HeldPackings {
  public:
   using real = real_of<typename Law::Value>;
 
-  explicit HeldPackings(const RveBatch& batch) {
+  explicit HeldPackings(std::span<const Packing> packings) {
     std::vector<int> sizes;
-    for (const Packing& p : batch.packings) {
+    for (const Packing& p : packings) {
       sizes.push_back(p.size());
       grains_ = std::max(grains_, p.size());
       materials_ = std::max(materials_, static_cast<int>(p.materials.size()));
       classes_ = classes_ || !p.class_of.empty();
     }
     store(sizes_, std::span<const int>(sizes));
-    write_grains(batch);
+    write_grains(packings);
   }
 
   /// Writes what depends on the settings.
-  void write(const RveBatch& batch, const EngineSettings& settings) {
-    const std::size_t n = batch.packings.size(), grains = static_cast<std::size_t>(grains_);
+  void write(std::span<const Packing> packings, const EngineSettings& settings) {
+    const std::size_t n = packings.size(), grains = static_cast<std::size_t>(grains_);
     scales_.clear();
     std::vector<GrainShape<real>> shapes(n * grains);
     std::vector<GrainMaterialOf<real>> materials(n * static_cast<std::size_t>(materials_));
     for (std::size_t k = 0; k < n; ++k) {
-      const Packing& packing = batch.packings[k];
+      const Packing& packing = packings[k];
       scales_.push_back(scales_of<Law>(packing, settings));
       for (std::size_t i = 0; i < packing.radii.size(); ++i)
         shapes[k * grains + i] = grain_shape<Law>(packing, i, scales_[k].largest_radius, settings.overlap_limit);
@@ -114,13 +114,13 @@ class HeldPackings {
   DeviceArray<GrainMaterial, Backend> exact_of_classes_;
 
   /// Writes what no setting changes.
-  void write_grains(const RveBatch& batch) {
-    const std::size_t n = batch.packings.size(), grains = static_cast<std::size_t>(grains_);
+  void write_grains(std::span<const Packing> packings) {
+    const std::size_t n = packings.size(), grains = static_cast<std::size_t>(grains_);
     std::vector<double> radii(n * grains, 0.0);
     std::vector<std::uint8_t> class_of(classes_ ? n * grains : 0, 0);
     std::vector<GrainMaterial> materials(n * static_cast<std::size_t>(materials_));
     for (std::size_t k = 0; k < n; ++k) {
-      const Packing& packing = batch.packings[k];
+      const Packing& packing = packings[k];
       std::copy(packing.radii.begin(), packing.radii.end(), radii.data() + k * grains);
       std::copy(packing.class_of.begin(), packing.class_of.end(), class_of.data() + k * grains);
       std::copy(packing.materials.begin(), packing.materials.end(),
@@ -141,81 +141,30 @@ class HeldPackings {
   }
 };
 
-/// The states of a batch on the device.
+/// The arrays of states on the device: `slots` states of each RVE.
 template <class Backend>
-class HeldStates {
+class StateArrays {
  public:
-  HeldStates(int rves, int grains, int contacts, int history)
-      : rves_(rves),
+  StateArrays(int slots, int rves, int grains, int contacts, int history)
+      : slots_(slots),
+        rves_(rves),
         grains_(grains),
         contacts_(contacts),
         history_(history),
-        position_(both(2 * grains)),
-        rotation_(both(grains)),
-        cell_(both(4)),
-        contact_count_(both(1)),
-        contact_key_(both(contacts)),
-        contact_history_(both(contacts * history)),
-        committed_slot_(static_cast<std::size_t>(rves)),
-        evaluated_(static_cast<std::size_t>(rves)),
-        slots_(static_cast<std::size_t>(rves), 0) {}
+        position_(all(2 * grains)),
+        rotation_(all(grains)),
+        cell_(all(4)),
+        contact_count_(all(1)),
+        contact_key_(all(contacts)),
+        contact_history_(all(contacts * history)) {}
 
-  [[nodiscard]] DeviceStates view() const {
-    return {position_.data(),    rotation_.data(),        cell_.data(),           contact_count_.data(),
-            contact_key_.data(), contact_history_.data(), committed_slot_.data(), evaluated_.data(),
-            rves_,               grains_,                 contacts_,              history_};
+  /// @param committed_slot, evaluated by RVE, on the device
+  [[nodiscard]] DeviceStates view(std::uint8_t* committed_slot, std::uint8_t* evaluated) const {
+    return {position_.data(),    rotation_.data(),        cell_.data(),   contact_count_.data(),
+            contact_key_.data(), contact_history_.data(), committed_slot, evaluated,
+            rves_,               grains_,                 contacts_,      history_};
   }
-
-  void upload(const HostStates& from) {
-    const auto n = static_cast<std::size_t>(rves_);
-    slots_.assign(n, 0);
-    committed_slot_.write(slots_);
-    evaluated_.write(std::vector<std::uint8_t>(n, 0));
-    each_array(from, [&](auto& array, const auto* numbers, int count) {
-      array.write({numbers, n * static_cast<std::size_t>(count)});
-    });
-  }
-
-  void download(const HostStates& to, std::span<const int> rves, bool trial) {
-    const std::vector<std::uint8_t> evaluated = trial ? flags() : std::vector<std::uint8_t>();
-    for (const int rve : rves) {
-      const auto k = static_cast<std::size_t>(rve);
-      const int committed = slots_[k];
-      const std::size_t at = view().place(trial && evaluated[k] != 0 ? 1 - committed : committed, rve);
-      each_array(to, [&](auto& array, auto* numbers, int count) {
-        const auto c = static_cast<std::size_t>(count);
-        array.read({numbers + k * c, c}, at * c);
-      });
-    }
-  }
-
-  /// Makes trial states committed ones. Returns whether the state of each RVE changed.
-  std::vector<std::uint8_t> commit(std::span<const int> kept, DeviceWork& work) {
-    std::vector<std::uint8_t> changes = flags();
-    work.bytes_down += changes.size();
-    for (const int rve : kept) changes[static_cast<std::size_t>(rve)] = 0;
-    for (std::size_t k = 0; k < slots_.size(); ++k) slots_[k] ^= changes[k];
-    work.bytes_up += committed_slot_.write(slots_) + evaluated_.write(std::vector<std::uint8_t>(slots_.size(), 0));
-    return changes;
-  }
-
- private:
-  int rves_, grains_, contacts_, history_;
-  DeviceArray<double, Backend> position_, rotation_, cell_;
-  DeviceArray<int, Backend> contact_count_;
-  DeviceArray<std::uint32_t, Backend> contact_key_;
-  DeviceArray<double, Backend> contact_history_;
-  DeviceArray<std::uint8_t, Backend> committed_slot_, evaluated_;
-  std::vector<std::uint8_t> slots_;  ///< committed_slot_, as the host knows it
-
-  [[nodiscard]] std::size_t both(int count) const {
-    return 2 * static_cast<std::size_t>(rves_) * static_cast<std::size_t>(count);
-  }
-  [[nodiscard]] std::vector<std::uint8_t> flags() const {
-    std::vector<std::uint8_t> out(slots_.size());
-    evaluated_.read(out);
-    return out;
-  }
+  /// Calls body(array, numbers of the host, how many a state has) for all arrays.
   template <class Body>
   void each_array(const HostStates& host, const Body& body) {
     body(position_, host.position, 2 * grains_);
@@ -225,6 +174,97 @@ class HeldStates {
     body(contact_key_, host.contact_key, contacts_);
     if (history_ > 0) body(contact_history_, host.contact_history, contacts_ * history_);
   }
+
+ private:
+  int slots_, rves_, grains_, contacts_, history_;
+  DeviceArray<double, Backend> position_, rotation_, cell_;
+  DeviceArray<int, Backend> contact_count_;
+  DeviceArray<std::uint32_t, Backend> contact_key_;
+  DeviceArray<double, Backend> contact_history_;
+
+  [[nodiscard]] std::size_t all(int count) const {
+    return static_cast<std::size_t>(slots_) * static_cast<std::size_t>(rves_) * static_cast<std::size_t>(count);
+  }
+};
+
+/// The states of a batch on the device: two of each RVE, and which of them is the committed one.
+template <class Backend>
+class HeldStates {
+ public:
+  HeldStates(int rves, int grains, int contacts, int history)
+      : arrays_(2, rves, grains, contacts, history),
+        committed_slot_(static_cast<std::size_t>(rves)),
+        evaluated_(static_cast<std::size_t>(rves)),
+        slots_(static_cast<std::size_t>(rves), 0) {}
+
+  [[nodiscard]] DeviceStates view() const { return arrays_.view(committed_slot_.data(), evaluated_.data()); }
+
+  void upload(const HostStates& from) {
+    slots_.assign(slots_.size(), 0);
+    committed_slot_.write(slots_);
+    evaluated_.write(std::vector<std::uint8_t>(slots_.size(), 0));
+    arrays_.each_array(from, [&](auto& array, const auto* numbers, int count) {
+      array.write({numbers, slots_.size() * static_cast<std::size_t>(count)});
+    });
+  }
+
+  void download(const HostStates& to, std::span<const int> rves, bool trial) {
+    const std::vector<std::uint8_t> evaluated = trial ? flags() : std::vector<std::uint8_t>();
+    for (const int rve : rves) {
+      const auto k = static_cast<std::size_t>(rve);
+      const int committed = slots_[k];
+      const std::size_t at = view().place(trial && evaluated[k] != 0 ? 1 - committed : committed, rve);
+      arrays_.each_array(to, [&](auto& array, auto* numbers, int count) {
+        const auto c = static_cast<std::size_t>(count);
+        array.read({numbers + k * c, c}, at * c);
+      });
+    }
+  }
+
+  /// Makes trial states committed ones. Returns whether the state of each RVE changed.
+  std::vector<std::uint8_t> commit(std::span<const int> kept) {
+    std::vector<std::uint8_t> changes = flags();
+    for (const int rve : kept) changes[static_cast<std::size_t>(rve)] = 0;
+    for (std::size_t k = 0; k < slots_.size(); ++k) slots_[k] ^= changes[k];
+    committed_slot_.write(slots_);
+    evaluated_.write(std::vector<std::uint8_t>(slots_.size(), 0));
+    return changes;
+  }
+
+ private:
+  StateArrays<Backend> arrays_;
+  DeviceArray<std::uint8_t, Backend> committed_slot_, evaluated_;
+  std::vector<std::uint8_t> slots_;  ///< committed_slot_, as the host knows it
+
+  [[nodiscard]] std::vector<std::uint8_t> flags() const {
+    std::vector<std::uint8_t> out(slots_.size());
+    evaluated_.read(out);
+    return out;
+  }
+};
+
+/// A copy of the committed states on the device, from where they come to the host while RVEs advance.
+template <class Backend>
+class StateCopy {
+ public:
+  explicit StateCopy(const DeviceStates& of) : arrays_(1, of.rves, of.grains, of.contacts, of.history), rves_(of.rves) {}
+
+  void take(const DeviceStates& from) { Backend::copy_committed(from, arrays_.view(nullptr, nullptr)); }
+  /// Another thread than that of the other calls may call this. Returns the bytes moved.
+  std::size_t bring(const HostStates& to) {
+    std::size_t bytes = 0;
+    arrays_.each_array(to, [&](const auto& array, auto* numbers, int count) {
+      const std::size_t size = sizeof(*numbers) * static_cast<std::size_t>(rves_) * static_cast<std::size_t>(count);
+      way_.copy_down(numbers, array.data(), size);
+      bytes += size;
+    });
+    return bytes;
+  }
+
+ private:
+  StateArrays<Backend> arrays_;
+  int rves_;
+  typename Backend::WayBeside way_;
 };
 
 }  // namespace voussoir::kernels::device

@@ -5,6 +5,8 @@
 ///
 /// A backend has
 ///   allocate(bytes), release(p), copy_up(to, from, bytes), copy_down(to, from, bytes)   the device's memory
+///   copy_committed(from, to)        copy_committed_state for all RVEs
+///   WayBeside                       its copy_down may run beside the other functions, in a thread of its own
 ///   follows_stresses                whether servo drives are compiled
 ///   levels, first_level(grains)     how many instances with ever more room there are, and the first that fits
 ///   room<Law, Drive>(level, grains) pairs for which a block of a level has room
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include "kernels/device/block_advance.hpp"
+#include "kernels/device/block_copy.hpp"
 #include "kernels/device/block_network.hpp"
 
 namespace voussoir::kernels::device {
@@ -32,6 +35,13 @@ struct HostBackend {
     if (bytes > 0) std::memcpy(to, from, bytes);
   }
   static void copy_down(void* to, const void* from, std::size_t bytes) { copy_up(to, from, bytes); }
+
+  static void copy_committed(const DeviceStates& from, const DeviceStates& to) {
+    for (int rve = 0; rve < from.rves; ++rve) copy_committed_state(SerialBlock{nullptr}, from, to, rve);
+  }
+  struct WayBeside {
+    static void copy_down(void* to, const void* from, std::size_t bytes) { HostBackend::copy_down(to, from, bytes); }
+  };
 
   [[nodiscard]] static int first_level(int) { return 0; }
   /// A list with a skin of usual size has 2 to 4 pairs for each grain; the last level has room for all pairs.

@@ -3,6 +3,7 @@
 /// (host_backend.hpp says what it must have)
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -63,18 +64,19 @@ class ResidentBatch final : public ResidentRves {
   using real = real_of<typename Law::Value>;
 
   explicit ResidentBatch(const RveSet& rves)
-      : batch_{rves.packings, rves.packing_of, {}, {}, {}, {}},
-        packings_(batch_),
-        states_(static_cast<int>(batch_.size()), packings_.grains(), rves.committed.contacts, rves.committed.history),
-        packing_of_(batch_.size()),
-        overflown_(batch_.size()),
-        candidate_count_(batch_.size()),
-        candidate_skin_(batch_.size()),
-        candidate_spent_(batch_.size()),
-        candidate_spending_(batch_.size()) {
+      : all_packings_(rves.packings),
+        packing_of_rve_(rves.packing_of),
+        packings_(all_packings_),
+        states_(static_cast<int>(size()), packings_.grains(), rves.committed.contacts, rves.committed.history),
+        packing_of_(size()),
+        overflown_(size()),
+        candidate_count_(size()),
+        candidate_skin_(size()),
+        candidate_spent_(size()),
+        candidate_spending_(size()) {
     if (rves.committed.history != history_size<Law>)
       throw std::invalid_argument("the batch holds the histories of another law");
-    packing_of_.write(batch_.packing_of);
+    packing_of_.write(packing_of_rve_);
     upload(rves.committed);
   }
 
@@ -82,6 +84,11 @@ class ResidentBatch final : public ResidentRves {
     states_.upload(from);
     forget_candidates();
   }
+  void copy_committed() override {
+    if (!copy_) copy_.emplace(states_.view());
+    copy_->take(states_.view());
+  }
+  std::size_t bring_copy(const HostStates& to) override { return copy_.value().bring(to); }
   void download(const HostStates& to, std::span<const int> rves, bool trial) override {
     states_.download(to, rves, trial);
   }
@@ -95,10 +102,10 @@ class ResidentBatch final : public ResidentRves {
     throw std::invalid_argument("the device follows given motions only: lanes control stresses");
   }
   DeviceWork commit(std::span<const int> kept) override {
-    DeviceWork work;
-    const std::vector<std::uint8_t> changes = states_.commit(kept, work);
+    const std::vector<std::uint8_t> changes = states_.commit(kept);  // flags of one byte: one array down, two up
     const std::size_t n = changes.size();
     std::vector<double> skin(n), spent(n), spending(n);
+    DeviceWork work{.bytes_up = 2 * n, .bytes_down = n};
     work.bytes_down += candidate_skin_.read(skin) + candidate_spent_.read(spent) + candidate_spending_.read(spending);
     for (std::size_t k = 0; k < n; ++k) {
       if (changes[k] == 0) continue;
@@ -110,17 +117,19 @@ class ResidentBatch final : public ResidentRves {
   }
   DeviceWork describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) override {
     const bool tallies = needs_tally(wanted);
-    if (tallies) contact_counts_.at_least(batch_.size() * static_cast<std::size_t>(packings_.grains()));
-    committed_sums_.at_least(batch_.size());
+    if (tallies) contact_counts_.at_least(size() * static_cast<std::size_t>(packings_.grains()));
+    committed_sums_.at_least(size());
     Backend::describe({packings_.exact(), states_.view(), packing_of_.data(), contact_counts_.data(),
                        committed_sums_.data(), network_thresholds(), needs_contact_sums(wanted), tallies});
     return {.bytes_down = committed_sums_.read(out)};
   }
 
  private:
-  RveBatch batch_;  ///< packings and numbers; its states are on the device
+  std::vector<Packing> all_packings_;
+  std::vector<int> packing_of_rve_;
   HeldPackings<Law, Backend> packings_;
   HeldStates<Backend> states_;
+  std::optional<StateCopy<Backend>> copy_;  ///< from the first time on that states come down
   double skin_ = -1, overlap_limit_ = -1;  ///< of the settings for which the packings are written
   DeviceArray<int, Backend> packing_of_;
   DeviceArray<std::uint8_t, Backend> overflown_;
@@ -133,22 +142,26 @@ class ResidentBatch final : public ResidentRves {
   CallArrays<StrainDrive, Backend> strain_;
   CallArrays<ServoControl, Backend> servo_;
 
+  [[nodiscard]] std::size_t size() const { return packing_of_rve_.size(); }
+  [[nodiscard]] const Packing& packing(std::size_t rve) const {
+    return all_packings_[static_cast<std::size_t>(packing_of_rve_[rve])];
+  }
   [[nodiscard]] auto& arrays_of(const StrainDrive*) { return strain_; }
   [[nodiscard]] auto& arrays_of(const ServoControl*) { return servo_; }
 
-  void forget_candidates() { candidate_skin_.write(std::vector<double>(batch_.size(), -1.0)); }
+  void forget_candidates() { candidate_skin_.write(std::vector<double>(size(), -1.0)); }
 
   void grow_candidates(int pairs) {
     const int wanted = candidates_per_pair * pairs;
     if (wanted <= candidate_capacity_) return;
     candidate_capacity_ = wanted;
-    candidate_key_ = DeviceArray<std::uint32_t, Backend>(batch_.size() * static_cast<std::size_t>(wanted));
+    candidate_key_ = DeviceArray<std::uint32_t, Backend>(size() * static_cast<std::size_t>(wanted));
     forget_candidates();
   }
 
   void write_packings(const EngineSettings& settings) {
     if (settings.skin == skin_ && settings.overlap_limit == overlap_limit_) return;
-    packings_.write(batch_, settings);
+    packings_.write(all_packings_, settings);
     forget_candidates();
     skin_ = settings.skin;
     overlap_limit_ = settings.overlap_limit;
@@ -161,7 +174,7 @@ class ResidentBatch final : public ResidentRves {
     std::vector<Drive> drives;
     for (const int rve : rves) {
       const auto k = static_cast<std::size_t>(rve);
-      drives.emplace_back(requests[k], packings_.scales(batch_.packing_of[k]), settings);
+      drives.emplace_back(requests[k], packings_.scales(packing_of_rve_[k]), settings);
     }
     to.drives.at_least(drives.size());
     to.order.at_least(rves.size());
@@ -229,7 +242,7 @@ class ResidentBatch final : public ResidentRves {
   [[nodiscard]] std::vector<int> take_answers(CallArrays<Drive, Backend>& arrays, std::span<RveReport> reports,
                                               const std::vector<int>& order, bool last, DeviceWork& work) {
     std::vector<RveReport> answers(order.size());
-    std::vector<std::uint8_t> overflown(batch_.size());
+    std::vector<std::uint8_t> overflown(size());
     work.bytes_down += arrays.reports.read(answers) + overflown_.read(overflown);
     std::vector<int> again;
     for (std::size_t q = 0; q < order.size(); ++q) {
@@ -239,7 +252,7 @@ class ResidentBatch final : public ResidentRves {
         continue;
       }
       reports[k] = answers[q];
-      work.particle_steps += static_cast<std::size_t>(batch_.packing(k).size()) *
+      work.particle_steps += static_cast<std::size_t>(packing(k).size()) *
                              static_cast<std::size_t>(std::max(reports[k].steps, 0));
     }
     return again;
@@ -250,8 +263,7 @@ class ResidentBatch final : public ResidentRves {
 /// that fewer instances are compiled.
 template <class Body>
 [[nodiscard]] auto choose_law(const RveSet& rves, Precision precision, const Body& body) {
-  const RveBatch batch{rves.packings, rves.packing_of, {}, {}, {}, {}};
-  const bool rolling = rolls(batch) || std::any_of(rves.packings.begin(), rves.packings.end(),
+  const bool rolling = rolls(rves.packings) || std::any_of(rves.packings.begin(), rves.packings.end(),
                                                    [](const Packing& p) { return !p.class_of.empty(); });
   return choose_precision(precision, [&]<class real>(Instance<real>) {
     using V = SingleLane<real>;

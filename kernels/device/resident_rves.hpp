@@ -59,6 +59,11 @@ class ResidentRves {
 
   /// Replaces all committed states.
   virtual void upload(const HostStates& from) = 0;
+  /// Copies the committed states within the device. Afterwards bring_copy() takes them to the host.
+  virtual void copy_committed() = 0;
+  /// Writes what was copied last to `to`. This function alone may run beside the other ones, in a thread of its own; it
+  /// must have ended before the next copy. Returns the bytes that it moved.
+  virtual std::size_t bring_copy(const HostStates& to) = 0;
   /// Copies the committed states of the RVEs `rves`, or their trial states, to the same places of `to`. The trial state
   /// of an RVE that failed or was not evaluated since the last commit is its committed one.
   virtual void download(const HostStates& to, std::span<const int> rves, bool trial) = 0;
@@ -67,7 +72,7 @@ class ResidentRves {
                              std::span<RveReport> reports, std::span<const int> rves) = 0;
   virtual DeviceWork advance(std::span<const ServoRequest> requests, const EngineSettings& settings,
                              std::span<RveReport> reports, std::span<const int> rves) = 0;
-  /// Makes the trial states the committed ones, but for those of the RVEs `kept`.
+  /// Makes the trial states the committed ones, but for those of the RVEs `kept`. Returns what crossed the bus.
   virtual DeviceWork commit(std::span<const int> kept) = 0;
   /// Sums over the committed states of all RVEs, as far as `wanted` needs them.
   virtual DeviceWork describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) = 0;

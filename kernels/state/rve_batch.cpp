@@ -2,13 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
-
-#include "kernels/state/mobility.hpp"
 
 namespace voussoir::kernels {
 
@@ -17,23 +13,6 @@ namespace {
 /// for overlaps.
 constexpr int contacts_per_grain = 4;
 }  // namespace
-
-double Packing::mean_diameter() const {
-  return 2.0 * std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(radii.size());
-}
-
-double Packing::largest_radius() const { return *std::max_element(radii.begin(), radii.end()); }
-
-double Packing::solid_area() const {
-  double sum = 0;
-  for (const double r : radii) sum += std::numbers::pi * r * r;
-  return sum;
-}
-
-double Packing::inertial_time(double pressure) const {
-  return kernels::inertial_time(mean_mobility<PlainEngineLaw>(*this, EngineSettings{}.overlap_limit), thickness,
-                                pressure);
-}
 
 RveStates::RveStates(std::string_view label, std::size_t n, int grains, int history) {
   const auto g = static_cast<std::size_t>(grains);
@@ -89,13 +68,6 @@ const char* name_of(TangentKind kind) {
   return "unknown";
 }
 
-bool rolls(const RveBatch& batch) {
-  return std::any_of(batch.packings.begin(), batch.packings.end(), [](const Packing& p) {
-    return std::any_of(p.materials.begin(), p.materials.end(),
-                       [](const GrainMaterial& m) { return m.rolling_stiffness > 0 && m.rolling_limit > 0; });
-  });
-}
-
 RveBatch make_batch(std::vector<Packing> packings, std::vector<int> packing_of, int history) {
   int grains = 0;
   for (const Packing& p : packings) {
@@ -142,7 +114,12 @@ void commit(RveBatch& batch, std::span<const int> kept) {
 }
 
 void bring_committed(const RveBatch& batch) {
-  if (batch.residence) batch.residence->bring(batch.committed);
+  const std::shared_future<void> arriving = begin_bringing_committed(batch);
+  if (arriving.valid()) arriving.get();
+}
+
+std::shared_future<void> begin_bringing_committed(const RveBatch& batch) {
+  return batch.residence ? batch.residence->begin_bringing(batch.committed) : std::shared_future<void>();
 }
 
 void bring_committed(const RveBatch& batch, std::size_t rve) {

@@ -7,7 +7,7 @@
 /// Gauss-Seidel preconditioner (I + L)(I + L^T) costs nothing beyond the product with K (Eisenstat 1981,
 /// static_tangent.hpp).
 
-#include <limits>
+#include <Kokkos_NumericTraits.hpp>
 
 #include "kernels/tangents/contact_springs.hpp"
 
@@ -43,7 +43,7 @@ VOUSSOIR_LANES_INLINE V inverse_or_zero(const V& x) {
 /// grain's other motions have it too, and it is left out.
 template <class V>
 KOKKOS_FORCEINLINE_FUNCTION V inverse_root(const V& pivot, const V& whole) {
-  constexpr real_of<V> resolution = 64 * std::numeric_limits<real_of<V>>::epsilon();
+  constexpr real_of<V> resolution = 64 * Kokkos::Experimental::epsilon_v<real_of<V>>;
   return Kokkos::Experimental::condition(V(resolution) * whole < pivot, V(1) / Kokkos::sqrt(pivot), V(0));
 }
 

@@ -137,7 +137,7 @@ template <class V>
 /// of a geometric series); at least the last loss.
 [[nodiscard]] KOKKOS_INLINE_FUNCTION double loss_to_come(double before, double last) {
   if (!(last > 0)) return last;  // NaN too
-  return before > last ? last * Kokkos::max(1.0, last / (before - last)) : std::numeric_limits<double>::infinity();
+  return before > last ? last * Kokkos::max(1.0, last / (before - last)) : Kokkos::Experimental::infinity_v<double>;
 }
 
 /// Freezes the solutions whose diagonal entry is off by less than the square of the tolerance, as its last changes let

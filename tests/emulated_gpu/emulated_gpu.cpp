@@ -29,7 +29,7 @@ class EmulatedDevice final : public Device {
 
 extern "C" {
 
-__attribute__((visibility("default"))) int voussoir_device_interface() {
+__attribute__((visibility("default"))) std::size_t voussoir_device_interface() {
   return voussoir::kernels::device::interface_number;
 }
 

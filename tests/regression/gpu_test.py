@@ -47,9 +47,12 @@ asked = fresh("asked")
 words = command("tunnel_quick", asked, [*SETTINGS, 'engine.backend="gpu"'])
 refused = subprocess.run(words, check=False, capture_output=True, text=True)
 check(refused.returncode != 0 and "no device is there" in refused.stderr, f"a missing device is not said: {refused.stderr}")
+by_lanes = [*SETTINGS, 'engine.backend="lanes"']
+unseen = fresh("unseen")
+run(command("tunnel_quick", unseen, by_lanes))
 ignored = fresh("ignored")
-run(with_environment(command("tunnel_quick", ignored, [*SETTINGS, 'engine.backend="lanes"']), **EMULATED))
-check_same(lanes, ignored)
+run(with_environment(command("tunnel_quick", ignored, by_lanes), **EMULATED))
+check_same(unseen, ignored)
 
 # On the device: the log says so, and the ground moves as with lanes.
 device = fresh("device")

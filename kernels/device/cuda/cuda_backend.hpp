@@ -8,8 +8,9 @@
 #include <array>
 
 #include "kernels/device/block_advance.hpp"
+#include "kernels/device/block_copy.hpp"
 #include "kernels/device/block_network.hpp"
-#include "kernels/device/cuda/cuda_errors.hpp"
+#include "kernels/device/cuda/pinned_way.hpp"
 
 namespace voussoir::kernels::device {
 
@@ -56,7 +57,16 @@ __global__ void __launch_bounds__(Threads) network_kernel(const __grid_constant_
   describe_block(CudaBlock<Threads>(), batch, static_cast<int>(blockIdx.x));
 }
 
+inline constexpr int copy_threads = 128;
+
+/// A block for each RVE. @tparam Threads is a parameter so that every file may have the kernel
+template <int Threads>
+__global__ void copy_kernel(const __grid_constant__ DeviceStates from, const __grid_constant__ DeviceStates to) {
+  copy_committed_state(CudaBlock<Threads>(), from, to, static_cast<int>(blockIdx.x));
+}
+
 struct CudaBackend {
+  using WayBeside = PinnedWay;
   static constexpr bool follows_stresses = false;  // few RVEs are made or tested under stresses, and lanes serve them
   static constexpr int levels = 6;  ///< three instances in registers, three with ever more room in memory
 
@@ -71,6 +81,11 @@ struct CudaBackend {
   }
   static void copy_down(void* to, const void* from, std::size_t bytes) {
     if (bytes > 0) check_cuda(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "a copy from the device failed");
+  }
+
+  static void copy_committed(const DeviceStates& from, const DeviceStates& to) {
+    copy_kernel<copy_threads><<<static_cast<unsigned>(from.rves), copy_threads>>>(from, to);
+    await_kernel();
   }
 
   [[nodiscard]] static int first_level(int grains) {
@@ -102,6 +117,12 @@ struct CudaBackend {
   }
 
  private:
+  /// Waits for the kernel launched last, and not for copies beside it.
+  static void await_kernel() {
+    check_cuda(cudaGetLastError(), "the kernel was not launched");
+    check_cuda(cudaStreamSynchronize(nullptr), "the kernel failed");
+  }
+
   /// The slow memory of all blocks of a launch; it is kept from launch to launch.
   [[nodiscard]] static char* slow_memory(std::size_t bytes) {
     static char* memory = nullptr;
@@ -137,8 +158,7 @@ struct CudaBackend {
       part.drives = batch.drives + first;
       part.reports = batch.reports + first;
       kernel<<<static_cast<unsigned>(count), Of::threads, sizes.fast_bytes>>>(part, settings, pairs, memory, slow);
-      check_cuda(cudaGetLastError(), "the kernel was not launched");
-      check_cuda(cudaDeviceSynchronize(), "the kernel failed");
+      await_kernel();
     }
   }
 };
