@@ -74,7 +74,8 @@ void describe_on_device(const RveBatch& batch, const MicrostructureRequest& want
 }  // namespace
 
 void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<CommittedSummary> out) {
-  if (batch.residence && batch.residence->is_ahead()) return describe_on_device(batch, wanted, out);
+  if (batch.residence && batch.residence->has_committed()) return describe_on_device(batch, wanted, out);
+  bring_committed(batch);  // they may still be on their way
   describe_on_host(batch, wanted, out);
 }
 

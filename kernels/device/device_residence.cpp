@@ -35,16 +35,20 @@ class DeviceResidence final : public Residence {
     return arriving_;
   }
   void bring_one(const RveStates& to, int rve) override {
-    if (arriving_.valid()) arriving_.get();
+    if (arriving_.valid()) {
+      if (!ahead_) return arriving_.get();
+      arriving_.wait();
+    }
     if (!ahead_) return;
     const HostStates states = plain(to);
     rves_->download(states, std::span(&rve, 1), false);
     work_.bytes_down += bytes_of_rve(states);
   }
   void describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) override {
-    if (!ahead_) throw std::logic_error("the host describes the states that it has");
+    if (outdated_) throw std::logic_error("a device cannot describe states that it does not have");
     work_ += rves_->describe(wanted, out);
   }
+  [[nodiscard]] bool has_committed() const override { return !outdated_; }
   void forget() override {
     outdated_ = true;
     ahead_ = false;
@@ -71,8 +75,8 @@ class DeviceResidence final : public Residence {
   Work advance_with(const RveBatch& batch, std::span<const Request> requests, const EngineSettings& settings,
                     std::span<RveReport> reports, std::span<const int> rves) {
     if (settings.precision != precision_) throw std::logic_error("a batch on a device keeps its precision");
+    if (outdated_ && arriving_.valid()) arriving_.get();
     if (outdated_) {
-      if (arriving_.valid()) arriving_.get();
       const HostStates states = plain(batch.committed);
       rves_->upload(states);
       work_.bytes_up += batch.size() * bytes_of_rve(states);

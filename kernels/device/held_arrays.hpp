@@ -222,12 +222,12 @@ class HeldStates {
   }
 
   /// Makes trial states committed ones. Returns whether the state of each RVE changed.
-  std::vector<std::uint8_t> commit(std::span<const int> kept, DeviceWork& work) {
+  std::vector<std::uint8_t> commit(std::span<const int> kept) {
     std::vector<std::uint8_t> changes = flags();
-    work.bytes_down += changes.size();
     for (const int rve : kept) changes[static_cast<std::size_t>(rve)] = 0;
     for (std::size_t k = 0; k < slots_.size(); ++k) slots_[k] ^= changes[k];
-    work.bytes_up += committed_slot_.write(slots_) + evaluated_.write(std::vector<std::uint8_t>(slots_.size(), 0));
+    committed_slot_.write(slots_);
+    evaluated_.write(std::vector<std::uint8_t>(slots_.size(), 0));
     return changes;
   }
 

@@ -102,10 +102,10 @@ class ResidentBatch final : public ResidentRves {
     throw std::invalid_argument("the device follows given motions only: lanes control stresses");
   }
   DeviceWork commit(std::span<const int> kept) override {
-    DeviceWork work;
-    const std::vector<std::uint8_t> changes = states_.commit(kept, work);
+    const std::vector<std::uint8_t> changes = states_.commit(kept);  // flags of one byte: one array down, two up
     const std::size_t n = changes.size();
     std::vector<double> skin(n), spent(n), spending(n);
+    DeviceWork work{.bytes_up = 2 * n, .bytes_down = n};
     work.bytes_down += candidate_skin_.read(skin) + candidate_spent_.read(spent) + candidate_spending_.read(spending);
     for (std::size_t k = 0; k < n; ++k) {
       if (changes[k] == 0) continue;

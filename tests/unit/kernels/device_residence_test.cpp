@@ -8,6 +8,7 @@
 #include <atomic>
 #include <stdexcept>
 
+#include "kernels/describe_committed.hpp"
 #include "tests/engine_support.hpp"
 
 namespace voussoir::kernels {
@@ -47,9 +48,10 @@ class ListedRves final : public device::ResidentRves {
     note("commit");
     return {.bytes_up = 1, .bytes_down = 2};
   }
-  device::DeviceWork describe(const MicrostructureRequest&, std::span<CommittedSums>) override {
+  device::DeviceWork describe(const MicrostructureRequest&, std::span<CommittedSums> out) override {
     note("describe");
-    return {};
+    out[0].cell[0] = out[0].cell[3] = mark;
+    return {.bytes_down = 5};
   }
 
  private:
@@ -135,6 +137,42 @@ TEST_F(DeviceResidence, TakesTheHostsStatesWhereTheyWereWrittenTo) {
   advance_once();
   advance_once();
   EXPECT_EQ(calls.names, "advance commit copy upload-newer advance advance ");
+}
+
+TEST_F(DeviceResidence, DescribesWhatItHasWhileStatesComeDown) {
+  std::vector<CommittedSummary> out(batch.size());
+  commit(batch);
+  const std::shared_future<void> arriving = begin_bringing_committed(batch);
+  describe_committed(batch, {}, out);  // nothing may be brought yet, and nobody waits for it
+  EXPECT_EQ(out[0].cell_area, mark * mark);
+  calls.may_bring.set_value();
+  arriving.get();
+  EXPECT_EQ(calls.names, "commit copy describe ");
+}
+
+TEST_F(DeviceResidence, LetsTheHostDescribeWhatTheHostHasWritten) {
+  calls.may_bring.set_value();
+  std::vector<CommittedSummary> out(batch.size());
+  commit(batch);
+  bring_committed(batch);
+  forget_candidates(batch);
+  describe_committed(batch, {}, out);
+  EXPECT_NE(out[0].cell_area, mark * mark);
+  advance_once();
+  describe_committed(batch, {}, out);
+  EXPECT_EQ(out[0].cell_area, mark * mark);
+  EXPECT_EQ(calls.names, "commit copy upload-newer advance describe ");
+}
+
+TEST_F(DeviceResidence, BringsOneStateWhereTheDeviceIsAhead) {
+  calls.may_bring.set_value();
+  bring_committed(batch, 0);
+  commit(batch);
+  bring_committed(batch, 0);
+  EXPECT_TRUE(batch.residence->is_ahead());
+  bring_committed(batch);
+  bring_committed(batch, 0);
+  EXPECT_EQ(calls.names, "commit download copy ");
 }
 
 TEST_F(DeviceResidence, CountsWhatCrossesTheBus) {
