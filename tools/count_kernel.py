@@ -303,7 +303,9 @@ def main():
     parser.add_argument("--precision", choices=("float", "double"), default="float")
     parser.add_argument("--plan", choices=tuple(GRAINS), default="Middle")
     parser.add_argument("--packing", type=Path, default=PACKING, help="a stored packing, or a file NAME_particles.csv")
-    parser.add_argument("--check", action="store_true", help="compare the plan Middle in float with what was written down")
+    parser.add_argument(
+        "--check", action="store_true", help="compare the plan Middle in float with what was written down"
+    )
     args = parser.parse_args()
     if args.check:
         args.precision, args.plan = "float", "Middle"

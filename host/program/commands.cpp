@@ -139,7 +139,8 @@ Outcome command_info(const std::filesystem::path& result_file) {
         "device: {}\n"
         "command: {}\nfingerprint: {}\n",
         origin.case_kind, origin.version, origin.git_hash, origin.kokkos, origin.ranks, origin.threads, origin.date,
-        origin.build_compiler, origin.build_type, origin.processor, origin.lanes, origin.device, origin.command, origin.fingerprint);
+        origin.build_compiler, origin.build_type, origin.processor, origin.lanes, origin.device, origin.command,
+        origin.fingerprint);
     const io::MeshData mesh = io::read_mesh(result_file);
     answer += fmt::format("{} nodes, {} elements\n", mesh.nodes(), mesh.elements()) +
               table_of(io::read_increments(result_file));

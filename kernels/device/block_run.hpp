@@ -15,10 +15,10 @@
 
 namespace voussoir::kernels::device {
 
-inline constexpr int threads_of_group = 16;     ///< whose numbers one thread sums up
-inline constexpr int most_sums = 6;             ///< numbers that `reduce` joins at once
-inline constexpr int candidates_per_pair = 2;   ///< room for candidates, by room for pairs
-inline constexpr double candidate_skin = 1.5;   ///< of the candidates, over that of the list
+inline constexpr int threads_of_group = 16;    ///< whose numbers one thread sums up
+inline constexpr int most_sums = 6;            ///< numbers that `reduce` joins at once
+inline constexpr int candidates_per_pair = 2;  ///< room for candidates, by room for pairs
+inline constexpr double candidate_skin = 1.5;  ///< of the candidates, over that of the list
 
 /// The data of one thread that the others read.
 template <class real, class Drive>
@@ -89,13 +89,13 @@ struct BlockMemory {
   Index* entries;       ///< 2 p, or 2 p + 1 where the grain is the second one of pair p; ascending for each grain
   int* counts;          ///< scratch of sums_before
   // In the device's memory.
-  std::uint32_t* kept_key;        ///< of a rebase, by pair
-  real* kept_history;             ///< (pair, k)
-  SpringLanes<V>* springs;        ///< of a tangent, by pair
-  GrainAnswer<real>* answers;     ///< of a tangent, (unit strain, grain)
-  HeldPair<Law>* pairs;           ///< with the plan InMemory
-  real* pair_numbers;             ///< with another one, outside the loop of steps: HeldPair as (number, pair)
-  SolverSlot<V>* solver;          ///< with the plan InMemory
+  std::uint32_t* kept_key;     ///< of a rebase, by pair
+  real* kept_history;          ///< (pair, k)
+  SpringLanes<V>* springs;     ///< of a tangent, by pair
+  GrainAnswer<real>* answers;  ///< of a tangent, (unit strain, grain)
+  HeldPair<Law>* pairs;        ///< with the plan InMemory
+  real* pair_numbers;          ///< with another one, outside the loop of steps: HeldPair as (number, pair)
+  SolverSlot<V>* solver;       ///< with the plan InMemory
   // How much of each.
   std::size_t fast_bytes, slow_bytes;
 
@@ -160,8 +160,8 @@ struct BlockRun {
   const EngineSettings& settings;
   int number;  ///< of the block in its launch
   int rve, packing, grains;
-  int capacity;  ///< pairs for which the block has room
-  int listed;    ///< pairs in the list
+  int capacity;                          ///< pairs for which the block has room
+  int listed;                            ///< pairs in the list
   GrainMaterialOf<real> first_material;  ///< of all grains where there are no classes
   Memory at;
 
@@ -246,8 +246,8 @@ template <class Run>
 }
 /// The same with the numbers in fast memory: the pair as the lanes have it.
 template <class Run>
-[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PairLanes<typename Run::Law> pair_of(const Run& run, int p,
-                                                                             const HeldPair<typename Run::Law>& held) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PairLanes<typename Run::Law> pair_of(
+    const Run& run, int p, const HeldPair<typename Run::Law>& held) {
   return {held.branch_x, held.branch_y, typename Run::V(run.at.gap[p]), held.history};
 }
 template <class Run>

@@ -6,4 +6,6 @@ import sys
 
 from program import ROOT
 
-raise SystemExit(subprocess.run([sys.executable, str(ROOT / "tools/count_kernel.py"), "--check"], check=False).returncode)
+raise SystemExit(
+    subprocess.run([sys.executable, str(ROOT / "tools/count_kernel.py"), "--check"], check=False).returncode
+)

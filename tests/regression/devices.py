@@ -28,7 +28,9 @@ def log_of(folder):
 
 def far_from(lanes, device, field, increment=None):
     """The largest difference of a field of two runs, over the largest value: at their end, or at an increment."""
-    files = [last(folder) if increment is None else folder / f"increments/{increment:04d}.h5" for folder in (lanes, device)]
+    files = [
+        last(folder) if increment is None else folder / f"increments/{increment:04d}.h5" for folder in (lanes, device)
+    ]
     with h5py.File(files[0]) as a, h5py.File(files[1]) as b:
         expected, found = a[field][()], b[field][()]
     return np.abs(found - expected).max() / np.abs(expected).max()

@@ -1,11 +1,9 @@
 """Checkpoints between device and lanes: whoever goes on, goes on from the states that were written."""
 
-import os
-import shutil
 import signal
 
 import h5py
-from devices import EMULATED, far_from, log_of, on_device
+from devices import far_from, log_of, on_device
 from program import check, check_same, command, fresh, run, start_and_signal
 
 SETTINGS = [

@@ -19,7 +19,9 @@ SETTINGS = [
 
 
 def devices(**environment):
-    out = subprocess.run([PROGRAM, "info", "--devices"], check=False, capture_output=True, text=True, env=os.environ | environment)
+    out = subprocess.run(
+        [PROGRAM, "info", "--devices"], check=False, capture_output=True, text=True, env=os.environ | environment
+    )
     check(out.returncode == 0, f"info --devices ended with {out.returncode}: {out.stderr}")
     return out.stdout
 
@@ -32,7 +34,9 @@ check("device 1: emulated device 1" in two, "the second device is not named")
 none = devices(**EMULATED, VOUSSOIR_EMULATED_GPUS="0")
 check("devices: none: the driver knows no device" in none, f"a library without devices says {none}")
 wrong = devices(VOUSSOIR_GPU_LIBRARY=PROGRAM)
-check("devices: none: the library cannot be opened" in wrong or "another version" in wrong, f"a wrong file says {wrong}")
+check(
+    "devices: none: the library cannot be opened" in wrong or "another version" in wrong, f"a wrong file says {wrong}"
+)
 
 # Without a device nothing changes; whoever asks for one is told that there is none.
 lanes = fresh("lanes")
@@ -43,7 +47,9 @@ check_same(lanes, deviceless)
 asked = fresh("asked")
 words = command("column", asked, [*SETTINGS, 'engine.backend="gpu"'])
 refused = subprocess.run(words, check=False, capture_output=True, text=True)
-check(refused.returncode == 2 and "none can be used" in refused.stderr, f"a missing device is not said: {refused.stderr}")
+check(
+    refused.returncode == 2 and "none can be used" in refused.stderr, f"a missing device is not said: {refused.stderr}"
+)
 check(not asked.exists(), "a case that was refused has left a folder")
 by_lanes, ignored = [*SETTINGS, 'engine.backend="lanes"'], fresh("ignored")
 run(command("column", asked, by_lanes))
@@ -65,8 +71,17 @@ check(0 < off < 0.05, "displacements on the device are not those of lanes within
 
 # In double the two differ by rounding alone, and so do the contact networks that the device describes by itself. A count
 # may change where a force or an overlap is that near to its threshold.
-NETWORK = ["fabric_anisotropy", "fabric_direction", "mechanical_coordination", "strong_coordination_1",
-           "strong_coordination_2", "strong_coordination_2_5", "void_ratio", "grain_rotation", "coordination"]
+NETWORK = [
+    "fabric_anisotropy",
+    "fabric_direction",
+    "mechanical_coordination",
+    "strong_coordination_1",
+    "strong_coordination_2",
+    "strong_coordination_2_5",
+    "void_ratio",
+    "grain_rotation",
+    "coordination",
+]
 EXACT = [*SETTINGS, "engine.precision=double", 'output.microstructure=["fabric", "coordination", "strong_networks"]']
 lanes_in_double, device_in_double = fresh("lanes_in_double"), fresh("device_in_double")
 run(command("column", lanes_in_double, EXACT))

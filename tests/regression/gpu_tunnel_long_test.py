@@ -1,10 +1,10 @@
 """A tunnel of grains from gravity to a volume loss of 1 % on the device that is the host: the ground settles as with
 lanes, within what draws of the packing move it by."""
 
+import h5py
 import numpy as np
 from devices import last, log_of, on_device
 from program import SMALL_TUNNEL, check, command, fresh, run, table
-import h5py
 
 DRAWS = (1, 2, 3, 4)
 SETTINGS = [
@@ -36,7 +36,12 @@ with h5py.File(last(device)) as file:
     points = file["gauss/stress"].shape[0] * 4
 check(points >= 100, f"there are {points} points only")
 found = settlement(device)
-print(f"{points} points of 100 grains: settlement {found:.4e} m on the device, {lanes[0]:.4e} m by lanes; draws "
-      f"{np.mean(lanes):.4e} m with a scatter of {scatter:.1e} m")
-check(abs(found - lanes[0]) < scatter, f"{found} m on the device instead of {lanes[0]} m: the scatter of draws is {scatter} m")
+print(
+    f"{points} points of 100 grains: settlement {found:.4e} m on the device, {lanes[0]:.4e} m by lanes; draws "
+    f"{np.mean(lanes):.4e} m with a scatter of {scatter:.1e} m"
+)
+check(
+    abs(found - lanes[0]) < scatter,
+    f"{found} m on the device instead of {lanes[0]} m: the scatter of draws is {scatter} m",
+)
 check(abs(found - np.mean(lanes)) < 3 * scatter, f"{found} m is not one of the draws {lanes}")

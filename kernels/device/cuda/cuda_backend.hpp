@@ -33,15 +33,16 @@ struct CudaPlan {
   static constexpr int pairs = Threads * PairSlots, grains = Threads * GrainSlots;
   using Plan = BlockPlan<PairSlots, GrainSlots>;
 };
-using SmallPlan = CudaPlan<128, 4, 6, 3>;    ///< up to 384 grains
-using MiddlePlan = CudaPlan<256, 2, 7, 3>;   ///< up to 768
-using LargePlan = CudaPlan<512, 1, 7, 3>;    ///< up to 1536
-using MemoryPlan = CudaPlan<256, 2, 0, 0>;   ///< any number, in the device's memory
+using SmallPlan = CudaPlan<128, 4, 6, 3>;   ///< up to 384 grains
+using MiddlePlan = CudaPlan<256, 2, 7, 3>;  ///< up to 768
+using LargePlan = CudaPlan<512, 1, 7, 3>;   ///< up to 1536
+using MemoryPlan = CudaPlan<256, 2, 0, 0>;  ///< any number, in the device's memory
 
 template <class Law, class Drive, class Of, bool classes>
 __global__ void __launch_bounds__(Of::threads, Of::blocks)
     advance_kernel(const __grid_constant__ BlockBatch<real_of<typename Law::Value>, Drive> batch,
-                   const __grid_constant__ EngineSettings settings, const int pairs, char* const slow, const std::size_t slow_bytes) {
+                   const __grid_constant__ EngineSettings settings, const int pairs, char* const slow,
+                   const std::size_t slow_bytes) {
   const int number = static_cast<int>(blockIdx.x);
   // With constant room, the places of all arrays in fast memory are constants of the machine code.
   constexpr bool in_registers = Of::Plan::in_registers;
@@ -142,9 +143,9 @@ struct CudaBackend {
     const int grains = Of::Plan::in_registers ? Of::grains : batch.packings.stride;
     const BlockMemory<Law, Drive, typename Of::Plan> sizes(no_memory(), no_memory(), grains, pairs, Of::threads);
     const auto kernel = advance_kernel<Law, Drive, Of, classes>;
-    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                    static_cast<int>(sizes.fast_bytes)),
-               "the device grants a block too little fast memory");
+    check_cuda(
+        cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(sizes.fast_bytes)),
+        "the device grants a block too little fast memory");
     const std::size_t slow = (sizes.slow_bytes + 255) / 256 * 256;
     // Blocks whose memory would exceed a share of the device's come one after another.
     constexpr std::size_t most = std::size_t(8) << 30;

@@ -22,7 +22,8 @@ void expect_room() {
       for (const int threads : {1, 16, 31, 1024}) {
         SCOPED_TRACE(testing::Message() << grains << " grains, " << pairs << " pairs, " << threads << " threads");
         const Memory<real> at(device::no_memory(), device::no_memory(), grains, pairs, threads);
-        const auto room = static_cast<std::size_t>(reinterpret_cast<char*>(at.row) - reinterpret_cast<char*>(at.action));
+        const auto room = static_cast<std::size_t>(reinterpret_cast<char*>(at.row) -
+                                                   reinterpret_cast<char*>(at.action));
         const int groups = (threads + 15) / 16;
         EXPECT_GE(room, sizeof(double) * static_cast<std::size_t>(6 * (threads + groups))) << "sums";
         EXPECT_GE(room, sizeof(int) * static_cast<std::size_t>(4 * grains + 1)) << "bins";
