@@ -9,6 +9,12 @@ namespace voussoir::fem {
 
 using Quad = std::array<int, 4>;  ///< corners, counter-clockwise
 
+/// A mesh of four-node quadrilaterals, as a generator makes it.
+struct QuadMesh {
+  Coordinates corners;
+  std::vector<Quad> quads;
+};
+
 /// The place of a boundary edge from a to b (soil on the left): the name of its boundary, and its place in the chain
 /// (any number that grows along the chain).
 struct BoundaryPlace {

@@ -1,5 +1,5 @@
 #pragma once
-/// The contact networks of all committed states of a batch.
+/// What result files tell of all committed states of a batch, and the states themselves do not say at once.
 
 #include <span>
 
@@ -8,11 +8,15 @@
 
 namespace voussoir::kernels {
 
-/// Mean over the grains of a committed state, counter-clockwise [rad].
-[[nodiscard]] double mean_rotation(const RveBatch& batch, std::size_t rve);
+/// One committed state.
+struct CommittedSummary {
+  double cell_area = 0;    ///< [m^2]
+  Microstructure network;  ///< mean rotation and coordination, and what else was asked for
+};
 
-/// Describes the contact network of every committed state of a batch, with the normal forces that the contact law
-/// gives. `out` has batch.size() entries. kernels/README.md, "Microstructure", has the cost.
-void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<Microstructure> out);
+/// Describes every committed state of a batch, with the normal forces that the contact law gives. Where a device has
+/// the states, the device describes them, and they stay there. `out` has batch.size() entries.
+/// kernels/README.md, "Microstructure", has the cost.
+void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<CommittedSummary> out);
 
 }  // namespace voussoir::kernels

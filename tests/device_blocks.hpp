@@ -22,9 +22,27 @@ struct Blocks {
   int first_pairs = 0;  ///< of `in_memory`: pairs for which the first level has room; 0: as many as usual
 };
 
-/// Holds a batch. The number of threads and the room are those of the last call of this function.
-[[nodiscard]] std::unique_ptr<device::ResidentRves> hold(const RveBatch& batch, Precision precision,
+/// Holds RVEs. The number of threads and the room are those of the last call of this function.
+[[nodiscard]] std::unique_ptr<device::ResidentRves> hold(const device::RveSet& rves, Precision precision,
                                                          const Blocks& blocks);
+[[nodiscard]] inline std::unique_ptr<device::ResidentRves> hold(const RveBatch& batch, Precision precision,
+                                                                const Blocks& blocks) {
+  return hold(device::plain(batch), precision, blocks);
+}
+
+/// A device of such blocks.
+class BlockDevice final : public device::Device {
+ public:
+  explicit BlockDevice(const Blocks& blocks) : blocks_(blocks) {}
+  [[nodiscard]] std::string name() const override { return "blocks on the host"; }
+  [[nodiscard]] std::size_t memory_bytes() const override { return std::size_t(1) << 33; }
+  [[nodiscard]] std::unique_ptr<device::ResidentRves> hold(const device::RveSet& rves, Precision precision) override {
+    return kernels::hold(rves, precision, blocks_);
+  }
+
+ private:
+  Blocks blocks_;
+};
 
 [[nodiscard]] inline std::string name_of(const Blocks& blocks) {
   const char* const kinds[] = {"serial", "in memory", "in registers"};

@@ -153,7 +153,30 @@ struct ThreadBackend {
     launch_with<Law, Drive, InMemory, classes>(batch, settings, blocks, pairs);
   }
 
+  static void describe(const NetworkBatch& batch) {
+    const NetworkMemory sizes(no_memory(), threads);
+    for (int rve = 0; rve < batch.states.rves; ++rve) {
+      char* const fast = static_cast<char*>(allocate(sizes.bytes));
+      on_threads(fast, [&](const ThreadBlock& block) { describe_block(block, batch, rve); });
+      release(fast);
+    }
+  }
+
  private:
+  /// Calls body(block) by all threads of one block.
+  template <class Body>
+  static void on_threads(char* fast, const Body& body) {
+    ThreadBarrier barrier(threads);
+    std::vector<std::thread> all;
+    for (int t = 0; t < threads; ++t) {
+      all.emplace_back([&, t] {
+        int turn = 0;
+        body(ThreadBlock(barrier, turn, t, threads, fast));
+      });
+    }
+    for (std::thread& t : all) t.join();
+  }
+
   template <class Law, class Drive, class OwnPlan, bool classes>
   static void launch_with(const BlockBatch<real_of<typename Law::Value>, Drive>& batch, const EngineSettings& settings,
                           int blocks, int pairs) {
@@ -164,16 +187,9 @@ struct ThreadBackend {
     for (int number = 0; number < blocks; ++number) {
       char *const fast = static_cast<char*>(allocate(sizes.fast_bytes)), *const slow = static_cast<char*>(
                                                                              allocate(sizes.slow_bytes));
-      ThreadBarrier barrier(threads);
-      std::vector<std::thread> all;
-      for (int t = 0; t < threads; ++t) {
-        all.emplace_back([&, t] {
-          int turn = 0;
-          advance_block<Run>(
-              {ThreadBlock(barrier, turn, t, threads, fast), &batch, &settings, slow, number, grains, pairs});
-        });
-      }
-      for (std::thread& t : all) t.join();
+      on_threads(fast, [&](const ThreadBlock& block) {
+        advance_block<Run>({block, &batch, &settings, slow, number, grains, pairs});
+      });
       release(fast);
       release(slow);
     }

@@ -72,7 +72,7 @@ LIBRARIES = {
     "Google Benchmark": r"benchmark/.*",
     "CUDA": r"cuda\w*\.h",
     "intrinsics": r"(immintrin|cpuid)\.h",
-    "POSIX": r"(sys/\w+|unistd|fcntl|dlfcn|fnmatch|poll|signal|spawn|termios|malloc)\.h",
+    "POSIX": r"(sys/\w+|unistd|fcntl|dlfcn|fnmatch|poll|signal|spawn|termios|malloc|pthread)\.h",
     "standard": r"[a-z_0-9]+",
 }
 

@@ -112,6 +112,9 @@ struct GroundCase {
   double mesh_size_opening = 0.6;  ///< element size at the opening [m]
   double mesh_size_far = 4.0;      ///< element size at the far boundary [m]
 
+  /// A file of `voussoir mesh`, which was made for a ground of these sizes; empty: Gmsh makes the mesh.
+  std::filesystem::path mesh_file;
+
   [[nodiscard]] double cover() const { return cover_ratio * diameter; }                   ///< C [m]
   [[nodiscard]] double axis_height() const { return height - cover() - 0.5 * diameter; }  ///< y of the axis [m]
   [[nodiscard]] double invert_height() const { return axis_height() - 0.5 * diameter; }   ///< y of the invert [m]

@@ -12,10 +12,11 @@
 
 namespace voussoir::host {
 
-/// The keys and tables that change no number of a result and may differ where a run is resumed: a preset acts only
-/// through the values that it gives to other keys.
-inline const std::array<std::string, 5> keys_without_results{"title", "output", "packing.folder", "engine.preset",
-                                                             "engine.isa"};
+/// The keys and tables that change no number of a result and may differ where a run is resumed. A preset acts only
+/// through the values that it gives to other keys. A stored mesh is the one that would be generated, and a run that is
+/// resumed compares its mesh with that of its start.
+inline const std::array<std::string, 6> keys_without_results{"title",         "output",     "packing.folder",
+                                                             "engine.preset", "engine.isa", "ground.mesh_file"};
 
 /// Reads, overrides (`table.key=value`) and validates a case. Throws io::InputError (file, line, key) where
 /// the input is wrong: unknown keys, wrong units, values outside their limits, values that do not fit together.

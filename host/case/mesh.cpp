@@ -1,8 +1,10 @@
 #include "host/case/mesh.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "host/case/engine.hpp"
 #include "host/case/keys.hpp"
@@ -44,6 +46,9 @@ GroundCase read_ground(const io::Table& table, bool with_tunnel) {
   if (ground.mesh_size_far < ground.mesh_size_opening) {
     throw table.error("mesh_size_far", "is smaller than mesh_size_opening");
   }
+  const std::vector<std::filesystem::path> files = table.optional_paths("mesh_file");
+  if (files.size() > 1) throw table.error("mesh_file", "names several files, but there is one mesh");
+  if (!files.empty()) ground.mesh_file = files.front();
   return ground;
 }
 

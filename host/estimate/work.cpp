@@ -9,7 +9,7 @@
 #include "host/estimate/storage.hpp"
 #include "host/packing/packings.hpp"
 #include "host/stages/ground_loads.hpp"
-#include "host/stages/tunnel.hpp"
+#include "host/stages/tunnel_mesh.hpp"
 
 namespace voussoir::host {
 namespace {

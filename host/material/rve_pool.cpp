@@ -13,7 +13,6 @@
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
 #include "kernels/describe_committed.hpp"
-#include "kernels/device/device_residence.hpp"
 #include "kernels/state/committed_contacts.hpp"
 #include "kernels/state/mobility.hpp"
 
@@ -193,7 +192,6 @@ void RvePool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> t
 }
 
 std::vector<fem::PointField> RvePool::fields() const {
-  kernels::bring_committed(batch_);
   std::vector<fem::PointField> out;
   const auto add = [&](const ResultField& row, auto&& value) {
     fem::PointField field{row.name, row.unit, row.components, std::vector<double>(size())};
@@ -204,11 +202,10 @@ std::vector<fem::PointField> RvePool::fields() const {
     out.push_back(std::move(field));
   };
   const auto& reports = committed_reports_;
-  std::vector<kernels::Microstructure> networks(microstructure_.any() ? size() : 0);
-  if (!networks.empty()) kernels::describe_committed(batch_, microstructure_, networks);
-  add(result_field("void_ratio"), [&](std::size_t k) { return void_ratio_of(k); });
-  add(result_field("grain_rotation"),
-      [&](std::size_t k) { return networks.empty() ? kernels::mean_rotation(batch_, k) : networks[k].grain_rotation; });
+  std::vector<kernels::CommittedSummary> states(size());
+  kernels::describe_committed(batch_, microstructure_, states);
+  add(result_field("void_ratio"), [&](std::size_t k) { return void_ratio_at(k, states[k].cell_area); });
+  add(result_field("grain_rotation"), [&](std::size_t k) { return states[k].network.grain_rotation; });
   add(result_field("coordination"),
       [&](std::size_t k) { return 2.0 * reports[k].contacts / batch_.packing(k).size(); });
   add(result_field("rve_status"), [&](std::size_t k) { return static_cast<double>(reports[k].status); });
@@ -222,23 +219,26 @@ std::vector<fem::PointField> RvePool::fields() const {
     add(result_field("expected_error"),
         [&](std::size_t k) { return choose_inertial_number(engine_.accuracy, inertial_time_of(k)).error; });
   }
-  if (networks.empty()) return out;
   for (const ResultField& row : result_field_table) {
     if (row.request == nullptr || !is_asked_for(row, microstructure_)) continue;
-    add(row, [&](std::size_t k) { return row.of_network(networks[k]); });
+    add(row, [&](std::size_t k) { return row.of_network(states[k].network); });
   }
   return out;
 }
 
+/// @param cell_area [m^2]
+double RvePool::void_ratio_at(std::size_t rve, double cell_area) const {
+  return void_ratio(cell_area, solid_areas_[static_cast<std::size_t>(batch_.packing_of[rve])]);
+}
+
 double RvePool::void_ratio_of(std::size_t rve) const {
-  kernels::bring_committed(batch_);
+  kernels::bring_committed(batch_, rve);
   const kernels::RveStates& s = batch_.committed;
-  return void_ratio(s.cell(rve, 0) * s.cell(rve, 3) - s.cell(rve, 1) * s.cell(rve, 2),
-                    solid_areas_[static_cast<std::size_t>(batch_.packing_of[rve])]);
+  return void_ratio_at(rve, s.cell(rve, 0) * s.cell(rve, 3) - s.cell(rve, 1) * s.cell(rve, 2));
 }
 
 PackedRve RvePool::packed(std::size_t rve) const {
-  kernels::bring_committed(batch_);
+  kernels::bring_committed(batch_, rve);
   const kernels::RveReport& report = deferral_.on() ? deferral_.committed(rve).grains : committed_reports_[rve];
   PackedRve out;
   out.packing = batch_.packing(rve);

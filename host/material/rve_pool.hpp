@@ -11,6 +11,7 @@
 #include "host/material/state_records.hpp"
 #include "host/packing/variety.hpp"
 #include "kernels/advance_rves.hpp"
+#include "kernels/device/device_residence.hpp"
 
 namespace voussoir::host {
 
@@ -60,6 +61,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   }  ///< least pressure that the reports' ratios are relative to [Pa]
   /// Says on which device the RVEs reside, or why they do not; empty where there is none to speak of.
   [[nodiscard]] std::string device_sentence() const { return sentence_of(device_); }
+  [[nodiscard]] kernels::device::DeviceWork device_work() const { return kernels::device::device_work(batch_); }
   [[nodiscard]] std::uint64_t identity() const;
   [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;  ///< of `n` RVEs
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
@@ -86,6 +88,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   void reside();
   void start();
   [[nodiscard]] double inertial_time_of(std::size_t rve) const;
+  [[nodiscard]] double void_ratio_at(std::size_t rve, double cell_area) const;
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
   void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);
   kernels::Work advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings);

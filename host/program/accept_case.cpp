@@ -44,23 +44,6 @@ void check_packings(const Case& input) {
   }
 }
 
-/// Refuses a ground of so many elements that its mesh alone has no room, before the mesh is made, which would take
-/// minutes or hours. No mesh has fewer elements than half the squares of the size `mesh_size_far` that cover the
-/// ground; the study's meshes have seven times as many as these squares, since they are finer at the opening.
-void refuse_endless_mesh(const Case& input) {
-  if (input.kind != CaseKind::tunnel) return;
-  const GroundCase& ground = input.ground;
-  const double squares = ground.width * ground.height / (ground.mesh_size_far * ground.mesh_size_far);
-  const double needed = mesh_memory(4 * 0.5 * squares), there = memory_limit();
-  if (needed <= there) return;
-  throw io::InputError(
-      place_of(input, "ground.mesh_size_far"), "ground.mesh_size_far",
-      fmt::format("{:.4g} m on a ground of {:.4g} m x {:.4g} m make a mesh of over {:.2g} Gauss points "
-                  "and {} of memory, but this machine allows {}",
-                  ground.mesh_size_far, ground.width, ground.height, 2 * squares, bytes_text(needed),
-                  bytes_text(there)));
-}
-
 /// Refuses more packings than there are points to hold them.
 void refuse_idle_packings(const Case& input, const CaseSize& size) {
   const auto variety = static_cast<std::size_t>(input.packing.variety);
@@ -70,14 +53,16 @@ void refuse_idle_packings(const Case& input, const CaseSize& size) {
       fmt::format("asks for {} packings, but the mesh has only {} points to hold them", variety, size.points));
 }
 
-/// The size of the case. What the mesh generator refuses is a fault of the ground's lengths.
+/// The size of the case. What the mesh generator refuses is a fault of the ground's lengths, or of the file that holds
+/// the mesh.
 CaseSize checked_size(const Case& input) {
+  const char* key = input.ground.mesh_file.empty() ? "ground" : "ground.mesh_file";
   try {
     return case_size(input);
   } catch (const std::invalid_argument& fault) {
-    throw io::InputError(place_of(input, "ground"), "ground", fault.what());
+    throw io::InputError(place_of(input, key), key, fault.what());
   } catch (const std::runtime_error& fault) {
-    throw io::InputError(place_of(input, "ground"), "ground", fault.what());
+    throw io::InputError(place_of(input, key), key, fault.what());
   }
 }
 
@@ -96,6 +81,20 @@ void refuse_missing_device(const Case& input) {
 std::string place_of(const Case& input, const std::string& key) {
   const auto found = input.places.find(key);
   return found != input.places.end() && !found->second.empty() ? found->second : input.name;
+}
+
+void refuse_endless_mesh(const Case& input) {
+  if (input.kind != CaseKind::tunnel || !input.ground.mesh_file.empty()) return;
+  const GroundCase& ground = input.ground;
+  const double squares = ground.width * ground.height / (ground.mesh_size_far * ground.mesh_size_far);
+  const double needed = mesh_memory(4 * 0.5 * squares), there = memory_limit();
+  if (needed <= there) return;
+  throw io::InputError(
+      place_of(input, "ground.mesh_size_far"), "ground.mesh_size_far",
+      fmt::format("{:.4g} m on a ground of {:.4g} m x {:.4g} m make a mesh of over {:.2g} Gauss points "
+                  "and {} of memory, but this machine allows {}",
+                  ground.mesh_size_far, ground.width, ground.height, 2 * squares, bytes_text(needed),
+                  bytes_text(there)));
 }
 
 AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

@@ -24,6 +24,11 @@ struct AcceptedCase {
 /// The place of a key. A key that the user did not write stands where its table does, or is said with the title.
 [[nodiscard]] std::string place_of(const Case& input, const std::string& key);
 
+/// Refuses a ground of so many elements that its mesh alone has no room, before the mesh is made, which would take
+/// minutes or hours. No mesh has fewer elements than half the squares of the size `mesh_size_far` that cover the
+/// ground; the study's meshes have seven times as many as these squares, since they are finer at the opening.
+void refuse_endless_mesh(const Case& input);
+
 /// Throws io::InputError where a run on so many ranks takes more memory than this machine allows.
 void refuse_too_large(const Case& input, const CaseSize& size, int ranks);
 

@@ -105,6 +105,17 @@ void describe_ensemble(CLI::App& app, Arguments& a, const std::string& command_t
   });
 }
 
+void describe_mesh(CLI::App& app, Arguments& a, Outcome& outcome) {
+  CLI::App* mesh = app.add_subcommand("mesh", "generate the mesh of a tunnel and store it for ground.mesh_file");
+  mesh->add_option("case", a.file, "case file (TOML)")->required();
+  mesh->add_option("-o,--output", a.output, "file of the mesh")->required()->check([](const std::string& name) {
+    return name.empty() ? "must name a file, is empty" : "";
+  });
+  mesh->add_flag("--replace", a.replace, "overwrite a file that is there");
+  add_overrides(*mesh, a);
+  mesh->callback([&a, &outcome] { outcome = command_mesh(a.file, a.overrides, a.output, a.replace); });
+}
+
 /// Describes the commands with their options; `outcome` receives that of the command that was run.
 void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outcome& outcome) {
   app.require_subcommand(1);
@@ -139,6 +150,7 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
   sweep->callback([&] { outcome = command_sweep(a.file, {a.output, process_options(a)}); });
 
   describe_ensemble(app, a, command_text, outcome);
+  describe_mesh(app, a, outcome);
 
   CLI::App* keys = app.add_subcommand("keys", "print all keys of a kind of case: type, default, limits");
   keys->add_option("kind", a.kind, "kind of the case")->required();

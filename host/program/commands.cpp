@@ -18,8 +18,10 @@
 #include "host/program/accept_case.hpp"
 #include "host/program/run_case.hpp"
 #include "host/ranks/session.hpp"
+#include "host/stages/tunnel_mesh.hpp"
 #include "io/case_file.hpp"
 #include "io/input_error.hpp"
+#include "io/mesh_file.hpp"
 #include "io/result_file.hpp"
 #include "io/text_file.hpp"
 #include "kernels/isa/choose_lanes.hpp"
@@ -99,6 +101,24 @@ Outcome command_check(const std::filesystem::path& case_file, const std::vector<
     answer += "# " + draw_sentence(input.packing, input.volume_loss.total) + "\n";
   for (const std::string& remark : input.remarks) answer += "# warning: " + remark + "\n";
   return print_answer(answer);
+}
+
+Outcome command_mesh(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
+                     const std::filesystem::path& target, bool replace) {
+  const Case input = load_case(case_file, overrides);
+  if (input.kind != CaseKind::tunnel)
+    throw io::InputError(place_of(input, "kind"), "kind",
+                         fmt::format("is \"{}\": only a tunnel has a mesh that is generated", to_string(input.kind)));
+  if (!input.ground.mesh_file.empty())
+    throw io::InputError(place_of(input, "ground.mesh_file"), "ground.mesh_file",
+                         "names a mesh that is stored already");
+  if (!replace && std::filesystem::exists(target))
+    throw io::InputError("--output", target.string(), "is there already: add --replace to overwrite it");
+  refuse_endless_mesh(input);
+  const io::StoredMesh mesh = mesh_to_store(input.ground);
+  io::save_mesh(target, mesh);
+  return print_answer(
+      fmt::format("{}: {} elements, {} Gauss points\n", target.string(), mesh.elements(), 4 * mesh.elements()));
 }
 
 Outcome command_keys(const std::string& kind) {

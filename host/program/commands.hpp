@@ -20,6 +20,11 @@ namespace voussoir::host {
 /// `voussoir check`: prints every value after defaults and overrides, and the estimated cost of the run.
 [[nodiscard]] Outcome command_check(const std::filesystem::path& case_file, const std::vector<std::string>& overrides);
 
+/// `voussoir mesh`: generates the mesh of a tunnel and writes it into a file for ground.mesh_file. A file that is there
+/// is overwritten only where `replace` says so.
+[[nodiscard]] Outcome command_mesh(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
+                                   const std::filesystem::path& target, bool replace);
+
 /// `voussoir keys`: prints all keys of a kind with their types, defaults and limits.
 [[nodiscard]] Outcome command_keys(const std::string& kind);
 

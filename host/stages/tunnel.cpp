@@ -2,19 +2,22 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <span>
 #include <stdexcept>
 
-#include "fem/mesh_tunnel.hpp"
 #include "host/record/provenance.hpp"
 #include "host/record/remarks.hpp"
 #include "host/stages/column.hpp"
 #include "host/stages/gravity.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/ground_run.hpp"
+#include "host/stages/tunnel_mesh.hpp"
 #include "host/stages/volume_loss.hpp"
 #include "io/input_error.hpp"
+#include "io/result_file.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -47,28 +50,33 @@ RunStatus run_stages(const Case& input, const K0Table& k0, GroundRun& run) {
   return lose_volume(run, input.ground, input.volume_loss, k0, losing);
 }
 
-}  // namespace
-
-fem::Mesh tunnel_mesh(const GroundCase& soil) {
-  const auto refuse = [](const std::exception& error) {  // a mesh depends on nothing but the case
-    return io::InputError("[ground]", "", fmt::format("makes no mesh: {}", error.what()));
-  };
+/// A run goes on only on the mesh of its start; a stored mesh may be from another version of Gmsh.
+/// @throws io::InputError
+void confirm_mesh(const io::MeshData& mesh, const RunOptions& options, double height) {
+  const std::filesystem::path index = options.folder / "run.h5";
+  if (!options.resume || !std::filesystem::exists(index)) return;
+  io::MeshData theirs;
   try {
-    return fem::make_half_tunnel({.width = soil.width,
-                                  .height = soil.height,
-                                  .diameter = soil.diameter,
-                                  .cover = soil.cover(),
-                                  .size_near = soil.mesh_size_opening,
-                                  .size_far = soil.mesh_size_far});
-  } catch (const std::invalid_argument& error) {
-    throw refuse(error);
-  } catch (const std::runtime_error& error) {
-    throw refuse(error);
+    theirs = io::read_mesh(index);
+  } catch (const std::runtime_error&) {
+    return;  // the index is damaged; the run makes it anew
   }
+  const auto close = [height](double a, double b) { return std::abs(a - b) <= 1e-9 * height; };
+  const bool same = theirs.connectivity == mesh.connectivity &&
+                    std::equal(theirs.coordinates.begin(), theirs.coordinates.end(), mesh.coordinates.begin(),
+                               mesh.coordinates.end(), close);
+  if (same) return;
+  throw io::InputError("--resume", options.folder.string(),
+                       fmt::format("was begun on another mesh, of {} elements and not {}: it needs the file of "
+                                   "ground.mesh_file, or the version of Gmsh, that made its mesh",
+                                   theirs.elements(), mesh.elements()));
 }
+
+}  // namespace
 
 RunStatus run_tunnel(const Case& input, const RunOptions& options) {
   const fem::Mesh mesh = tunnel_mesh(input.ground);
+  confirm_mesh(mesh_data(mesh, input.ground), options, input.ground.height);
   RunLog log = open_log(options);
   tell_circumstances(options, log);
   GroundRun run(options, provenance_of(options, input, "tunnel"), mesh, mesh_data(mesh, input.ground),

@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include "fem/mesh.hpp"
 #include "host/case/case.hpp"
 #include "host/packing/draw_scatter.hpp"
 #include "host/record/columns.hpp"
@@ -18,9 +17,6 @@ inline constexpr auto draw_scatter_columns = std::to_array<Column<DrawScatter>>(
     {"reaction", "-", &DrawScatter::reaction},
     {"k0", "-", &DrawScatter::k0},
 });
-
-/// The half domain of the case. Throws std::invalid_argument where its sizes make no mesh.
-[[nodiscard]] fem::Mesh tunnel_mesh(const GroundCase& soil);
 
 /// Starts the tunnel of the case in options.folder, or goes on with it. The column has its results in the folder
 /// `column` there.

@@ -11,5 +11,7 @@ using EngineLaw = LinearContactLaw<V, Rolling>;
 
 /// The same law in double for one RVE, with rolling: for computations about single contacts.
 using PlainEngineLaw = EngineLaw<SingleLane<double>, true>;
+/// The same without rolling: for normal forces alone.
+using NormalForceLaw = EngineLaw<SingleLane<double>, false>;
 
 }  // namespace voussoir::kernels

@@ -22,6 +22,15 @@ struct DevicePackings {
   int stride, class_stride;
 };
 
+/// The numbers of the packings from which contact networks follow, as the host has them.
+struct ExactPackings {
+  const int* grains;               ///< by packing
+  const double* radii;             ///< [m]
+  const std::uint8_t* class_of;    ///< nullptr where every packing has one class
+  const GrainMaterial* materials;  ///< (packing, class)
+  int stride, class_stride;
+};
+
 /// The states of all RVEs, twice: `committed_slot` says which of the two is the committed one, the other one is the
 /// trial state. Arrays are by (slot, RVE, ...).
 struct DeviceStates {

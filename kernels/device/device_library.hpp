@@ -30,10 +30,10 @@ struct DeviceSearch {
 /// The form of the functions that a library exports under the names below. The number tells a library of another
 /// version of the program: it is raised with every change of what crosses the border, and it changes with the sizes of
 /// what does.
-inline constexpr std::size_t interface_number = 2 + 1000 * (sizeof(RveReport) + 7 * sizeof(StrainRequest) +
+inline constexpr std::size_t interface_number = 3 + 1000 * (sizeof(RveReport) + 7 * sizeof(StrainRequest) +
                                                             11 * sizeof(ServoRequest) + 13 * sizeof(EngineSettings) +
                                                             17 * sizeof(Packing) + 19 * sizeof(HostStates) +
-                                                            23 * sizeof(DeviceWork));
+                                                            23 * sizeof(DeviceWork) + 29 * sizeof(CommittedSums));
 inline constexpr const char* interface_symbol = "voussoir_device_interface";
 inline constexpr const char* count_symbol = "voussoir_device_count";
 inline constexpr const char* open_symbol = "voussoir_device_open";

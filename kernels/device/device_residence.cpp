@@ -23,7 +23,7 @@ class DeviceResidence final : public Residence {
     return advance_with(batch, requests, settings, reports, rves);
   }
   void commit(std::span<const int> kept) override {
-    add(rves_->commit(kept));
+    work_ += rves_->commit(kept);
     ahead_ = true;
   }
   [[nodiscard]] std::shared_future<void> begin_bringing(const RveStates& to) override {
@@ -34,6 +34,21 @@ class DeviceResidence final : public Residence {
     arriving_ = std::async(std::launch::async, [this, to] { bytes_brought_ += rves_->bring_copy(plain(to)); }).share();
     return arriving_;
   }
+  void bring_one(const RveStates& to, int rve) override {
+    if (arriving_.valid()) {
+      if (!ahead_) return arriving_.get();
+      arriving_.wait();
+    }
+    if (!ahead_) return;
+    const HostStates states = plain(to);
+    rves_->download(states, std::span(&rve, 1), false);
+    work_.bytes_down += bytes_of_rve(states);
+  }
+  void describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) override {
+    if (outdated_) throw std::logic_error("a device cannot describe states that it does not have");
+    work_ += rves_->describe(wanted, out);
+  }
+  [[nodiscard]] bool has_committed() const override { return !outdated_; }
   void forget() override {
     outdated_ = true;
     ahead_ = false;
@@ -56,22 +71,19 @@ class DeviceResidence final : public Residence {
   DeviceWork work_;
   std::size_t bytes_brought_ = 0;  ///< of states; the thread that brings them counts
 
-  void add(const DeviceWork& did) {
-    work_.particle_steps += did.particle_steps;
-    work_.bytes_up += did.bytes_up;
-    work_.bytes_down += did.bytes_down;
-    work_.enlarged += did.enlarged;
-  }
-
   template <class Request>
   Work advance_with(const RveBatch& batch, std::span<const Request> requests, const EngineSettings& settings,
                     std::span<RveReport> reports, std::span<const int> rves) {
     if (settings.precision != precision_) throw std::logic_error("a batch on a device keeps its precision");
     if (outdated_ && arriving_.valid()) arriving_.get();
-    if (outdated_) rves_->upload(plain(batch.committed));
+    if (outdated_) {
+      const HostStates states = plain(batch.committed);
+      rves_->upload(states);
+      work_.bytes_up += batch.size() * bytes_of_rve(states);
+    }
     outdated_ = false;
     const DeviceWork did = rves_->advance(requests, settings, reports, rves);
-    add(did);
+    work_ += did;
     return {.particle_steps = did.particle_steps, .lane_steps = did.particle_steps};
   }
 };

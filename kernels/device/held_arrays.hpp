@@ -59,42 +59,43 @@ class HeldPackings {
   using real = real_of<typename Law::Value>;
 
   explicit HeldPackings(std::span<const Packing> packings) {
+    std::vector<int> sizes;
     for (const Packing& p : packings) {
+      sizes.push_back(p.size());
       grains_ = std::max(grains_, p.size());
       materials_ = std::max(materials_, static_cast<int>(p.materials.size()));
       classes_ = classes_ || !p.class_of.empty();
     }
+    store(sizes_, std::span<const int>(sizes));
+    write_grains(packings);
   }
 
   /// Writes what depends on the settings.
   void write(std::span<const Packing> packings, const EngineSettings& settings) {
     const std::size_t n = packings.size(), grains = static_cast<std::size_t>(grains_);
     scales_.clear();
-    std::vector<double> radii(n * grains, 0.0);
     std::vector<GrainShape<real>> shapes(n * grains);
-    std::vector<std::uint8_t> class_of(classes_ ? n * grains : 0, 0);
     std::vector<GrainMaterialOf<real>> materials(n * static_cast<std::size_t>(materials_));
     for (std::size_t k = 0; k < n; ++k) {
       const Packing& packing = packings[k];
       scales_.push_back(scales_of<Law>(packing, settings));
-      for (std::size_t i = 0; i < packing.radii.size(); ++i) {
-        radii[k * grains + i] = packing.radii[i];
+      for (std::size_t i = 0; i < packing.radii.size(); ++i)
         shapes[k * grains + i] = grain_shape<Law>(packing, i, scales_[k].largest_radius, settings.overlap_limit);
-        if (!packing.class_of.empty()) class_of[k * grains + i] = packing.class_of[i];
-      }
       for (std::size_t c = 0; c < packing.materials.size(); ++c)
         materials[k * static_cast<std::size_t>(materials_) + c] = rounded(packing.materials[c]);
     }
     store(scales_of_, std::span<const RunScales>(scales_));
-    store(radii_, std::span<const double>(radii));
     store(shapes_, std::span<const GrainShape<real>>(shapes));
-    store(class_of_, std::span<const std::uint8_t>(class_of));
     store(of_classes_, std::span<const GrainMaterialOf<real>>(materials));
   }
 
   [[nodiscard]] DevicePackings<real> view() const {
     return {scales_of_.data(),  radii_.data(), shapes_.data(), classes_ ? class_of_.data() : nullptr,
             of_classes_.data(), grains_,       materials_};
+  }
+  [[nodiscard]] ExactPackings exact() const {
+    return {sizes_.data(), radii_.data(), classes_ ? class_of_.data() : nullptr, exact_of_classes_.data(),
+            grains_,       materials_};
   }
   [[nodiscard]] int grains() const { return grains_; }
   [[nodiscard]] bool classes() const { return classes_; }
@@ -104,12 +105,31 @@ class HeldPackings {
   int grains_ = 0, materials_ = 1;
   bool classes_ = false;
   std::vector<RunScales> scales_;
+  DeviceArray<int, Backend> sizes_;
   DeviceArray<RunScales, Backend> scales_of_;
   DeviceArray<double, Backend> radii_;
   DeviceArray<GrainShape<real>, Backend> shapes_;
   DeviceArray<std::uint8_t, Backend> class_of_;
   DeviceArray<GrainMaterialOf<real>, Backend> of_classes_;
+  DeviceArray<GrainMaterial, Backend> exact_of_classes_;
 
+  /// Writes what no setting changes.
+  void write_grains(std::span<const Packing> packings) {
+    const std::size_t n = packings.size(), grains = static_cast<std::size_t>(grains_);
+    std::vector<double> radii(n * grains, 0.0);
+    std::vector<std::uint8_t> class_of(classes_ ? n * grains : 0, 0);
+    std::vector<GrainMaterial> materials(n * static_cast<std::size_t>(materials_));
+    for (std::size_t k = 0; k < n; ++k) {
+      const Packing& packing = packings[k];
+      std::copy(packing.radii.begin(), packing.radii.end(), radii.data() + k * grains);
+      std::copy(packing.class_of.begin(), packing.class_of.end(), class_of.data() + k * grains);
+      std::copy(packing.materials.begin(), packing.materials.end(),
+                materials.data() + k * static_cast<std::size_t>(materials_));
+    }
+    store(radii_, std::span<const double>(radii));
+    store(class_of_, std::span<const std::uint8_t>(class_of));
+    store(exact_of_classes_, std::span<const GrainMaterial>(materials));
+  }
   [[nodiscard]] static GrainMaterialOf<real> rounded(const GrainMaterial& m) {
     const auto r = [](double x) { return static_cast<real>(x); };
     return {r(m.modulus), r(m.stiffness_ratio), r(m.friction), r(m.rolling_stiffness), r(m.rolling_limit)};

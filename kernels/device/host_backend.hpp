@@ -12,6 +12,7 @@
 ///   room<Law, Drive>(level, grains) pairs for which a block of a level has room
 ///   launch<Law, Drive, classes>(batch, settings, level, blocks, pairs)   advances the RVEs order[0 .. blocks - 1], and
 ///                                   returns when all have ended
+///   describe(batch)                 describes the committed states of all RVEs (block_network.hpp)
 
 #include <cstring>
 #include <new>
@@ -19,6 +20,7 @@
 
 #include "kernels/device/block_advance.hpp"
 #include "kernels/device/block_copy.hpp"
+#include "kernels/device/block_network.hpp"
 
 namespace voussoir::kernels::device {
 
@@ -63,6 +65,17 @@ struct HostBackend {
       using Run = BlockRun<Law, Drive, SerialBlock, InMemory, classes>;
       advance_block<Run>(
           {SerialBlock{fast.data()}, &batch, &settings, slow.data(), number, batch.packings.stride, pairs});
+    }
+  }
+
+  static void describe(const NetworkBatch& batch) {
+    const NetworkMemory sizes(no_memory(), 1);
+#if defined(_OPENMP)
+#pragma omp parallel for schedule(dynamic, 1)
+#endif
+    for (int rve = 0; rve < batch.states.rves; ++rve) {
+      const HostMemory fast(sizes.bytes);
+      describe_block(SerialBlock{fast.data()}, batch, rve);
     }
   }
 

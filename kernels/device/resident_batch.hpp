@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernels/course/choose_instance.hpp"
+#include "kernels/device/block_network.hpp"
 #include "kernels/device/block_run.hpp"
 #include "kernels/device/held_arrays.hpp"
 
@@ -115,6 +116,14 @@ class ResidentBatch final : public ResidentRves {
     work.bytes_up += candidate_skin_.write(skin) + candidate_spent_.write(spent);
     return work;
   }
+  DeviceWork describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) override {
+    const bool tallies = needs_tally(wanted);
+    if (tallies) contact_counts_.at_least(size() * static_cast<std::size_t>(packings_.grains()));
+    committed_sums_.at_least(size());
+    Backend::describe({packings_.exact(), states_.view(), packing_of_.data(), contact_counts_.data(),
+                       committed_sums_.data(), network_thresholds(), needs_contact_sums(wanted), tallies});
+    return {.bytes_down = committed_sums_.read(out)};
+  }
 
  private:
   std::vector<Packing> all_packings_;
@@ -129,6 +138,8 @@ class ResidentBatch final : public ResidentRves {
   DeviceArray<int, Backend> candidate_count_;
   DeviceArray<double, Backend> candidate_skin_, candidate_spent_, candidate_spending_;
   int candidate_capacity_ = 0;
+  DeviceArray<ContactCounts, Backend> contact_counts_;
+  DeviceArray<CommittedSums, Backend> committed_sums_;
   CallArrays<StrainDrive, Backend> strain_;
   CallArrays<ServoControl, Backend> servo_;
 

@@ -14,6 +14,12 @@ HostStates plain(const RveStates& states) {
           .history = static_cast<int>(states.history_size())};
 }
 
+std::size_t bytes_of_rve(const HostStates& states) {
+  const auto grains = static_cast<std::size_t>(states.grains), contacts = static_cast<std::size_t>(states.contacts);
+  const std::size_t of_contact = sizeof(std::uint32_t) + sizeof(double) * static_cast<std::size_t>(states.history);
+  return (3 * grains + 4) * sizeof(double) + sizeof(int) + contacts * of_contact;
+}
+
 RveSet plain(const RveBatch& batch) {
   return {.packings = batch.packings, .packing_of = batch.packing_of, .committed = plain(batch.committed)};
 }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/state/network_sums.hpp"
 #include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels::device {
@@ -23,6 +24,8 @@ struct HostStates {
   int grains, contacts, history;  ///< extents for each RVE
 };
 [[nodiscard]] HostStates plain(const RveStates& states);
+/// Of the arrays of one RVE.
+[[nodiscard]] std::size_t bytes_of_rve(const HostStates& states);
 
 /// The RVEs of a batch, without its views.
 struct RveSet {
@@ -37,6 +40,14 @@ struct DeviceWork {
   std::size_t particle_steps = 0;
   std::size_t bytes_up = 0, bytes_down = 0;
   std::size_t enlarged = 0;  ///< RVEs that ran again, in a block with more room
+
+  DeviceWork& operator+=(const DeviceWork& other) {
+    particle_steps += other.particle_steps;
+    bytes_up += other.bytes_up;
+    bytes_down += other.bytes_down;
+    enlarged += other.enlarged;
+    return *this;
+  }
 };
 
 class ResidentRves {
@@ -63,6 +74,8 @@ class ResidentRves {
                              std::span<RveReport> reports, std::span<const int> rves) = 0;
   /// Makes the trial states the committed ones, but for those of the RVEs `kept`. Returns what crossed the bus.
   virtual DeviceWork commit(std::span<const int> kept) = 0;
+  /// Sums over the committed states of all RVEs, as far as `wanted` needs them.
+  virtual DeviceWork describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) = 0;
 };
 
 /// A device, and what it is called.

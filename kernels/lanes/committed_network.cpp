@@ -1,9 +1,8 @@
 #include "kernels/lanes/committed_network.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "kernels/contact/cell.hpp"
+#include "kernels/contact/committed_pair.hpp"
 #include "kernels/contact/engine_law.hpp"
 #include "kernels/lanes/wide_lane.hpp"
 
@@ -49,31 +48,21 @@ void gather(const RveStates& states, std::size_t rve, const Packing& packing, co
   }
 }
 
-/// Makes the operations of kernels::committed_contacts, in their order.
 void measure(const Cell& cell, Block& b) {
   for (std::size_t c = 0; c < b.size; c += at_once) {
-    Lanes x = load(b.x + c), y = load(b.y + c);
-    cell.nearest(x, y);
-    const Lanes length = Kokkos::sqrt(x * x + y * y);
-    const Lanes overlap = load(b.radius_of_i + c) + load(b.radius_of_j + c) - length;
-    store(x / length, b.x + c);
-    store(y / length, b.y + c);
-    store(length, b.length + c);
-    store(overlap, b.overlap + c);
-    store(overlap / length, b.overlap_to_branch + c);
+    const CentreLine<Lanes> line = centre_line(cell, load(b.x + c), load(b.y + c), load(b.radius_of_i + c),
+                                               load(b.radius_of_j + c));
+    store(line.normal_x, b.x + c);
+    store(line.normal_y, b.y + c);
+    store(line.length, b.length + c);
+    store(line.overlap, b.overlap + c);
+    store(line.overlap_to_branch, b.overlap_to_branch + c);
   }
 }
 
-/// The force of one call of the law without motion. A law's normal force has no memory (contact/contact_law.hpp), so
-/// that no history is read, and the compiler leaves out what the law computes for the other forces.
 double normal_force(const GrainMaterial& of_i, const GrainMaterial& of_j, const Block& b, std::size_t c) {
-  using Law = EngineLaw<SingleLane<double>, false>;
-  using V = Law::Value;
-  const Law law(Law::combine(of_i, b.radius_of_i[c], of_j, b.radius_of_j[c]));
-  Law::History history = no_history<Law>();
-  const double reach = b.radius_of_i[c] + b.radius_of_j[c];
-  const auto force = law({V(b.overlap[c] / reach), V(b.overlap_to_branch[c]), V(0.0), V(0.0)}, history);
-  return force.normal_to_branch[0] * b.length[c];
+  return normal_force_at_rest<NormalForceLaw>(of_i, b.radius_of_i[c], of_j, b.radius_of_j[c], b.overlap[c],
+                                              b.overlap_to_branch[c], b.length[c]);
 }
 
 void give(const Packing& packing, const std::uint32_t* keys, const Block& b, NetworkContact* out) {

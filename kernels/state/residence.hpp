@@ -5,6 +5,7 @@
 #include <future>
 #include <span>
 
+#include "kernels/state/network_sums.hpp"
 #include "kernels/state/requests.hpp"
 
 namespace voussoir::kernels {
@@ -31,6 +32,13 @@ class Residence {
   /// RVEs may be advanced. Until the future is ready, nobody may touch the arrays; its get() throws what the device
   /// failed with. Invalid where the arrays had the newest states already.
   [[nodiscard]] virtual std::shared_future<void> begin_bringing(const RveStates& to) = 0;
+  /// Writes the committed state of one RVE into the arrays, where the device has newer ones, and waits for states that
+  /// are on their way. The device stays ahead.
+  virtual void bring_one(const RveStates& to, int rve) = 0;
+  /// Sums over the committed states on the device, where it has them. The states stay there.
+  virtual void describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) = 0;
+  /// Whether the committed states are on the device: until the host has written to them.
+  [[nodiscard]] virtual bool has_committed() const = 0;
   /// The committed states of the batch were written to by the host, and the device takes them before it runs.
   virtual void forget() = 0;
   /// Whether the committed states on the device are newer than those of the batch.

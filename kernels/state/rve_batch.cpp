@@ -122,6 +122,10 @@ std::shared_future<void> begin_bringing_committed(const RveBatch& batch) {
   return batch.residence ? batch.residence->begin_bringing(batch.committed) : std::shared_future<void>();
 }
 
+void bring_committed(const RveBatch& batch, std::size_t rve) {
+  if (batch.residence) batch.residence->bring_one(batch.committed, static_cast<int>(rve));
+}
+
 void forget_candidates(RveBatch& batch) {
   if (batch.residence) batch.residence->forget();
   CandidateCache& c = batch.candidates;

@@ -126,6 +126,8 @@ void commit(RveBatch& batch, std::span<const int> kept = {});
 /// Brings the committed states from the device that has newer ones to `batch.committed`. To be called before they are
 /// read; without a device it does nothing.
 void bring_committed(const RveBatch& batch);
+/// The same for one RVE.
+void bring_committed(const RveBatch& batch, std::size_t rve);
 
 /// The same beside the next evaluations (Residence::begin_bringing). Invalid without a device.
 [[nodiscard]] std::shared_future<void> begin_bringing_committed(const RveBatch& batch);

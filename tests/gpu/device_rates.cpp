@@ -1,11 +1,15 @@
 // Rates of the engine on a device: RVEs x precision for given packings, whole calls and steps alone, beside the lanes
-// of the host. Usage: device_rates PACKING.h5... (packings of this program).
+// of the host. Usage: device_rates [--rves N] PACKING.h5... (packings of this program; a number of RVEs instead of
+// many).
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
 
 #include "host/case/case.hpp"
 #include "host/packing/packings.hpp"
@@ -92,13 +96,14 @@ int main(int argc, char** argv) {
   }
   std::printf("%s\n%5s %6s %-6s %-7s %9s %9s %9s  %8s %8s %8s  %s\n", device->name().c_str(), "N", "RVEs", "real", "on",
               "10: ms", "410: ms", "mesh: ms", "steps G", "410: G", "mesh: G", "failed");
-  for (int f = 1; f < argc; ++f) {
+  const bool one_number = argc > 2 && std::strcmp(argv[1], "--rves") == 0;
+  const std::vector<std::size_t> numbers = one_number ? std::vector<std::size_t>{std::strtoul(argv[2], nullptr, 10)}
+                                                      : std::vector<std::size_t>{1, 64, 512, 3344, 8192};
+  for (int f = one_number ? 3 : 1; f < argc; ++f) {
     host::PackingCase recipe;
     recipe.files = {argv[f]};
     const host::PackedRve rve = host::choose_packing(host::SoilCase{}, recipe);
-    for (const std::size_t n :
-         {std::size_t(1), std::size_t(64), std::size_t(512), std::size_t(3344), std::size_t(8192)})
-      measure(device, rve, n);
+    for (const std::size_t n : numbers) measure(device, rve, n);
     kernels::RveBatch lanes = clones(rve, 64);
     print_rates("lanes", lanes, kernels::Precision::float32);
   }

@@ -29,7 +29,7 @@ class CheckIncludes(unittest.TestCase):
             for room in (
                 "kernels/contact",
                 "kernels/lanes",
-                "kernels/teams",
+                "kernels/device",
                 "host/case",
                 "host/stages",
                 "host/program",
@@ -65,8 +65,8 @@ class CheckIncludes(unittest.TestCase):
             self.assertIn(f"may not include {header}, which stands above it", output)
 
     def test_rooms_of_one_level_stay_apart(self):
-        output = self.found("kernels/lanes/b.hpp", '#include "kernels/teams/a.hpp"\n')
-        self.assertIn("may not include kernels/teams/a.hpp, which stands beside it", output)
+        output = self.found("kernels/lanes/b.hpp", '#include "kernels/device/a.hpp"\n')
+        self.assertIn("may not include kernels/device/a.hpp, which stands beside it", output)
 
     def test_a_room_without_a_level_is_refused(self):
         for path in ("host/attic/a.hpp", "kernels/attic/a.hpp"):
@@ -75,7 +75,7 @@ class CheckIncludes(unittest.TestCase):
     def test_rooms_include_downwards_and_themselves(self):
         downwards = {
             "kernels/lanes/b.cpp": ("kernels/contact/a.hpp", "kernels/lanes/a.hpp"),
-            "kernels/b.cpp": ("kernels/lanes/a.hpp", "kernels/teams/a.hpp", "kernels/a.hpp"),
+            "kernels/b.cpp": ("kernels/lanes/a.hpp", "kernels/device/a.hpp", "kernels/a.hpp"),
             "host/stages/b.cpp": ("host/case/a.hpp", "kernels/a.hpp", "fem/a.hpp"),
             "host/main.cpp": ("host/program/a.hpp",),
         }

@@ -34,7 +34,10 @@ int faults = 0;
 struct Answer {
   std::vector<RveReport> reports;
   std::vector<ServoSample> trace;
+  std::vector<CommittedSums> sums = {};
 };
+
+bool same_bits(const CommittedSums& a, const CommittedSums& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
 
 /// @param what of a fault
 void expect(bool right, const char* what, int rve) {
@@ -56,6 +59,8 @@ void compare(const Answer& got, const Answer& one, double tolerance) {
     for (int c = 0; c < 4; ++c) expect(std::abs(a.stress[c] - b.stress[c]) <= tolerance * scale, "the stress", rve);
   }
   expect(got.trace.size() == one.trace.size(), "the length of the trace", 0);
+  for (std::size_t k = 0; k < one.sums.size(); ++k)
+    expect(same_bits(got.sums[k], one.sums[k]), "a sum over the network", static_cast<int>(k));
 }
 
 /// Runs a case by one thread and by several.
@@ -140,6 +145,26 @@ Answer crowded(const reference::Rve& rve) {
   return answer;
 }
 
+/// The contact networks of three states, one without contacts and one with a number that is none; first all that can be
+/// asked for, then each part of it.
+Answer networks_of(const reference::Rve& rve) {
+  RveBatch batch = clones(rve, 3);
+  batch.committed.contact_count(1) = 0;
+  batch.committed.position(2, 3, 0) = std::numeric_limits<double>::quiet_NaN();
+  device::ResidentBatch<Law<double>, InMemory> held(device::plain(batch));
+  Answer answer;
+  for (const MicrostructureRequest& wanted :
+       {MicrostructureRequest{.fabric = true, .coordination = true, .strong_networks = true},
+        MicrostructureRequest{.fabric = true}, MicrostructureRequest{.coordination = true}, MicrostructureRequest{}}) {
+    // What is not written would differ from thread to thread count.
+    std::vector<CommittedSums> sums(3);
+    std::memset(static_cast<void*>(sums.data()), 0, sums.size() * sizeof(sums[0]));
+    held.describe(wanted, sums);
+    answer.sums.insert(answer.sums.end(), sums.begin(), sums.end());
+  }
+  return answer;
+}
+
 /// Grains pressed into each other until they have more contacts than a state has room for.
 template <class real>
 Answer squeezed(const reference::Rve& rve) {
@@ -190,10 +215,12 @@ void run_all(const reference::Rve& small, const reference::Rve& tile) {
                           [&] { return servos<float, InRegisters>(small, 60); });
   on_threads<InMemory>("too little room, double", {4}, in_double, [&] { return crowded<double>(small); });
   on_threads<InMemory>("too many contacts, double", {4}, in_double, [&] { return squeezed<double>(small); });
+  on_threads<InMemory>("networks", {2, 7, 32}, 0, [&] { return networks_of(small); });
   const std::array<std::array<int, 2>, 3> tiles{{{2, 3}, {2, 7}, {5, 6}}};
   for (const auto& [columns, rows] : tiles) {
     const reference::Rve rve = reference::tiled(tile, columns, rows);
     std::printf("%zu grains\n", rve.radii.size());
+    on_threads<InMemory>("networks", {8}, 0, [&] { return networks_of(rve); });
     // One thread has no room for so many in registers, and answers from memory.
     on_threads<InRegisters>("large, float, in registers", {8}, in_float,
                             [&] { return large<float, InRegisters>(rve); });
@@ -206,6 +233,7 @@ void run_small(const reference::Rve& small) {
   static_cast<void>(strains<double, InMemory>(small, false));
   static_cast<void>(large<double, InMemory>(small));
   static_cast<void>(servos<double, InMemory>(small, 12));
+  static_cast<void>(networks_of(small));
 }
 
 void note_barriers(const reference::Rve& small) {

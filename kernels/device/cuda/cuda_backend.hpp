@@ -9,6 +9,7 @@
 
 #include "kernels/device/block_advance.hpp"
 #include "kernels/device/block_copy.hpp"
+#include "kernels/device/block_network.hpp"
 #include "kernels/device/cuda/pinned_way.hpp"
 
 namespace voussoir::kernels::device {
@@ -50,12 +51,19 @@ __global__ void __launch_bounds__(Of::threads, Of::blocks)
                       number, in_registers ? Of::grains : batch.packings.stride, in_registers ? Of::pairs : pairs});
 }
 
-inline constexpr int copy_threads = 128;
+inline constexpr int copy_threads = 128;     ///< of a block that copies a state
+inline constexpr int network_threads = 128;  ///< of a block that describes a contact network
 
 /// A block for each RVE. @tparam Threads is a parameter so that every file may have the kernel
 template <int Threads>
 __global__ void copy_kernel(const __grid_constant__ DeviceStates from, const __grid_constant__ DeviceStates to) {
   copy_committed_state(CudaBlock<Threads>(), from, to, static_cast<int>(blockIdx.x));
+}
+
+/// Likewise.
+template <int Threads>
+__global__ void __launch_bounds__(Threads) network_kernel(const __grid_constant__ NetworkBatch batch) {
+  describe_block(CudaBlock<Threads>(), batch, static_cast<int>(blockIdx.x));
 }
 
 struct CudaBackend {
@@ -100,6 +108,12 @@ struct CudaBackend {
     if (level == 1) return launch_plan<Law, Drive, MiddlePlan, classes>(batch, settings, blocks, pairs);
     if (level == 2) return launch_plan<Law, Drive, LargePlan, classes>(batch, settings, blocks, pairs);
     launch_plan<Law, Drive, MemoryPlan, classes>(batch, settings, blocks, pairs);
+  }
+
+  static void describe(const NetworkBatch& batch) {
+    const NetworkMemory sizes(no_memory(), network_threads);
+    network_kernel<network_threads><<<static_cast<unsigned>(batch.states.rves), network_threads, sizes.bytes>>>(batch);
+    await_kernel();
   }
 
  private:

@@ -43,8 +43,12 @@ __attribute__((visibility("default"))) std::size_t voussoir_device_interface() {
 }
 
 __attribute__((visibility("default"))) std::size_t voussoir_device_count(std::string* why) {
-  int count = 0;
+  int driver = 0, count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
+  if (error == cudaErrorInsufficientDriver && cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) {
+    *why = "there is no NVIDIA driver";
+    return 0;
+  }
   if (error == cudaSuccess && count > 0) return static_cast<std::size_t>(count);
   *why = error == cudaSuccess ? "the driver knows no device" : cudaGetErrorString(error);
   return 0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "fem/gauss_points.hpp"
 #include "fem/mesh.hpp"
@@ -77,6 +78,31 @@ TEST(TunnelMesh, LeavesTheThreadNumberAlone) {
   omp_set_num_threads(3);
   static_cast<void>(make_half_tunnel({.size_near = 1, .size_far = 4}));
   EXPECT_EQ(omp_get_max_threads(), 3);
+}
+
+/// The quadrilaterals of a small mesh, changed, no longer make the mesh of the options: the reason is said.
+void expect_refused(const std::function<void(QuadMesh&)>& change, const char* sentence) {
+  const HalfTunnelOptions options{.size_near = 2, .size_far = 8};
+  QuadMesh mesh = half_tunnel_quads(options);
+  change(mesh);
+  expect_throws<std::runtime_error>([&] { static_cast<void>(complete_half_tunnel(options, mesh)); }, sentence);
+}
+
+TEST(TunnelMesh, QuadrilateralsOfAnotherOutlineAreRefused) {
+  expect_refused([](QuadMesh& m) { m.quads.pop_back(); }, "an outer edge is on no named boundary");
+  expect_refused([](QuadMesh& m) { m.corners.row(0) *= 1.01; }, "an outer edge is on no named boundary");
+  expect_refused([](QuadMesh& m) { m.quads.push_back(m.quads.back()); }, "an edge belongs to more than two elements");
+  expect_refused(
+      [](QuadMesh& m) {  // the ground without a tunnel
+        m.corners = Coordinates{{0, 35, 35, 0}, {0, 0, 35, 35}};
+        m.quads = {{0, 1, 2, 3}};
+      },
+      "the mesh has no boundary 'opening'");
+  expect_refused(
+      [](QuadMesh& m) {
+        for (Quad& quad : m.quads) std::swap(quad[1], quad[3]);  // clockwise
+      },
+      "its outline has a gap or a crossing");
 }
 
 TEST(TunnelMesh, IsFinerAtTheOpeningAndAboveIt) {

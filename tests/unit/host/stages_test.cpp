@@ -15,7 +15,7 @@
 #include "host/stages/geostatic_check.hpp"
 #include "host/stages/ground_checkpoint.hpp"
 #include "host/stages/opening_check.hpp"
-#include "host/stages/tunnel.hpp"
+#include "host/stages/tunnel_mesh.hpp"
 
 namespace voussoir::host {
 namespace {

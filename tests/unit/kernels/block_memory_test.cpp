@@ -40,13 +40,15 @@ TEST(BlockMemory, ActionsHaveRoomForTheScratch) {
 }
 
 TEST(BlockMemory, ManyThreadsAnswerWithRoomForHardlyAPair) {
-  // Two of 40 grains touch, the others are far from each other. All of them are listed with room for a few pairs, which
-  // is far less than the bins of 40 grains and the sums of 48 threads need.
-  reference::Rve apart = reference::loose_packing(40, 1e-3, 1e-3, 4, reference::Material{});
-  apart.rotations.assign(apart.radii.size(), 0.0);
-  for (double& r : apart.radii) r = 4e-4;
-  apart.positions[1] = {apart.positions[0].x + 7.98e-4, apart.positions[0].y};
-  const RveBatch batch = clones(apart, 2);
+  // Ten grains touch in a row around the cell, so that the list has ten pairs. The room for twenty is far less than the
+  // sums of 48 threads need.
+  const double d = 2e-3, length = 9.99 * d;
+  reference::Rve row = reference::loose_packing(10, d / 2, d / 2, 4, reference::Material{});
+  for (std::size_t i = 0; i < 10; ++i) row.positions[i] = {length * static_cast<double>(i) / 10, length / 2};
+  row.radii.assign(10, d / 2);
+  row.rotations.assign(10, 0.0);
+  row.cell = {length, 0, 0, length};
+  const RveBatch batch = clones(row, 2);
   EngineSettings settings;
   settings.guard_interval = 2;
   const std::vector<StrainRequest> requests(2, {.f_rel = {0.999, 0, 0, 0.999}, .strain_steps = 12, .hold_cap = 4});
@@ -57,7 +59,7 @@ TEST(BlockMemory, ManyThreadsAnswerWithRoomForHardlyAPair) {
     advance_held(*hold(batch, precision, usual), requests, settings, expected, first_rves(2));
     const auto work = advance_held(*hold(batch, precision, few), requests, settings, reports, first_rves(2));
     EXPECT_EQ(work.enlarged, 0U) << "the test wants a block with little room";
-    EXPECT_GT(expected[0].contacts, 0) << "no grain touches: the test shows nothing";
+    EXPECT_EQ(expected[0].contacts, 10) << "the row has come apart: the test shows nothing";
     for (std::size_t k = 0; k < 2; ++k) expect_same_report(reports[k], expected[k], k);
   }
 }

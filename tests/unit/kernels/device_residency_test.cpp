@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <thread>
 
 #include "tests/device_blocks.hpp"
 #include "tests/same_answers.hpp"
@@ -86,6 +87,25 @@ TEST_P(DeviceResidency, AnswersDependNeitherOnOtherRvesNorOnTheirOrder) {
   const auto more = advance_held(*held(larger), motions(n + 5), with_tangents());
   EXPECT_EQ(more[n + 1].status, RveStatus::not_finite);
   for (std::size_t k = 0; k < n; ++k) expect_same_report(more[k], expected[k], k);
+}
+
+TEST_P(DeviceResidency, ACopyComesDownWhileRvesMoveOn) {
+  // RVE 2 fails, so that its committed state stands in the other slot than those of its neighbours.
+  const RveBatch batch = unlike();
+  const auto rves = held(batch);
+  std::vector<StrainRequest> requests = motions(n);
+  requests[2].f_rel.xx = std::numeric_limits<double>::quiet_NaN();
+  advance_held(*rves, requests, {});
+  rves->commit({});
+  const RveStates expected = states_of(*rves, batch, false);
+  rves->copy_committed();
+  RveStates brought("brought", n, static_cast<int>(dense.radii.size()), static_cast<int>(expected.history_size()));
+  std::thread way([&] { EXPECT_GT(rves->bring_copy(device::plain(brought)), 0U); });
+  advance_held(*rves, motions(n), {});
+  rves->commit({});
+  advance_held(*rves, motions(n), {});
+  way.join();
+  expect_same_states(brought, expected);
 }
 
 TEST_P(DeviceResidency, ACommitKeepsBackWhatItIsTold) {
@@ -203,7 +223,9 @@ TEST_P(DeviceResidency, CandidatesHoldNoLongerThanTheGrainsOwnMotionsAllow) {
     anew->upload(device::plain(states_of(*resident, batch, false)));
     const auto reports = advance_held(*resident, std::vector{pressed}, {});
     expect_same_reports(reports, advance_held(*anew, std::vector{pressed}, {}));
-    EXPECT_GE(reports[0].contacts, increment < 8 ? 9 : 10) << "the row has come apart, or its ends did not meet";
+    if (increment == 8) {
+      EXPECT_EQ(reports[0].contacts, 10) << "the row's ends did not meet: the test shows nothing";
+    }
     resident->commit({});
   }
 }

@@ -125,8 +125,10 @@ RveBatch settled(reference::Rve rve, std::size_t n) {
 }
 
 std::vector<Microstructure> of_committed(const RveBatch& batch) {
-  std::vector<Microstructure> out(batch.size());
-  describe_committed(batch, everything, out);
+  std::vector<CommittedSummary> summaries(batch.size());
+  describe_committed(batch, everything, summaries);
+  std::vector<Microstructure> out;
+  for (const CommittedSummary& s : summaries) out.push_back(s.network);
   return out;
 }
 
