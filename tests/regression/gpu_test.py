@@ -69,8 +69,8 @@ off = far_from(lanes, device, "node/displacement")
 print(f"displacements of the device are off by {off:.1e} of the largest")
 check(0 < off < 0.05, "displacements on the device are not those of lanes within repeats")
 
-# In double the two differ by rounding alone, and so do the contact networks that the device describes by itself. A count
-# may change where a force or an overlap is that near to its threshold.
+# In double the two differ by rounding alone, and so do the contact networks that the device describes by itself. A
+# count may change where a force or an overlap is that near to its threshold.
 NETWORK = [
     "fabric_anisotropy",
     "fabric_direction",
