@@ -156,9 +156,7 @@ Answer networks_of(const reference::Rve& rve) {
   for (const MicrostructureRequest& wanted :
        {MicrostructureRequest{.fabric = true, .coordination = true, .strong_networks = true},
         MicrostructureRequest{.fabric = true}, MicrostructureRequest{.coordination = true}, MicrostructureRequest{}}) {
-    // What is not written would differ from thread to thread count.
     std::vector<CommittedSums> sums(3);
-    std::memset(static_cast<void*>(sums.data()), 0, sums.size() * sizeof(sums[0]));
     held.describe(wanted, sums);
     answer.sums.insert(answer.sums.end(), sums.begin(), sums.end());
   }
