@@ -71,7 +71,8 @@ check(0 < off < 0.05, "displacements on the device are not those of lanes within
 
 # The contact networks that the device describes by itself. In double the answers differ by rounding, but Newton's paths
 # differ by the tolerance of the tangents, 1e-4 of the stress, so that a few contacts open or close and are strong or not:
-# the measured rms difference is at most 0.006 of a field's largest value, and 0.1 where a network has few grains at all.
+# in this column of few points the rms difference is at most 0.015 of a field's largest value, and more where a network has
+# few grains at all.
 # The bits are compared in unit tests.
 NETWORK = [
     "fabric_anisotropy",
@@ -85,6 +86,7 @@ NETWORK = [
     "coordination",
 ]
 EXACT = [*SETTINGS, "engine.precision=double", 'output.microstructure=["fabric", "coordination", "strong_networks"]']
+differing = 0
 lanes_in_double, device_in_double = fresh("lanes_in_double"), fresh("device_in_double")
 run(command("column", lanes_in_double, EXACT))
 run(on_device(command("column", device_in_double, EXACT)))
@@ -95,7 +97,9 @@ with h5py.File(last(lanes_in_double)) as a, h5py.File(last(device_in_double)) as
         rms = np.sqrt(np.mean((found - expected) ** 2)) / largest
         print(f"{name}: off by {rms:.1e} (rms) of the largest, {largest:.1e}")
         check(largest > 0, f"{name} is 0 everywhere: the test shows nothing")
-        check(0 < rms < (0.2 if name == "strong_coordination_2_5" else 0.02), f"{name} is not that of the lanes")
+        differing += rms > 0
+        check(rms < (0.2 if name == "strong_coordination_2_5" else 0.05), f"{name} is not that of the lanes")
+check(differing > 0, "nothing differs: the device has not described the networks")
 
 # The same bits again.
 again = fresh("again")
