@@ -66,10 +66,10 @@ off = np.abs(found - expected).max() / largest
 print(f"displacements of the device are off by {off:.1e} of the largest, {largest:.3e} m")
 check(0 < off < 0.05, "displacements on the device are not those of lanes within repeats")
 
-# The contact networks that the device describes by itself. In double the answers differ by rounding, but Newton's paths
-# differ by the tolerance of the tangents, 1e-4 of the stress, so that a few contacts open or close and are strong or not:
-# the measured rms difference is at most 0.006 of a field's largest value, and 0.1 where a network has few grains at all.
-# The bits are compared in unit tests.
+# The contact networks that the device describes by itself. In double the answers differ by rounding, but Newton's
+# paths differ by the tolerance of the tangents, 1e-4 of the stress, so that a few contacts open, close or become strong:
+# the measured rms difference is at most 0.006 of a field's largest value, and 0.1 where a network has few grains at
+# all. The bits are compared in unit tests.
 NETWORK = [
     "fabric_anisotropy",
     "fabric_direction",
