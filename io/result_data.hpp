@@ -35,6 +35,7 @@ struct Provenance {
   std::string kokkos = "unknown";          ///< Kokkos version, backends, instruction set
   std::string processor = "unknown";       ///< its name, of the first rank
   std::string lanes = "unknown";           ///< instruction set of the lanes, and why it was chosen
+  std::string device = "unknown";          ///< GPU that was chosen for the grains of the first rank, or "none"
   std::string command = "unknown";         ///< command line
   std::string date = "unknown";            ///< start of the run, ISO 8601, UTC
   int threads = 1;                         ///< of the first rank

@@ -28,6 +28,7 @@ void for_each_later_text(Source& source, Visit&& visit) {
   visit("build_type", source.build_type);
   visit("processor", source.processor);
   visit("lanes", source.lanes);
+  visit("device", source.device);
 }
 
 }  // namespace

@@ -15,8 +15,8 @@
 namespace voussoir::kernels {
 
 /// Advances every RVE by a given motion. `requests` and `reports` have batch.size() entries.
-/// The trial states are written where the batch resides, in batch.trial or on its device. The call never throws for a numerical reason: the status of each RVE says how its evaluation
-/// ended.
+/// The trial states are written where the batch resides, in batch.trial or on its device. The call never throws for a
+/// numerical reason: the status of each RVE says how its evaluation ended.
 Work advance(RveBatch& batch, std::span<const StrainRequest> requests, const EngineSettings& settings,
              std::span<RveReport> reports);
 

@@ -130,7 +130,9 @@ struct ThreadBackend {
   static void release(void* p) { HostBackend::release(p); }
   static void copy_up(void* to, const void* from, std::size_t bytes) { HostBackend::copy_up(to, from, bytes); }
   static void copy_down(void* to, const void* from, std::size_t bytes) { HostBackend::copy_down(to, from, bytes); }
-  static void copy_committed(const DeviceStates& from, const DeviceStates& to) { HostBackend::copy_committed(from, to); }
+  static void copy_committed(const DeviceStates& from, const DeviceStates& to) {
+    HostBackend::copy_committed(from, to);
+  }
   using WayBeside = HostBackend::WayBeside;
 
   [[nodiscard]] static int first_level(int grains) {

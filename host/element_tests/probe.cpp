@@ -180,8 +180,7 @@ Verdict take_probes(const ProbeCase& wanted, const EngineCase& engine, const Pac
   const std::vector<Probe> all = probes(wanted.strain);
   const std::vector<double> scale = scales(wanted.replicas);
   const std::size_t n = all.size() * scale.size();
-  RvePool pool(rve,
-               {.engine = engine, .tangent = tangent_kind(wanted.tangent), .tangent_strain = wanted.strain}, n);
+  RvePool pool(rve, {.engine = engine, .tangent = tangent_kind(wanted.tangent), .tangent_strain = wanted.strain}, n);
   std::vector<fem::Gradient> gradients;
   for (const double factor : scale) {
     for (const Probe& probe : all) gradients.emplace_back(factor * probe.gradient);

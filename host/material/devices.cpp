@@ -2,33 +2,31 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdlib>
 #include <stdexcept>
 
 namespace voussoir::host {
 
-namespace {
-
-/// The number of this process among those of its machine, as launchers tell it.
-std::size_t local_rank() {
-  for (const char* const name : {"OMPI_COMM_WORLD_LOCAL_RANK", "MPI_LOCALRANKID", "SLURM_LOCALID"}) {
-    if (const char* const text = std::getenv(name); text != nullptr) return std::strtoul(text, nullptr, 10);
+DeviceChoice choose_device(const EngineCase& engine, kernels::TangentKind tangent, int local_rank) {
+  if (engine.backend == Backend::lanes) return {};
+  std::string why;
+  DeviceChoice choice;
+  if (const std::size_t count = kernels::device::count_devices(why); count > 0) {
+    const std::size_t number = static_cast<std::size_t>(local_rank) % count;
+    if (tangent == kernels::TangentKind::loading) {
+      why = "a device does not compute loading tangents";
+    } else {
+      choice.device = kernels::device::open_device(number, why);
+    }
+    if (!choice.device) choice.why_lanes = fmt::format("device {} is not used: {}", number, why);
   }
-  return 0;
+  if (engine.backend == Backend::gpu && !choice.device)
+    throw std::runtime_error("a device is asked for, but none can be used: " + why);
+  return choice;
 }
 
-}  // namespace
-
-DevicePointer choose_device(const EngineCase& engine, kernels::TangentKind tangent) {
-  if (engine.backend == Backend::lanes || tangent == kernels::TangentKind::loading) return nullptr;
-  const kernels::device::DeviceSearch found = kernels::device::find_devices();
-  std::string why = found.why_none;
-  if (!found.names.empty()) {
-    const std::size_t number = local_rank() % found.names.size();
-    if (DevicePointer device = kernels::device::open_device(number, why)) return device;
-  }
-  if (engine.backend == Backend::gpu) throw std::runtime_error("engine.backend is \"gpu\", but no device is there: " + why);
-  return nullptr;
+std::string sentence_of(const DeviceChoice& choice) {
+  if (choice.device) return "grains on the device " + choice.device->name();
+  return choice.why_lanes.empty() ? std::string() : "grains by lanes: " + choice.why_lanes;
 }
 
 std::string devices_sentence() {

@@ -1,7 +1,6 @@
 #pragma once
 /// The device on which the RVEs of a pool reside: the choice that `engine.backend` makes.
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,10 +11,19 @@ namespace voussoir::host {
 
 using DevicePointer = std::shared_ptr<kernels::device::Device>;
 
-/// The device for a pool, or null where lanes advance its RVEs: because the case says so, because no device was found,
-/// or because the tangent is one that a device does not compute. The processes of one machine share its devices in turn.
+struct DeviceChoice {
+  DevicePointer device;   ///< null where lanes advance the RVEs
+  std::string why_lanes;  ///< where lanes advance them although a device is there that the case would take
+};
+
+/// The device for a pool. Lanes advance its RVEs where the case says so, where no device was found, and with
+/// `engine.backend` = "auto" also where the device cannot be opened or does not compute the tangent.
+/// @param local_rank number of this process among those of its machine, which share its devices in turn
 /// @throws std::runtime_error where the case asks for a device and there is none
-[[nodiscard]] DevicePointer choose_device(const EngineCase& engine, kernels::TangentKind tangent);
+[[nodiscard]] DeviceChoice choose_device(const EngineCase& engine, kernels::TangentKind tangent, int local_rank);
+
+/// A sentence about the choice for people; empty where there is no device to speak of.
+[[nodiscard]] std::string sentence_of(const DeviceChoice& choice);
 
 /// What a search for devices found, for people.
 [[nodiscard]] std::string devices_sentence();

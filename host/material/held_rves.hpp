@@ -19,7 +19,7 @@ struct HeldRves final : public fem::HeldState {
   std::vector<std::size_t> grains;            ///< of each RVE
   std::uint64_t identity = 0;                 ///< RvePool::identity
 
-  std::shared_future<void> arriving;          ///< valid where a device has the states, which then come beside the run
+  std::shared_future<void> arriving;  ///< valid where a device has the states, which then come beside the run
 
   /// Waits until the states are here. @throws what the device failed with
   void wait() const {

@@ -53,7 +53,7 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
     : engine_(options.engine),
       settings_(settings_of(options)),
       microstructure_(options.microstructure),
-      device_(choose_device(options.engine, options.tangent)),
+      device_(choose_device(options.engine, options.tangent, options.local_rank)),
       batch_(batch_of_points(mix)),
       requests_(mix.points()),
       trial_reports_(mix.points()),
@@ -66,8 +66,8 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
     mobilities_.push_back(
         kernels::mean_mobility<kernels::PlainEngineLaw>(packing, kernels::EngineSettings{}.overlap_limit));
   }
-  find_residence();
-  kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
+  if (device_.device) reside();
+  if (!device_.device) start();
   for (std::size_t k = 0; k < mix.points(); ++k) {
     kernels::RveReport& report = committed_reports_[k];
     if (kernels::is_failure(report.status)) {
@@ -82,14 +82,21 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
   deferral_.start(committed_reports_);
 }
 
-/// Moves the RVEs to the device. With `engine.backend` = "auto", lanes advance them where the device has no room.
-void RvePool::find_residence() {
-  if (!device_) return;
+/// Answers for the RVEs at rest.
+void RvePool::start() {
+  kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings_, committed_reports_);
+}
+
+/// Moves the RVEs to the device, which must then have the memory to advance them too. With `engine.backend` = "auto",
+/// lanes advance them where it has not.
+void RvePool::reside() {
   try {
-    kernels::device::reside(batch_, device_, settings_.precision);
-  } catch (const std::runtime_error&) {
+    kernels::device::reside(batch_, device_.device, settings_.precision);
+    start();
+  } catch (const std::runtime_error& fault) {
     if (engine_.backend == Backend::gpu) throw;
-    device_.reset();
+    batch_.residence.reset();
+    device_ = {nullptr, fmt::format("the device {} is not used: {}", device_.device->name(), fault.what())};
   }
 }
 

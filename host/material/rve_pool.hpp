@@ -22,6 +22,7 @@ struct PoolOptions {
   double tangent_tolerance = kernels::EngineSettings{}.tangent_tolerance;  ///< tolerance of a static tangent [-]
   double tangent_strain = 1.0e-6;                                          ///< strain of a loading tangent [-]
   kernels::MicrostructureRequest microstructure = {};  ///< fields to add to fields(), which computes them at each call
+  int local_rank = 0;  ///< number of this process among those of its machine, which share its devices in turn
 };
 
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
@@ -58,8 +59,8 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] double pressure_floor() const {
     return settings_.pressure_floor;
   }  ///< least pressure that the reports' ratios are relative to [Pa]
-  /// Of the device on which the RVEs reside; empty where the lanes advance them.
-  [[nodiscard]] std::string device_name() const { return device_ ? device_->name() : std::string(); }
+  /// Says on which device the RVEs reside, or why they do not; empty where there is none to speak of.
+  [[nodiscard]] std::string device_sentence() const { return sentence_of(device_); }
   [[nodiscard]] kernels::device::DeviceWork device_work() const { return kernels::device::device_work(batch_); }
   [[nodiscard]] std::uint64_t identity() const;
   [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;  ///< of `n` RVEs
@@ -69,7 +70,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   EngineCase engine_;
   kernels::EngineSettings settings_;
   kernels::MicrostructureRequest microstructure_;
-  DevicePointer device_;
+  DeviceChoice device_;
   kernels::RveBatch batch_;
   std::vector<kernels::StrainRequest> requests_;
   std::vector<kernels::RveReport> trial_reports_;
@@ -84,7 +85,8 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<kernels::RveStates> all_states_;       ///< committed, trial and held ones
   std::vector<std::weak_ptr<const HeldRves>> held_;  ///< those that somebody holds, and such as were held
 
-  void find_residence();
+  void reside();
+  void start();
   [[nodiscard]] double inertial_time_of(std::size_t rve) const;
   [[nodiscard]] double void_ratio_at(std::size_t rve, double cell_area) const;
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;

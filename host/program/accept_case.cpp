@@ -11,8 +11,10 @@
 #include "host/estimate/report.hpp"
 #include "host/estimate/storage.hpp"
 #include "host/estimate/work.hpp"
+#include "host/material/devices.hpp"
 #include "host/packing/packing_check.hpp"
 #include "host/process/resources.hpp"
+#include "host/ranks/session.hpp"
 #include "io/input_error.hpp"
 #include "kernels/isa/choose_lanes.hpp"
 
@@ -64,6 +66,16 @@ CaseSize checked_size(const Case& input) {
   }
 }
 
+/// Refuses a case that asks for a GPU where there is none: the machine of this command decides, as for `engine.isa`.
+void refuse_missing_device(const Case& input) {
+  if (!uses_engine(input.kind, input.material)) return;
+  try {
+    static_cast<void>(choose_device(input.engine, tangent_kind(input.newton.tangent), local_rank()));
+  } catch (const std::runtime_error& fault) {
+    throw io::InputError(place_of(input, "engine.backend"), "engine.backend", fault.what());
+  }
+}
+
 }  // namespace
 
 std::string place_of(const Case& input, const std::string& key) {
@@ -93,6 +105,7 @@ AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<st
   refuse_idle_packings(accepted.input, accepted.size);
   check_snapshot_points(accepted.input.output, accepted.size, place_of(accepted.input, "output.rves"));
   static_cast<void>(kernels::choose_lanes(accepted.input.engine.isa));
+  refuse_missing_device(accepted.input);
   if (has_grains(accepted.input) && accepted.input.packing.files.empty()) {
     const std::string missing = missing_coarse_grains(accepted.input.soil, accepted.input.packing.grains);
     if (!missing.empty()) accepted.input.remarks.push_back(missing);

@@ -90,6 +90,10 @@ Outcome command_check(const std::filesystem::path& case_file, const std::vector<
   std::string answer = input.resolved + "\n";
   if (uses_engine(input.kind, input.material)) answer += "# " + engine_note(input.engine, input.soil) + "\n";
   answer += "# " + kernels::lanes_sentence(kernels::choose_lanes(input.engine.isa)) + "\n";
+  if (uses_engine(input.kind, input.material)) {
+    const DeviceChoice choice = choose_device(input.engine, tangent_kind(input.newton.tangent), local_rank());
+    if (const std::string line = sentence_of(choice); !line.empty()) answer += "# " + line + "\n";
+  }
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";
   if (!range.empty()) answer += "# " + range + "\n";
@@ -132,9 +136,11 @@ Outcome command_info(const std::filesystem::path& result_file) {
     const io::Provenance origin = io::read_provenance(result_file);
     answer = fmt::format(
         "kind {}, version {} ({}), {}, {} ranks, {} threads, begun {}\nbuild: {}, {}\nprocessor: {}\nlanes: {}\n"
+        "device: {}\n"
         "command: {}\nfingerprint: {}\n",
         origin.case_kind, origin.version, origin.git_hash, origin.kokkos, origin.ranks, origin.threads, origin.date,
-        origin.build_compiler, origin.build_type, origin.processor, origin.lanes, origin.command, origin.fingerprint);
+        origin.build_compiler, origin.build_type, origin.processor, origin.lanes, origin.device, origin.command,
+        origin.fingerprint);
     const io::MeshData mesh = io::read_mesh(result_file);
     answer += fmt::format("{} nodes, {} elements\n", mesh.nodes(), mesh.elements()) +
               table_of(io::read_increments(result_file));

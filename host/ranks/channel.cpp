@@ -22,6 +22,7 @@ constexpr auto patience = std::chrono::microseconds(500);
 constexpr auto nap = std::chrono::microseconds(100);
 
 bool open = false;
+int rank_of_machine = 0;  ///< see local_rank
 
 /// True where the environment of a launcher says that there are, or may be, several processes.
 bool launched() {
@@ -59,6 +60,10 @@ void open_channel() {
   int granted = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &granted);
   open = true;
+  MPI_Comm machine = MPI_COMM_NULL;  // all ranks have to take part, so that it is made now
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, this_rank(), MPI_INFO_NULL, &machine);
+  MPI_Comm_rank(machine, &rank_of_machine);
+  MPI_Comm_free(&machine);
 }
 
 void close_channel() {
@@ -77,6 +82,8 @@ int rank_count() {
   if (open) MPI_Comm_size(MPI_COMM_WORLD, &count);
   return count;
 }
+
+int local_rank() { return rank_of_machine; }
 
 std::string rank_library() {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};

@@ -83,14 +83,15 @@ inline PackingMix read_mix(ByteReader& read) {
 
 /// Writes or reads the options of a pool. Every member is bound to a name here, so that a new option does not
 /// compile until somebody decides whether it is sent. The preset's name is not sent, since the other members hold its
-/// values; the instruction set goes with the command `start`.
+/// values; the instruction set goes with the command `start`, and each rank knows its own number.
 template <class Transfer, class Options>
 void transfer_options(Transfer& transfer, Options& options) {
-  auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure] = options;
+  auto& [engine, tangent, tangent_tolerance, tangent_strain, microstructure, local_rank] = options;
   auto& [preset, precision, inertial_number, hold_tolerance, backend, isa, hold_cap, skin, minimum_steps, maximum_steps,
          accuracy, defer] = engine;
   static_cast<void>(preset);
   static_cast<void>(isa);
+  static_cast<void>(local_rank);
   transfer(&precision, 1);
   transfer(&backend, 1);
   for (auto* number : {&inertial_number, &hold_tolerance, &skin, &accuracy, &defer}) transfer(number, 1);

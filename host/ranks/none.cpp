@@ -12,6 +12,7 @@ bool RankSession::serves() const { return false; }
 int RankSession::serve() const { return 0; }
 
 int rank_count() { return 1; }
+int local_rank() { return 0; }
 std::string rank_library() { return "no MPI"; }
 void start_ranks(int, InstructionSetChoice) {}
 

@@ -78,12 +78,22 @@ RankPool::RankPool(PackingMix mix, const PoolOptions& options, std::span<const R
       [&] { own_ = std::make_unique<RvePool>(mix_.part(points_[0]), options_); });
   place(own_->committed_reports(), points_[0], committed_);
   std::string text = fmt::format("{} ranks:", ranks.size());
+  std::vector<std::string> devices{own_->device_sentence()};
   for (std::size_t r = 0; r < ranks.size(); ++r) {
-    if (r > 0) place(values_of(replies[r - 1]).list<kernels::RveReport>(), points_[r], committed_);
+    if (r > 0) {
+      ByteReader read = values_of(replies[r - 1]);
+      place(read.list<kernels::RveReport>(), points_[r], committed_);
+      devices.push_back(read.text());
+    }
     text += fmt::format("{} {} points on {} with {} threads and {} lanes", r > 0 ? "," : "", points_[r].size(),
                         ranks[r].host, ranks[r].threads, ranks[r].lanes);
   }
-  if (note_) note_(text);
+  if (!note_) return;
+  note_(text);
+  // Where no rank speaks of a device, there is none to speak of.
+  if (std::all_of(devices.begin(), devices.end(), [](const std::string& d) { return d.empty(); })) return;
+  for (std::size_t r = 0; r < ranks.size(); ++r)
+    note_(fmt::format("rank {}: {}", r, devices[r].empty() ? "grains by lanes" : devices[r]));
 }
 
 RankPool::~RankPool() {

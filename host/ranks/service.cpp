@@ -80,8 +80,10 @@ class Service {
     const PackingMix mix = read_mix(read);
     PoolOptions options;
     transfer_options(read, options);
+    options.local_rank = local_rank();
     pool_.emplace(mix, options);
     reply.list(pool().committed_reports());
+    reply.list(pool().device_sentence());
   }
 
   void evaluate(ByteReader& read, ByteWriter& reply) {

@@ -35,6 +35,9 @@ class RankSession {
 
 [[nodiscard]] int rank_count();
 
+/// The number of this process among those of its machine. MPI says it, because launchers have many names for it.
+[[nodiscard]] int local_rank();
+
 /// The MPI library's name, or "no MPI" in a build without one.
 [[nodiscard]] std::string rank_library();
 

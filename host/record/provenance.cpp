@@ -4,6 +4,8 @@
 
 #include <Kokkos_Core.hpp>
 
+#include "host/case/engine.hpp"
+#include "host/material/devices.hpp"
 #include "host/process/build_info.hpp"
 #include "host/ranks/session.hpp"
 #include "io/utc.hpp"
@@ -19,6 +21,12 @@ std::string kokkos_description() {
 
 std::string lanes_of(const kernels::LaneChoice& choice) {
   return fmt::format("{}; {}", kernels::description_of(choice.lanes->isa), choice.reason);
+}
+
+std::string device_of(const Case& input) {
+  if (!uses_engine(input.kind, input.material)) return "none";
+  const DeviceChoice choice = choose_device(input.engine, tangent_kind(input.newton.tangent), local_rank());
+  return choice.device ? choice.device->name() : "none";
 }
 
 }  // namespace
@@ -39,6 +47,7 @@ io::Provenance provenance_of(const RunOptions& options, const Case& input, const
   p.ranks = rank_count();
   p.processor = kernels::processor_name();
   p.lanes = lanes_of(kernels::chosen_lanes());
+  p.device = device_of(input);
   return p;
 }
 

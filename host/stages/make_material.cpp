@@ -23,12 +23,13 @@ std::unique_ptr<fem::MaterialBatch> make_rve_pool(const MaterialCase& material, 
   PoolOptions options{.engine = material.engine,
                       .tangent = tangent_kind(material.tangent),
                       .tangent_strain = material.tangent_strain,
-                      .microstructure = material.microstructure};
+                      .microstructure = material.microstructure,
+                      .local_rank = local_rank()};
   // With a tolerance of a tenth, a loading tangent would hardly differ from the elastic tangent that it starts from.
   if (options.tangent != kernels::TangentKind::loading) options.tangent_tolerance = newton_tangent_tolerance;
   if (rank_count() > 1) return make_rank_pool(std::move(mix), options, note);
   auto pool = std::make_unique<RvePool>(mix, options);
-  if (note && !pool->device_name().empty()) note("grains on the device " + pool->device_name());
+  if (note && !pool->device_sentence().empty()) note(pool->device_sentence());
   return pool;
 }
 

@@ -47,8 +47,7 @@ template <class Law>
                                                                       const GrainMaterial& of_j, double radius_j,
                                                                       double overlap, double overlap_to_branch,
                                                                       double length) {
-  const auto force =
-      force_at_rest<Law>(of_i, radius_i, of_j, radius_j, overlap, overlap_to_branch, no_history<Law>());
+  const auto force = force_at_rest<Law>(of_i, radius_i, of_j, radius_j, overlap, overlap_to_branch, no_history<Law>());
   return force.normal_to_branch[0] * length;
 }
 

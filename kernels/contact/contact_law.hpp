@@ -47,11 +47,11 @@ namespace voussoir::kernels {
 /// where a device makes a pair's constants anew at each step: there it is the sweep's own precision
 template <class Number>
 struct GrainMaterialOf {
-  Number modulus = Number(3.0e9);                ///< contact modulus E [Pa]
-  Number stiffness_ratio = Number(0.5);          ///< k_t/k_n [-]
-  Number friction = Number(0.466307658);         ///< tan(friction angle) [-]
-  Number rolling_stiffness = Number(1.0);        ///< beta in k_r = beta k_t r1 r2 [-]
-  Number rolling_limit = Number(0.6);            ///< eta in |m| <= eta r f_n [-]
+  Number modulus = Number(3.0e9);          ///< contact modulus E [Pa]
+  Number stiffness_ratio = Number(0.5);    ///< k_t/k_n [-]
+  Number friction = Number(0.466307658);   ///< tan(friction angle) [-]
+  Number rolling_stiffness = Number(1.0);  ///< beta in k_r = beta k_t r1 r2 [-]
+  Number rolling_limit = Number(0.6);      ///< eta in |m| <= eta r f_n [-]
 };
 using GrainMaterial = GrainMaterialOf<double>;
 

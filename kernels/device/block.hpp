@@ -66,7 +66,10 @@ class Slots<T, 0> {
 };
 
 /// Stands for a memory of which only the size is wanted.
-[[nodiscard]] inline char* no_memory() { return reinterpret_cast<char*>(std::uintptr_t(4096)); }
+[[nodiscard]] inline char* no_memory() {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): nothing is read there, and a null pointer must not be moved.
+  return reinterpret_cast<char*>(std::uintptr_t(4096));
+}
 
 /// Four or two numbers that are loaded and stored at once.
 template <class real>

@@ -28,8 +28,8 @@ KOKKOS_INLINE_FUNCTION void judge_step(const Run& run, int step, const SweepSums
   }
 }
 
-/// The last step of the segment that begins with `step`: the first one that is judged, or after which the list is looked
-/// at or the cell's rate changes. One thread calls it.
+/// The last step of the segment that begins with `step`: the first one that is judged, or after which the list is
+/// looked at or the cell's rate changes. One thread calls it.
 template <class Run>
 [[nodiscard]] KOKKOS_INLINE_FUNCTION int end_of_segment(const Run& run, int step) {
   const auto& course = run.course();
@@ -70,8 +70,8 @@ VOUSSOIR_COLD_FUNCTION void end_segment(const typename Run::Seat seat, const int
   });
 }
 
-/// Takes the steps of a segment; returns the last one, to which the sums belong. Nothing is called here, because registers would have to be
-/// emptied for it.
+/// Takes the steps of a segment; returns the last one, to which the sums belong. Nothing is called here, because
+/// registers would have to be emptied for it.
 template <class Run>
 [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int run_segment(const Run& run, int step,
                                                           StepSums<typename Run::real>& sums) {
@@ -82,8 +82,7 @@ template <class Run>
   for (; step < last; ++step) {
     press_pairs<Sweep::advance>(run, held, motion[step & 1], sums);
     run.block.barrier();
-    if (run.block.thread() == run.block.threads() - 1)
-      carry_cell(run.course(), step + 1, motion[(step + 1) & 1], 0);
+    if (run.block.thread() == run.block.threads() - 1) carry_cell(run.course(), step + 1, motion[(step + 1) & 1], 0);
     move_grains<Sweep::advance>(run, motion[step & 1], sums);
     run.block.barrier();
   }

@@ -14,10 +14,10 @@ namespace voussoir::kernels::device {
 /// The packings, by (packing, grain); `stride` is the number of grains of the largest.
 template <class real>
 struct DevicePackings {
-  const RunScales* scales;               ///< by packing
-  const double* radii;                   ///< [m]
+  const RunScales* scales;  ///< by packing
+  const double* radii;      ///< [m]
   const GrainShape<real>* shapes;
-  const std::uint8_t* class_of;          ///< nullptr where every packing has one class
+  const std::uint8_t* class_of;            ///< nullptr where every packing has one class
   const GrainMaterialOf<real>* materials;  ///< (packing, class)
   int stride, class_stride;
 };
@@ -34,14 +34,14 @@ struct ExactPackings {
 /// The states of all RVEs, twice: `committed_slot` says which of the two is the committed one, the other one is the
 /// trial state. Arrays are by (slot, RVE, ...).
 struct DeviceStates {
-  double* position;                ///< (grain, 2) [m], wrapped into the cell
-  double* rotation;                ///< by grain [rad]
-  double* cell;                    ///< (4) [m]
+  double* position;  ///< (grain, 2) [m], wrapped into the cell
+  double* rotation;  ///< by grain [rad]
+  double* cell;      ///< (4) [m]
   int* contact_count;
-  std::uint32_t* contact_key;      ///< by contact, ascending
-  double* contact_history;         ///< (contact, k)
-  std::uint8_t* committed_slot;    ///< by RVE
-  std::uint8_t* evaluated;         ///< by RVE: whether there is a trial state that may be committed
+  std::uint32_t* contact_key;           ///< by contact, ascending
+  double* contact_history;              ///< (contact, k)
+  std::uint8_t* committed_slot;         ///< by RVE
+  std::uint8_t* evaluated;              ///< by RVE: whether there is a trial state that may be committed
   int rves, grains, contacts, history;  ///< extents of the arrays
 
   /// Where the numbers of a state stand among those of all states.
@@ -85,14 +85,14 @@ struct BlockBatch {
   DevicePackings<real> packings;
   DeviceStates states;
   DeviceCandidates candidates;
-  const int* packing_of;     ///< by RVE
+  const int* packing_of;  ///< by RVE
   const int* order;
-  const Drive* drives;       ///< by block
-  RveReport* reports;        ///< by block
-  ServoSample* samples;      ///< (RVE, sample), of stress-controlled cells
-  int* sample_count;         ///< by RVE
+  const Drive* drives;   ///< by block
+  RveReport* reports;    ///< by block
+  ServoSample* samples;  ///< (RVE, sample), of stress-controlled cells
+  int* sample_count;     ///< by RVE
   int sample_room;
-  std::uint8_t* overflown;   ///< by RVE: its list has more pairs than the block has room for
+  std::uint8_t* overflown;  ///< by RVE: its list has more pairs than the block has room for
 };
 
 }  // namespace voussoir::kernels::device

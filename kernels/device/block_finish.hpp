@@ -9,8 +9,8 @@ namespace voussoir::kernels::device {
 
 /// Computes all pairs at rest, and their sums, which thread 0 alone receives.
 template <class Run>
-[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Homogenised<SingleLane<double>> homogenise(Run& run,
-                                                                                const CellMotion<typename Run::V>& cell) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Homogenised<SingleLane<double>> homogenise(
+    Run& run, const CellMotion<typename Run::V>& cell) {
   using V = typename Run::V;
   using D = SingleLane<double>;
   enum : int { contacts = 4, overlaps = 5, sums = 6 };
@@ -49,7 +49,8 @@ template <class Run>
 
 /// Stores the contacts at the final positions with their histories.
 template <class Run>
-KOKKOS_FORCEINLINE_FUNCTION void store_contacts(Run& run, const DeviceState& to, const CellMotion<typename Run::V>& cell) {
+KOKKOS_FORCEINLINE_FUNCTION void store_contacts(Run& run, const DeviceState& to,
+                                                const CellMotion<typename Run::V>& cell) {
   using Law = typename Run::Law;
   int* const place = reinterpret_cast<int*>(run.at.action);
   each_pair(run, [&](int p) { place[p] = geometry_of_pair(run, p, cell).gap[0] < 0 ? 1 : 0; });

@@ -75,12 +75,13 @@ struct Bins {
   KOKKOS_FORCEINLINE_FUNCTION void around(int column, int row, const Visit& visit) const {
     for (int b = rows > 2 ? -1 : 0; b < (rows > 1 ? 2 : 1); ++b) {
       const int r = (row + b + rows) % rows;
-      for (int a = columns > 2 ? -1 : 0; a < (columns > 1 ? 2 : 1); ++a) visit(r * columns + (column + a + columns) % columns);
+      for (int a = columns > 2 ? -1 : 0; a < (columns > 1 ? 2 : 1); ++a)
+        visit(r * columns + (column + a + columns) % columns);
     }
   }
 };
 
-/// The scratch of find_candidates, in the memory of the pairs' actions.
+/// The scratch of find_candidates, in the memory of the pairs' actions (room_of_bins).
 struct BinScratch {
   int *begin, *next, *row;  ///< of a bin; where it is filled next; candidates of the grains before
   int* grain;               ///< bin by bin
@@ -96,7 +97,7 @@ struct BinScratch {
 /// Sorts the grains into bins.
 template <class Run>
 KOKKOS_FORCEINLINE_FUNCTION void fill_bins(const Run& run, const Bins& bins, const BinScratch& scratch,
-                                      const double* position) {
+                                           const double* position) {
   const auto bin_of = [&](int i) {
     const double x = position[2 * i], y = position[2 * i + 1];
     return bins.row_of(x, y) * bins.columns + bins.column_of(x, y);
@@ -181,6 +182,7 @@ template <class Run>
                                     static_cast<std::size_t>(run.rve) * static_cast<std::size_t>(from.capacity);
   const int candidates = from.count[run.rve];
   if (candidates > most_candidates(run)) return Listing::too_many;
+  static_assert(candidates_per_pair * sizeof(int) <= sizeof(Four<typename Run::real>), "a flag for each candidate");
   int* const flag = reinterpret_cast<int*>(run.at.action);
   std::uint32_t* const chosen = run.at.keys;
   const Cell cell(run.at.control->cell);
@@ -239,7 +241,7 @@ KOKKOS_FORCEINLINE_FUNCTION void list_entries(Run& run) {
 /// that is not listed has opened by more than the skin and is dropped.
 template <class Run, class Number>
 [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Listing list_pairs(Run& run, const double* position,
-                                                        const KeptContacts<Number>& kept) {
+                                                             const KeptContacts<Number>& kept) {
   using Law = typename Run::Law;
   using V = typename Run::V;
   using real = typename Run::real;
@@ -249,8 +251,9 @@ template <class Run, class Number>
   each_pair(run, [&](int p) {
     const std::uint32_t key = run.at.keys[p];
     const int i = first_of(key), j = second_of(key);
-    const PairReference at = pair_reference(position[2 * j] - position[2 * i], position[2 * j + 1] - position[2 * i + 1],
-                                            run.radius(i) + run.radius(j), cell);
+    const PairReference at = pair_reference(position[2 * j] - position[2 * i],
+                                            position[2 * j + 1] - position[2 * i + 1], run.radius(i) + run.radius(j),
+                                            cell);
     PairLanes<Law> pair{V(static_cast<real>(at.branch_x)), V(static_cast<real>(at.branch_y)),
                         V(static_cast<real>(at.gap)), no_history<Law>()};
     const int c = lower_bound(kept.key, kept.count, key);

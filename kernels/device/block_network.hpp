@@ -17,11 +17,11 @@ namespace voussoir::kernels::device {
 struct NetworkBatch {
   ExactPackings packings;
   DeviceStates states;
-  const int* packing_of;        ///< by RVE
-  ContactCounts* counts;        ///< (RVE, grain), scratch; only with `tallies`
-  CommittedSums* out;           ///< by RVE
+  const int* packing_of;  ///< by RVE
+  ContactCounts* counts;  ///< (RVE, grain), scratch; only with `tallies`
+  CommittedSums* out;     ///< by RVE
   NetworkThresholds thresholds;
-  bool sums, tallies;           ///< the parts of NetworkSums that are wanted
+  bool sums, tallies;  ///< the parts of NetworkSums that are wanted
 };
 
 /// Fast memory of a block.
@@ -192,8 +192,8 @@ KOKKOS_FORCEINLINE_FUNCTION void describe_block(const Block& block, const Networ
     if (!batch.tallies) out.network.tally = {};
   }
   if (!batch.tallies) return;
-  ContactCounts* const counts_of =
-      batch.counts + static_cast<std::size_t>(number) * static_cast<std::size_t>(batch.packings.stride);
+  ContactCounts* const counts_of = batch.counts +
+                                   static_cast<std::size_t>(number) * static_cast<std::size_t>(batch.packings.stride);
   count_contacts(run, batch.thresholds.least(of_contacts[2], run.contacts), counts_of);
   tally_grains(run, counts_of, out.network.tally);
 }

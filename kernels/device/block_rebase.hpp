@@ -119,7 +119,8 @@ template <class Run>
   });
   alone(run, [&] {
     run.course().f_minus_i = Mat2{};
-    run.batch.candidates.skin[run.rve] = -1;  // the candidates of the trial state's way are not those of the committed one
+    run.batch.candidates.skin[run.rve] = -1;  // the candidates of the trial state's way are not those of the committed
+                                              // one
   });
   const KeptContacts<real> contacts{run.at.kept_key, run.at.kept_history, kept};
   if (!reduce_cell(run, to.position)) {

@@ -15,9 +15,10 @@
 
 namespace voussoir::kernels::device {
 
-inline constexpr int threads_of_group = 16;     ///< whose numbers one thread sums up
-inline constexpr int candidates_per_pair = 2;   ///< room for candidates, by room for pairs
-inline constexpr double candidate_skin = 1.5;   ///< of the candidates, over that of the list
+inline constexpr int threads_of_group = 16;    ///< whose numbers one thread sums up
+inline constexpr int most_sums = 6;            ///< numbers that `reduce` joins at once
+inline constexpr int candidates_per_pair = 2;  ///< room for candidates, by room for pairs
+inline constexpr double candidate_skin = 1.5;  ///< of the candidates, over that of the list
 
 /// The data of one thread that the others read.
 template <class real, class Drive>
@@ -51,6 +52,23 @@ struct SolverSlot {
   GrainDofs<V> image;  ///< minus the product of K with the direction
 };
 
+/// Numbers that `reduce` needs for `count` sums: one of each thread, and one of each group of threads.
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION constexpr int room_of_sums(int count, int threads) {
+  return count * (threads + (threads + threads_of_group - 1) / threads_of_group);
+}
+/// Numbers of the bins' scratch: three by grain, and one more by bin, of which there are as many as grains at most.
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION constexpr int room_of_bins(int grains) { return 4 * grains + 1; }
+
+/// Entries of BlockMemory::action: those of the pairs, and at least the room for sums and bins.
+template <class real>
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION constexpr int room_of_action(int grains, int capacity, int threads) {
+  constexpr int entry = static_cast<int>(sizeof(Four<real>));
+  const int sums = room_of_sums(most_sums, threads) * static_cast<int>(sizeof(double));
+  const int bins = room_of_bins(grains) * static_cast<int>(sizeof(int));
+  const int scratch = ((sums < bins ? bins : sums) + entry - 1) / entry;
+  return capacity < scratch ? scratch : capacity;
+}
+
 template <class Law, class Drive, class Plan>
 struct BlockMemory {
   using V = typename Law::Value;
@@ -71,13 +89,13 @@ struct BlockMemory {
   Index* entries;       ///< 2 p, or 2 p + 1 where the grain is the second one of pair p; ascending for each grain
   int* counts;          ///< scratch of sums_before
   // In the device's memory.
-  std::uint32_t* kept_key;        ///< of a rebase, by pair
-  real* kept_history;             ///< (pair, k)
-  SpringLanes<V>* springs;        ///< of a tangent, by pair
-  GrainAnswer<real>* answers;     ///< of a tangent, (unit strain, grain)
-  HeldPair<Law>* pairs;           ///< with the plan InMemory
-  real* pair_numbers;             ///< with another one, outside the loop of steps: HeldPair as (number, pair)
-  SolverSlot<V>* solver;          ///< with the plan InMemory
+  std::uint32_t* kept_key;     ///< of a rebase, by pair
+  real* kept_history;          ///< (pair, k)
+  SpringLanes<V>* springs;     ///< of a tangent, by pair
+  GrainAnswer<real>* answers;  ///< of a tangent, (unit strain, grain)
+  HeldPair<Law>* pairs;        ///< with the plan InMemory
+  real* pair_numbers;          ///< with another one, outside the loop of steps: HeldPair as (number, pair)
+  SolverSlot<V>* solver;       ///< with the plan InMemory
   // How much of each.
   std::size_t fast_bytes, slow_bytes;
 
@@ -94,7 +112,7 @@ struct BlockMemory {
     rotation = of_grains.template take<real>(n);
     keys = of_grains.template take<std::uint32_t>(capacity);
     gap = of_grains.template take<real>(capacity);
-    action = of_grains.template take<Four<real>>(capacity);
+    action = of_grains.template take<Four<real>>(room_of_action<real>(n, capacity, threads));
     row = of_grains.template take<Index>(n + 1);
     entries = of_grains.template take<Index>(2 * capacity);
     kept_key = in_slow.take<std::uint32_t>(capacity);
@@ -142,8 +160,8 @@ struct BlockRun {
   const EngineSettings& settings;
   int number;  ///< of the block in its launch
   int rve, packing, grains;
-  int capacity;  ///< pairs for which the block has room
-  int listed;    ///< pairs in the list
+  int capacity;                          ///< pairs for which the block has room
+  int listed;                            ///< pairs in the list
   GrainMaterialOf<real> first_material;  ///< of all grains where there are no classes
   Memory at;
 
@@ -228,8 +246,8 @@ template <class Run>
 }
 /// The same with the numbers in fast memory: the pair as the lanes have it.
 template <class Run>
-[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PairLanes<typename Run::Law> pair_of(const Run& run, int p,
-                                                                             const HeldPair<typename Run::Law>& held) {
+[[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION PairLanes<typename Run::Law> pair_of(
+    const Run& run, int p, const HeldPair<typename Run::Law>& held) {
   return {held.branch_x, held.branch_y, typename Run::V(run.at.gap[p]), held.history};
 }
 template <class Run>

@@ -39,7 +39,8 @@ template <class Run>
 }
 
 /// Computes contacts and law of all pairs. Those that do not touch are computed too, and the law gives them no force: a
-/// branch that most threads of a warp take costs more than the work that it saves (docs/measurements/gpu.md, "Variants").
+/// branch that most threads of a warp take costs more than the work that it saves (docs/measurements/gpu.md,
+/// "Variants").
 template <Sweep mode, class Run>
 KOKKOS_FORCEINLINE_FUNCTION void press_pairs(const Run& run, BlockSlots<Run>& held,
                                              const CellMotion<typename Run::V>& motion,
@@ -69,8 +70,8 @@ KOKKOS_FORCEINLINE_FUNCTION void press_pairs(const Run& run, BlockSlots<Run>& he
   });
 }
 
-/// Calls body(p, is_second) for the pairs of grain i, in the order of the list: those with grains of smaller numbers, in
-/// which it is the second one, come first.
+/// Calls body(p, is_second) for the pairs of grain i, in the order of the list: those with grains of smaller numbers,
+/// in which it is the second one, come first.
 template <class Run, class Body>
 KOKKOS_FORCEINLINE_FUNCTION void each_pair_of(const Run& run, int i, const Body& body) {
   const int end = static_cast<int>(run.at.row[i + 1]);
@@ -124,8 +125,8 @@ KOKKOS_FORCEINLINE_FUNCTION void move_grains(const Run& run, const CellMotion<ty
 
 /// The sums of all threads, for thread 0 alone.
 template <class Run>
-[[nodiscard]] KOKKOS_INLINE_FUNCTION SweepSums<SingleLane<double>> sums_of_all(const Run& run,
-                                                                              const StepSums<typename Run::real>& own) {
+[[nodiscard]] KOKKOS_INLINE_FUNCTION SweepSums<SingleLane<double>> sums_of_all(
+    const Run& run, const StepSums<typename Run::real>& own) {
   using D = SingleLane<double>;
   const double numbers[5] = {static_cast<double>(own.stress_xx), static_cast<double>(own.stress_xy),
                              static_cast<double>(own.stress_yx), static_cast<double>(own.stress_yy),

@@ -18,6 +18,7 @@ struct Largest {
 /// threads must have read it. Another barrier must follow before it is written again.
 template <class Join, int count, class Run>
 KOKKOS_FORCEINLINE_FUNCTION void reduce(const Run& run, const double (&own)[count], double (&all)[count]) {
+  static_assert(count <= most_sums, "room_of_action makes room for fewer");
   const Join join;
   const int threads = run.block.threads(), thread = run.block.thread();
   const int groups = (threads + threads_of_group - 1) / threads_of_group;

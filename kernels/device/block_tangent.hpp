@@ -14,11 +14,11 @@ namespace voussoir::kernels::device {
 
 /// The work of the iterations, told by thread 0 to all.
 struct Iteration {
-  double rho = 0;     ///< squared residual
-  double energy = 0;  ///< twice the energy of the motion so far
-  double affine = 0;  ///< the same of the affine motion
-  double gained = 0;  ///< what the energy has lost in the last iteration
-  double before = 0;  ///< what it lost in the iteration before
+  double rho = 0;       ///< squared residual
+  double energy = 0;    ///< twice the energy of the motion so far
+  double affine = 0;    ///< the same of the affine motion
+  double gained = 0;    ///< what the energy has lost in the last iteration
+  double before = 0;    ///< what it lost in the iteration before
   double rounding = 0;  ///< squared residual below which a residual is rounding
 };
 
@@ -59,7 +59,8 @@ template <class Run>
   using V = typename Run::V;
   const V zero(0), radius(run.at.rim[i].y);
   Triangle<V> block{zero, zero, zero, zero, zero, zero};
-  each_pair_of(run, i, [&](int p, bool is_second) { add_block(run.at.springs[p], is_second ? -radius : radius, block); });
+  each_pair_of(run, i,
+               [&](int p, bool is_second) { add_block(run.at.springs[p], is_second ? -radius : radius, block); });
   return block;
 }
 
@@ -139,7 +140,8 @@ template <class Run, class Slot>
   now.energy -= alpha * now.rho;
   now.gained = alpha * now.rho;
   const V beta(static_cast<real>(next / now.rho));
-  each_held(run, slot, run.grains, [&](int k, int) { slot[k].direction = plus(slot[k].residual, beta, slot[k].direction); });
+  each_held(run, slot, run.grains,
+            [&](int k, int) { slot[k].direction = plus(slot[k].residual, beta, slot[k].direction); });
   now.rho = next;
   return true;
 }
@@ -195,15 +197,15 @@ KOKKOS_FORCEINLINE_FUNCTION void energies(Run& run, double (&all)[6]) {
   reduce<Add>(run, own, all);
 }
 
-/// Puts the static tangent in place of eq. (4) in the report, where it is usable. The motions of grains are overwritten.
+/// Puts the static tangent in place of eq. (4) in the report, where it is usable. The motions of grains are
+/// overwritten.
 template <class Run>
 VOUSSOIR_COLD_FUNCTION void find_tangent(const typename Run::Seat seat, const double volume) {
   Run run(seat);
   const CellMotion<typename Run::V> cell = run.at.control->motion[0];
   using V = typename Run::V;
   write_springs(run, cell);
-  Slots<SolverSlot<V>, Run::Plan::grain_slots> slot(run.at.solver, run.grains, run.block.thread(),
-                                                    run.block.threads());
+  Slots<SolverSlot<V>, Run::Plan::grain_slots> slot(run.at.solver, run.grains, run.block.thread(), run.block.threads());
   each_held(run, slot, run.grains, [&](int k, int i) { slot[k].scale = scale_of(block_of(run, i)); });
   int iterations = 0;
   bool capped = false;

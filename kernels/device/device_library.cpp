@@ -76,11 +76,15 @@ DeviceSearch find_devices() {
   return out;
 }
 
-std::shared_ptr<Device> open_device(std::size_t number, std::string& why) {
+std::size_t count_devices(std::string& why) {
   const Library& from = library();
   why = from.why;
-  if (from.open == nullptr) return nullptr;
-  const std::size_t count = from.count(&why);
+  return from.count == nullptr ? 0 : from.count(&why);
+}
+
+std::shared_ptr<Device> open_device(std::size_t number, std::string& why) {
+  const Library& from = library();
+  const std::size_t count = count_devices(why);
   if (count == 0) return nullptr;
   if (number >= count) {
     why = "there is no device of the number " + std::to_string(number);

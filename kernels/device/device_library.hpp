@@ -12,24 +12,28 @@ namespace voussoir::kernels::device {
 
 /// What a look for devices found.
 struct DeviceSearch {
-  std::string library;              ///< path of the library that was opened; empty: none
-  std::vector<std::string> names;   ///< of its devices, in their order
-  std::string why_none;             ///< where there is no device
+  std::string library;             ///< path of the library that was opened; empty: none
+  std::vector<std::string> names;  ///< of its devices, in their order
+  std::string why_none;            ///< where there is no device
 };
 
 /// Looks for the library and its devices: the file that the environment variable VOUSSOIR_GPU_LIBRARY names, or
 /// libvoussoir_gpu.so beside the program, in its folder ../lib, or in ../../cuda, where the preset `cuda` builds it.
 [[nodiscard]] DeviceSearch find_devices();
 
+/// The number of devices. Where it is 0, `why` says the reason.
+[[nodiscard]] std::size_t count_devices(std::string& why);
+
 /// Opens device `number` (from 0). Null where there is none, and then `why` says the reason.
 [[nodiscard]] std::shared_ptr<Device> open_device(std::size_t number, std::string& why);
 
-/// The form of the functions that a library exports under the names below. The number tells a library of another version
-/// of the program: it is raised with every change of what crosses the border, and it changes with the sizes of what does.
-inline constexpr std::size_t interface_number =
-    2 + 1000 * (sizeof(RveReport) + 7 * sizeof(StrainRequest) + 11 * sizeof(ServoRequest) +
-                13 * sizeof(EngineSettings) + 17 * sizeof(Packing) + 19 * sizeof(HostStates) + 23 * sizeof(DeviceWork) +
-                 29 * sizeof(CommittedSums));
+/// The form of the functions that a library exports under the names below. The number tells a library of another
+/// version of the program: it is raised with every change of what crosses the border, and it changes with the sizes of
+/// what does.
+inline constexpr std::size_t interface_number = 3 + 1000 * (sizeof(RveReport) + 7 * sizeof(StrainRequest) +
+                                                            11 * sizeof(ServoRequest) + 13 * sizeof(EngineSettings) +
+                                                            17 * sizeof(Packing) + 19 * sizeof(HostStates) +
+                                                            23 * sizeof(DeviceWork) + 29 * sizeof(CommittedSums));
 inline constexpr const char* interface_symbol = "voussoir_device_interface";
 inline constexpr const char* count_symbol = "voussoir_device_count";
 inline constexpr const char* open_symbol = "voussoir_device_open";

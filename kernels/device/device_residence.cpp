@@ -66,8 +66,8 @@ class DeviceResidence final : public Residence {
   Precision precision_;
   std::unique_ptr<ResidentRves> rves_;
   std::shared_future<void> arriving_;  ///< the states that come down, or came down last
-  bool ahead_ = false;     ///< the device's committed states are newer
-  bool outdated_ = false;  ///< the host's are
+  bool ahead_ = false;                 ///< the device's committed states are newer
+  bool outdated_ = false;              ///< the host's are
   DeviceWork work_;
   std::size_t bytes_brought_ = 0;  ///< of states; the thread that brings them counts
 

@@ -160,9 +160,18 @@ class StateArrays {
 
   /// @param committed_slot, evaluated by RVE, on the device
   [[nodiscard]] DeviceStates view(std::uint8_t* committed_slot, std::uint8_t* evaluated) const {
-    return {position_.data(),    rotation_.data(),        cell_.data(),   contact_count_.data(),
-            contact_key_.data(), contact_history_.data(), committed_slot, evaluated,
-            rves_,               grains_,                 contacts_,      history_};
+    return {position_.data(),
+            rotation_.data(),
+            cell_.data(),
+            contact_count_.data(),
+            contact_key_.data(),
+            contact_history_.data(),
+            committed_slot,
+            evaluated,
+            rves_,
+            grains_,
+            contacts_,
+            history_};
   }
   /// Calls body(array, numbers of the host, how many a state has) for all arrays.
   template <class Body>
@@ -247,7 +256,8 @@ class HeldStates {
 template <class Backend>
 class StateCopy {
  public:
-  explicit StateCopy(const DeviceStates& of) : arrays_(1, of.rves, of.grains, of.contacts, of.history), rves_(of.rves) {}
+  explicit StateCopy(const DeviceStates& of)
+      : arrays_(1, of.rves, of.grains, of.contacts, of.history), rves_(of.rves) {}
 
   void take(const DeviceStates& from) { Backend::copy_committed(from, arrays_.view(nullptr, nullptr)); }
   /// Another thread than that of the other calls may call this. Returns the bytes moved.

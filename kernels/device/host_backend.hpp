@@ -53,8 +53,8 @@ struct HostBackend {
   }
 
   template <class Law, class Drive, bool classes>
-  static void launch(const BlockBatch<real_of<typename Law::Value>, Drive>& batch, const EngineSettings& settings,
-                     int, int blocks, int pairs) {
+  static void launch(const BlockBatch<real_of<typename Law::Value>, Drive>& batch, const EngineSettings& settings, int,
+                     int blocks, int pairs) {
     using Memory = BlockMemory<Law, Drive, InMemory>;
     const Memory sizes(no_memory(), no_memory(), batch.packings.stride, pairs, 1);
 #if defined(_OPENMP)

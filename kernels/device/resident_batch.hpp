@@ -49,7 +49,8 @@ std::size_t append_samples(const Arrays& from, std::span<const ServoRequest> req
   for (std::size_t k = 0; k < requests.size(); ++k) {
     samples.resize(static_cast<std::size_t>(counts[k]));
     bytes += from.samples.read(samples, k * static_cast<std::size_t>(from.sample_room));
-    if (requests[k].trace != nullptr) requests[k].trace->insert(requests[k].trace->end(), samples.begin(), samples.end());
+    if (requests[k].trace != nullptr)
+      requests[k].trace->insert(requests[k].trace->end(), samples.begin(), samples.end());
   }
   return bytes;
 }
@@ -130,7 +131,7 @@ class ResidentBatch final : public ResidentRves {
   HeldPackings<Law, Backend> packings_;
   HeldStates<Backend> states_;
   std::optional<StateCopy<Backend>> copy_;  ///< from the first time on that states come down
-  double skin_ = -1, overlap_limit_ = -1;  ///< of the settings for which the packings are written
+  double skin_ = -1, overlap_limit_ = -1;   ///< of the settings for which the packings are written
   DeviceArray<int, Backend> packing_of_;
   DeviceArray<std::uint8_t, Backend> overflown_;
   DeviceArray<std::uint32_t, Backend> candidate_key_;
@@ -259,12 +260,12 @@ class ResidentBatch final : public ResidentRves {
   }
 };
 
-/// Calls body(Instance<Law>) with the law that the RVEs ask for. Grains of several classes have the law with rolling, so
-/// that fewer instances are compiled.
+/// Calls body(Instance<Law>) with the law that the RVEs ask for. Grains of several classes have the law with rolling,
+/// so that fewer instances are compiled.
 template <class Body>
 [[nodiscard]] auto choose_law(const RveSet& rves, Precision precision, const Body& body) {
   const bool rolling = rolls(rves.packings) || std::any_of(rves.packings.begin(), rves.packings.end(),
-                                                   [](const Packing& p) { return !p.class_of.empty(); });
+                                                           [](const Packing& p) { return !p.class_of.empty(); });
   return choose_precision(precision, [&]<class real>(Instance<real>) {
     using V = SingleLane<real>;
     return rolling ? body(Instance<EngineLaw<V, true>>{}) : body(Instance<EngineLaw<V, false>>{});

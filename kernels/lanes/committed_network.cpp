@@ -50,8 +50,8 @@ void gather(const RveStates& states, std::size_t rve, const Packing& packing, co
 
 void measure(const Cell& cell, Block& b) {
   for (std::size_t c = 0; c < b.size; c += at_once) {
-    const CentreLine<Lanes> line =
-        centre_line(cell, load(b.x + c), load(b.y + c), load(b.radius_of_i + c), load(b.radius_of_j + c));
+    const CentreLine<Lanes> line = centre_line(cell, load(b.x + c), load(b.y + c), load(b.radius_of_i + c),
+                                               load(b.radius_of_j + c));
     store(line.normal_x, b.x + c);
     store(line.normal_y, b.y + c);
     store(line.length, b.length + c);

@@ -34,8 +34,8 @@ GrainTally tally_of(std::span<const NetworkContact> contacts, int grains, const 
 
 /// Eq. (22): a = 2 |<exp(2 i theta)>| and theta_a half its argument, every contact weighted alike.
 void describe_fabric(const ContactSums& sums, int contacts, Microstructure& out) {
-  out.fabric_anisotropy =
-      contacts == 0 ? 0.0 : 2.0 * std::hypot(sums.cosine, sums.sine) / static_cast<double>(contacts);
+  out.fabric_anisotropy = contacts == 0 ? 0.0
+                                        : 2.0 * std::hypot(sums.cosine, sums.sine) / static_cast<double>(contacts);
   const double direction = 0.5 * std::atan2(sums.sine, sums.cosine);
   out.fabric_direction = direction <= -0.5 * std::numbers::pi ? 0.5 * std::numbers::pi : direction;
 }

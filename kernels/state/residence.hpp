@@ -28,12 +28,12 @@ class Residence {
                        std::span<RveReport> reports, std::span<const int> rves) = 0;
   /// Makes the trial states on the device the committed ones, but for those of the RVEs `kept`.
   virtual void commit(std::span<const int> kept) = 0;
-  /// Begins to write the committed states into the arrays `to` of the batch, where the device has newer ones, while RVEs
-  /// may be advanced. Until the future is ready, nobody may touch the arrays; its get() throws what the device failed
-  /// with. Invalid where the arrays had the newest states already.
+  /// Begins to write the committed states into the arrays `to` of the batch, where the device has newer ones, while
+  /// RVEs may be advanced. Until the future is ready, nobody may touch the arrays; its get() throws what the device
+  /// failed with. Invalid where the arrays had the newest states already.
   [[nodiscard]] virtual std::shared_future<void> begin_bringing(const RveStates& to) = 0;
-  /// Writes the committed state of one RVE into the arrays, where the device has newer ones, and waits for states that are
-  /// on their way. The device stays ahead.
+  /// Writes the committed state of one RVE into the arrays, where the device has newer ones, and waits for states that
+  /// are on their way. The device stays ahead.
   virtual void bring_one(const RveStates& to, int rve) = 0;
   /// Sums over the committed states on the device, where it has them. The states stay there.
   virtual void describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) = 0;

@@ -146,7 +146,9 @@ KOKKOS_FORCEINLINE_FUNCTION GrainDofs<V> pull(const SpringLanes<V>& s, const Spr
 }
 
 /// Share of its cap at which a spring counts as yielded; above 1, no spring does.
-[[nodiscard]] KOKKOS_INLINE_FUNCTION double elastic_share(TangentKind kind) { return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0; }
+[[nodiscard]] KOKKOS_INLINE_FUNCTION double elastic_share(TangentKind kind) {
+  return kind == TangentKind::static_ ? 1.0 - 1e-4 : 2.0;
+}
 
 /// A contact at rest as springs; a pair that does not touch has springs without stiffness. @param share elastic_share
 template <class Law, class Shape, class V>
@@ -257,14 +259,14 @@ KOKKOS_FORCEINLINE_FUNCTION void add_mixed_energies(const SpringLanes<V>& s, con
 /// Adds twice the mixed energies of the three motions to the upper triangle `tangent`.
 template <class V>
 void add_energies(SpringSystem<V>& system, V* tangent) {
-  for_each_spring(
-      system, [&](std::size_t c, const SolverGrain<V>& gi, const SolverGrain<V>& gj, const V& ri, const V& rj) {
-        const SpringLanes<V>& s = system.springs[c];
-        std::array<SpringStrain<V>, unit_strains> e;
-        V dx, dy;
-        for (std::size_t a = 0; a < unit_strains; ++a) e[a] = strain_of(s, a, gi, gj, ri, rj, dx, dy);
-        add_mixed_energies(s, e.data(), tangent);
-      });
+  for_each_spring(system,
+                  [&](std::size_t c, const SolverGrain<V>& gi, const SolverGrain<V>& gj, const V& ri, const V& rj) {
+                    const SpringLanes<V>& s = system.springs[c];
+                    std::array<SpringStrain<V>, unit_strains> e;
+                    V dx, dy;
+                    for (std::size_t a = 0; a < unit_strains; ++a) e[a] = strain_of(s, a, gi, gj, ri, rj, dx, dy);
+                    add_mixed_energies(s, e.data(), tangent);
+                  });
 }
 
 }  // namespace voussoir::kernels

@@ -1,5 +1,6 @@
 // The engine on a device against the lanes of the host, for a machine with a GPU (tools/gpu_check); with the library of
-// tests/emulated_gpu it runs anywhere. Prints the largest differences and exits with 1 where one is larger than allowed.
+// tests/emulated_gpu it runs anywhere. Prints the largest differences and exits with 1 where one is larger than
+// allowed.
 
 #include <Kokkos_Core.hpp>
 #include <cmath>
@@ -26,7 +27,8 @@ std::vector<StrainRequest> motions() {
   return requests;
 }
 
-/// What two answers differ by, over the pressure and over the tangent; infinite where statuses, steps or contacts differ.
+/// What two answers differ by, over the pressure and over the tangent; infinite where statuses, steps or contacts
+/// differ.
 struct Difference {
   double stress = 0, tangent = 0;
 };
@@ -36,9 +38,12 @@ double larger_of(double a, double b) { return b <= a ? a : b; }  // keeps a NaN
 Difference difference(const std::vector<RveReport>& a, const std::vector<RveReport>& b) {
   Difference d;
   for (std::size_t k = 0; k < a.size(); ++k) {
-    if (a[k].status != b[k].status || a[k].steps != b[k].steps || a[k].contacts != b[k].contacts) return {INFINITY, INFINITY};
-    for (int c = 0; c < 4; ++c) d.stress = larger_of(d.stress, std::abs(a[k].stress[c] - b[k].stress[c]) / b[k].pressure());
-    for (int c = 0; c < 6; ++c) d.tangent = larger_of(d.tangent, std::abs(a[k].tangent[c] - b[k].tangent[c]) / b[k].tangent[0]);
+    if (a[k].status != b[k].status || a[k].steps != b[k].steps || a[k].contacts != b[k].contacts)
+      return {INFINITY, INFINITY};
+    for (int c = 0; c < 4; ++c)
+      d.stress = larger_of(d.stress, std::abs(a[k].stress[c] - b[k].stress[c]) / b[k].pressure());
+    for (int c = 0; c < 6; ++c)
+      d.tangent = larger_of(d.tangent, std::abs(a[k].tangent[c] - b[k].tangent[c]) / b[k].tangent[0]);
   }
   return d;
 }
@@ -57,11 +62,14 @@ bool compare(const std::shared_ptr<device::Device>& on, Precision precision, dou
   device::reside(device, on, precision);
   device::reside(again, on, precision);
   const auto by_lanes = two_increments(lanes, settings), by_device = two_increments(device, settings);
-  const Difference d = difference(by_device, by_lanes), repeated = difference(two_increments(again, settings), by_device);
+  const Difference d = difference(by_device, by_lanes),
+                   repeated = difference(two_increments(again, settings), by_device);
   const bool good = d.stress <= stress && d.tangent <= tangent && repeated.stress == 0 && repeated.tangent == 0;
-  std::printf("%-7s stress off by %.1e of the pressure (at most %.0e), tangent by %.1e (at most %.0e); a second run by %.0e: %s\n",
-              precision == Precision::float64 ? "double" : "float", d.stress, stress, d.tangent, tangent, repeated.stress,
-              good ? "good" : "NOT GOOD");
+  std::printf(
+      "%-7s stress off by %.1e of the pressure (at most %.0e), tangent by %.1e (at most %.0e); a second run by %.0e: "
+      "%s\n",
+      precision == Precision::float64 ? "double" : "float", d.stress, stress, d.tangent, tangent, repeated.stress,
+      good ? "good" : "NOT GOOD");
   return good;
 }
 
@@ -98,8 +106,8 @@ bool compare_networks(const std::shared_ptr<device::Device>& on) {
   for (std::size_t k = 0; k < n_rves; ++k) unlike += same(by_device[k], by_host[k]) ? 0U : 1U;
   // 3344 RVEs may move 3 MB.
   const bool good = unlike == 0 && bytes <= 897 && by_device[0].network.mechanical_coordination > 2;
-  std::printf("networks: %zu of %zu RVEs differ in a bit; an increment moved %zu bytes an RVE (at most 897): %s\n", unlike,
-              n_rves, bytes, good ? "good" : "NOT GOOD");
+  std::printf("networks: %zu of %zu RVEs differ in a bit; an increment moved %zu bytes an RVE (at most 897): %s\n",
+              unlike, n_rves, bytes, good ? "good" : "NOT GOOD");
   return good;
 }
 

@@ -1,5 +1,6 @@
-// Rates of the engine on a device: RVEs x precision for given packings, whole calls and steps alone, beside the lanes of
-// the host. Usage: device_rates [--rves N] PACKING.h5... (packings of this program; a number of RVEs instead of many).
+// Rates of the engine on a device: RVEs x precision for given packings, whole calls and steps alone, beside the lanes
+// of the host. Usage: device_rates [--rves N] PACKING.h5... (packings of this program; a number of RVEs instead of
+// many).
 
 #include <Kokkos_Core.hpp>
 #include <algorithm>
@@ -40,12 +41,15 @@ Time time_of(kernels::RveBatch& batch, int steps, kernels::Precision precision, 
     requests[k] = {.f_rel = {1 + e, e, 0, 1 - e}, .strain_steps = steps, .hold_cap = 1};
   }
   std::vector<kernels::RveReport> reports(batch.size());
-  const kernels::EngineSettings settings{.precision = precision, .hold_tolerance = 1e-12, .tangent = tangent, .tangent_tolerance = 0.1};
+  const kernels::EngineSettings settings{
+      .precision = precision, .hold_tolerance = 1e-12, .tangent = tangent, .tangent_tolerance = 0.1};
   Time out{1e30, 0, 0};
   for (int turn = 0; turn < 3; ++turn) {
     const auto since = std::chrono::steady_clock::now();
-    out.particle_steps = kernels::advance(batch, std::span<const kernels::StrainRequest>(requests), settings, reports).particle_steps;
-    out.seconds = std::min(out.seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
+    out.particle_steps = kernels::advance(batch, std::span<const kernels::StrainRequest>(requests), settings, reports)
+                             .particle_steps;
+    out.seconds = std::min(out.seconds,
+                           std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count());
   }
   for (const kernels::RveReport& r : reports) out.failed += kernels::is_failure(r.status) ? 1 : 0;
   return out;
@@ -57,8 +61,9 @@ void print_rates(const char* what, kernels::RveBatch& batch, kernels::Precision 
   const Time mesh = time_of(batch, 50, precision, kernels::TangentKind::elastic);
   const double steps = static_cast<double>(many.particle_steps - few.particle_steps) / (many.seconds - few.seconds);
   std::printf("%5d %6zu %-6s %-7s %9.3f %9.3f %9.3f  %8.3f %8.3f %8.3f  %d\n", batch.packings[0].size(), batch.size(),
-              precision == kernels::Precision::float32 ? "float" : "double", what, 1e3 * few.seconds, 1e3 * many.seconds,
-              1e3 * mesh.seconds, 1e-9 * steps, 1e-9 * static_cast<double>(many.particle_steps) / many.seconds,
+              precision == kernels::Precision::float32 ? "float" : "double", what, 1e3 * few.seconds,
+              1e3 * many.seconds, 1e3 * mesh.seconds, 1e-9 * steps,
+              1e-9 * static_cast<double>(many.particle_steps) / many.seconds,
               1e-9 * static_cast<double>(mesh.particle_steps) / mesh.seconds, few.failed + many.failed + mesh.failed);
   std::fflush(stdout);
 }

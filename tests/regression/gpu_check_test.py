@@ -3,6 +3,7 @@ emulated device the engine agrees with the lanes. A part that fails, hangs or is
 
 import os
 import subprocess
+import time
 from pathlib import Path
 
 from program import PROGRAM, ROOT, check, fresh
@@ -36,8 +37,9 @@ def gpu_check(programs, parts, *further, library=NOTHING, code=0):
         env=os.environ | {"VOUSSOIR_GPU_LIBRARY": library, "OUT": str(out)},
     )
     check(done.returncode == code, f"{parts}: exit {done.returncode} instead of {code}: {done.stdout}{done.stderr}")
-    lines = (out / "summary.txt").read_text().splitlines() if out.exists() else []
-    check(not out.exists() or len(lines) == 10, f"{parts}: the summary has {len(lines)} lines")
+    check((out / "summary.txt").exists(), f"{parts}: the folder that OUT names has no summary")
+    lines = (out / "summary.txt").read_text().splitlines()
+    check(len(lines) == 10, f"{parts}: the summary has {len(lines)} lines")
     return done.stdout.split("\n\n")[0] + done.stderr, lines
 
 
@@ -63,7 +65,9 @@ check("FAILED with 1: wrong numbers" in shown, f"what does not agree is not told
 check(shown.count("FAILED with 3") == 2, f"runs that fail are not told: {shown}")
 check("3 parts failed" in summary[9], f"failures are not counted: {summary[9]}")
 hanging = folder_of("hanging", voussoir=pretend, device_agreement="sleep 100", device_rates="exit 0")
+since = time.monotonic()
 shown, _ = gpu_check(hanging, "agreement,machine", "--seconds", "16", code=1)
+check(time.monotonic() - since < 20, "a part that hangs goes on beyond the time in all")
 check("agreement          stopped after" in shown, f"a part that hangs is not stopped: {shown}")
 check("machine            skipped: the time in all is over" in shown, f"the time in all is not kept: {shown}")
 

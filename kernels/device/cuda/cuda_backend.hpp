@@ -33,15 +33,16 @@ struct CudaPlan {
   static constexpr int pairs = Threads * PairSlots, grains = Threads * GrainSlots;
   using Plan = BlockPlan<PairSlots, GrainSlots>;
 };
-using SmallPlan = CudaPlan<128, 4, 6, 3>;    ///< up to 384 grains
-using MiddlePlan = CudaPlan<256, 2, 7, 3>;   ///< up to 768
-using LargePlan = CudaPlan<512, 1, 7, 3>;    ///< up to 1536
-using MemoryPlan = CudaPlan<256, 2, 0, 0>;   ///< any number, in the device's memory
+using SmallPlan = CudaPlan<128, 4, 6, 3>;   ///< up to 384 grains
+using MiddlePlan = CudaPlan<256, 2, 7, 3>;  ///< up to 768
+using LargePlan = CudaPlan<512, 1, 7, 3>;   ///< up to 1536
+using MemoryPlan = CudaPlan<256, 2, 0, 0>;  ///< any number, in the device's memory
 
 template <class Law, class Drive, class Of, bool classes>
 __global__ void __launch_bounds__(Of::threads, Of::blocks)
     advance_kernel(const __grid_constant__ BlockBatch<real_of<typename Law::Value>, Drive> batch,
-                   const __grid_constant__ EngineSettings settings, const int pairs, char* const slow, const std::size_t slow_bytes) {
+                   const __grid_constant__ EngineSettings settings, const int pairs, char* const slow,
+                   const std::size_t slow_bytes) {
   const int number = static_cast<int>(blockIdx.x);
   // With constant room, the places of all arrays in fast memory are constants of the machine code.
   constexpr bool in_registers = Of::Plan::in_registers;
@@ -50,19 +51,19 @@ __global__ void __launch_bounds__(Of::threads, Of::blocks)
                       number, in_registers ? Of::grains : batch.packings.stride, in_registers ? Of::pairs : pairs});
 }
 
+inline constexpr int copy_threads = 128;     ///< of a block that copies a state
 inline constexpr int network_threads = 128;  ///< of a block that describes a contact network
-
-template <int Threads>
-__global__ void __launch_bounds__(Threads) network_kernel(const __grid_constant__ NetworkBatch batch) {
-  describe_block(CudaBlock<Threads>(), batch, static_cast<int>(blockIdx.x));
-}
-
-inline constexpr int copy_threads = 128;
 
 /// A block for each RVE. @tparam Threads is a parameter so that every file may have the kernel
 template <int Threads>
 __global__ void copy_kernel(const __grid_constant__ DeviceStates from, const __grid_constant__ DeviceStates to) {
   copy_committed_state(CudaBlock<Threads>(), from, to, static_cast<int>(blockIdx.x));
+}
+
+/// Likewise.
+template <int Threads>
+__global__ void __launch_bounds__(Threads) network_kernel(const __grid_constant__ NetworkBatch batch) {
+  describe_block(CudaBlock<Threads>(), batch, static_cast<int>(blockIdx.x));
 }
 
 struct CudaBackend {
@@ -112,8 +113,7 @@ struct CudaBackend {
   static void describe(const NetworkBatch& batch) {
     const NetworkMemory sizes(no_memory(), network_threads);
     network_kernel<network_threads><<<static_cast<unsigned>(batch.states.rves), network_threads, sizes.bytes>>>(batch);
-    check_cuda(cudaGetLastError(), "the kernel of contact networks was not launched");
-    check_cuda(cudaDeviceSynchronize(), "the kernel of contact networks failed");
+    await_kernel();
   }
 
  private:
@@ -143,9 +143,9 @@ struct CudaBackend {
     const int grains = Of::Plan::in_registers ? Of::grains : batch.packings.stride;
     const BlockMemory<Law, Drive, typename Of::Plan> sizes(no_memory(), no_memory(), grains, pairs, Of::threads);
     const auto kernel = advance_kernel<Law, Drive, Of, classes>;
-    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                    static_cast<int>(sizes.fast_bytes)),
-               "the device grants a block too little fast memory");
+    check_cuda(
+        cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(sizes.fast_bytes)),
+        "the device grants a block too little fast memory");
     const std::size_t slow = (sizes.slow_bytes + 255) / 256 * 256;
     // Blocks whose memory would exceed a share of the device's come one after another.
     constexpr std::size_t most = std::size_t(8) << 30;

@@ -107,9 +107,8 @@ TEST(EnginePresets, AnUnknownOneIsRefused) {
 }
 
 TEST(EngineSettings, AreThoseOfTheCase) {
-  const kernels::EngineSettings settings = engine_settings({.precision = kernels::Precision::float64,
-                                                            .hold_tolerance = 2e-5,
-                                                            .skin = 0.03});
+  const kernels::EngineSettings settings = engine_settings(
+      {.precision = kernels::Precision::float64, .hold_tolerance = 2e-5, .skin = 0.03});
   EXPECT_EQ(settings.precision, kernels::Precision::float64);
   EXPECT_EQ(settings.hold_tolerance, 2e-5);
   EXPECT_EQ(settings.skin, 0.03);

@@ -205,6 +205,31 @@ TEST_P(DeviceResidency, CandidatesThatHoldOverCommitsGiveTheBitsOfNewOnes) {
   EXPECT_GT(contacts, 10) << "hardly a grain touches: the test shows nothing";
 }
 
+TEST_P(DeviceResidency, CandidatesHoldNoLongerThanTheGrainsOwnMotionsAllow) {
+  // Ten grains touch in a row along x, and between the row's ends there is a gap of a fifth of a diameter across the
+  // cell's border. The row hardly yields, so that a small strain closes the gap by the cell's whole shortening: nearly
+  // all of it is the grains' own motion, and what the strain itself moves neighbours by is a tenth.
+  const double d = 2e-3, length = 10.2 * d;
+  reference::Rve row = reference::loose_packing(10, d / 2, d / 2, 4, reference::Material{});
+  for (std::size_t i = 0; i < 10; ++i) row.positions[i] = {0.9999 * d * static_cast<double>(i), length / 2};
+  row.radii.assign(10, d / 2);
+  row.rotations.assign(10, 0.0);
+  row.cell = {length, 0, 0, length};
+  const RveBatch batch = clones(row, 1);
+  const auto resident = held(batch), anew = held(batch);
+  const StrainRequest pressed{.f_rel = {1 - 0.03 / 10.2, 0, 0, 1}, .strain_steps = 200, .hold_cap = 50};
+  for (int increment = 0; increment < 9; ++increment) {
+    SCOPED_TRACE(testing::Message() << "increment " << increment);
+    anew->upload(device::plain(states_of(*resident, batch, false)));
+    const auto reports = advance_held(*resident, std::vector{pressed}, {});
+    expect_same_reports(reports, advance_held(*anew, std::vector{pressed}, {}));
+    if (increment == 8) {
+      EXPECT_EQ(reports[0].contacts, 10) << "the row's ends did not meet: the test shows nothing";
+    }
+    resident->commit({});
+  }
+}
+
 TEST_P(DeviceResidency, OtherSkinsFindOtherCandidates) {
   const RveBatch batch = unlike(2);
   const auto rves = held(batch);
