@@ -135,7 +135,7 @@ TEST_F(DeviceNetwork, HasTheHostsBitsForClassesAndUnlikePackings) {
 }
 
 TEST_F(DeviceNetwork, HasTheHostsBitsWhereAllForcesAreEqual) {
-  // Each force is the mean one but for rounding, so that another order of the sum changes the strong networks.
+  // Each force is the mean one but for rounding, so that rounding decides which contacts are strong.
   const reference::Rve lattice = reference::hexagonal_packing(9, 6, 1e-3, 1e-6, reference::Material{});
   const auto make = [&] {
     reference::Rve rve = lattice;
