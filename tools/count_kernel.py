@@ -193,16 +193,20 @@ def backward_branches(code):
             yield place[int(target.group(1), 16)], k
 
 
+def calls_in(texts):
+    return sum(kind(text) == "CALL" for text in texts)
+
+
 def step_loop(code):
-    """The loop of plain steps: the longest one with two barriers and no call."""
+    """The loop of plain steps: the longest one with two barriers and no call, or else the one with fewest calls."""
     loops = []
     for first, last in backward_branches(code):
         texts = [text for _, text in code[first : last + 1]]
-        if sum("BAR.SYNC" in t for t in texts) == 2 and not any("CALL" in t for t in texts):
-            loops.append(code[first : last + 1])
+        if sum("BAR.SYNC" in t for t in texts) == 2:
+            loops.append((calls_in(texts), -len(texts), code[first : last + 1]))
     if not loops:
-        sys.exit("no loop with two barriers and no call was found in the machine code")
-    return max(loops, key=len)
+        sys.exit("no loop with two barriers was found in the machine code")
+    return min(loops, key=lambda loop: loop[:2])[2]
 
 
 def parts_of(code):
@@ -259,7 +263,10 @@ def report_code(name, precision, of, loop):
         f"of them {len(loop.pairs)} for {plan.pair_slots} pairs, {len(loop.grain)} for a grain, {len(loop.turn)} for "
         f"each of its pairs, {len(loop.cell)} for the cell"
     )
-    print(f"local memory in the loop of steps: {local_accesses(loop)} instructions")
+    print(
+        f"local memory in the loop of steps: {local_accesses(loop)} instructions; calls, of rare cases of divisions "
+        f"and roots: {calls_in(loop.all)}"
+    )
 
 
 def report_step(name, precision, loop, packing):
@@ -299,6 +306,8 @@ def faults_of(of, loop, plan):
     count = len(loop.all)
     if local_accesses(loop) > 0:
         yield f"the loop of steps moves spilled numbers with {local_accesses(loop)} instructions"
+    if calls_in(loop.all) > 0:
+        yield f"the loop of steps has {calls_in(loop.all)} calls"
     if of.registers > limit:
         yield f"{of.registers} registers a thread are more than the plan's {limit}"
     if of.fast != EXPECTED_FAST:
