@@ -70,9 +70,9 @@ print(f"displacements of the device are off by {off:.1e} of the largest")
 check(0 < off < 0.05, "displacements on the device are not those of lanes within repeats")
 
 # The contact networks that the device describes by itself. In double the answers differ by rounding, but Newton's paths
-# differ by the tolerance of the tangents, 1e-4 of the stress, so that a few contacts open or close and are strong or not:
-# in this column of few points the rms difference is at most 0.015 of a field's largest value.
-# The bits are compared in unit tests.
+# differ by the tolerance of the tangents, 1e-4 of the stress, so that a few contacts open or close and are strong or
+# not: in this column of few points the rms difference is at most 0.015 of a field's largest value. The bits are
+# compared in unit tests.
 NETWORK = [
     "fabric_anisotropy",
     "fabric_direction",
