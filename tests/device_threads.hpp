@@ -135,7 +135,9 @@ struct ThreadBackend {
   }
   using WayBeside = HostBackend::WayBeside;
 
-  [[nodiscard]] static int first_level(int grains) {
+  template <class Law, class Drive>
+  [[nodiscard]] static int level_from(int level, int grains) {
+    if (level > 0) return level;
     if (Plan::in_registers) return grains <= Plan::grain_slots * threads ? 0 : 1;
     return first_pairs > 0 ? 0 : 1;
   }

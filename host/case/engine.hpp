@@ -29,8 +29,7 @@ namespace voussoir::host {
 /// The kernels' settings as far as [engine] decides them. A caller that wants tangents adds the settings of these.
 [[nodiscard]] kernels::EngineSettings engine_settings(const EngineCase& engine);
 
-/// The tangent of a choice. A choice without a value means the elastic tangent, or eq. (4) with teams of threads, which
-/// find no other.
+/// The tangent of a choice. A choice without a value means the elastic tangent.
 [[nodiscard]] kernels::TangentKind tangent_kind(TangentChoice choice);
 
 /// True where [engine] decides anything. It does not for packings and biaxial tests, which have rates of their own.

@@ -93,7 +93,7 @@ void RvePool::reside() {
   try {
     kernels::device::reside(batch_, device_.device, settings_.precision);
     start();
-  } catch (const std::runtime_error& fault) {
+  } catch (const std::exception& fault) {
     if (engine_.backend == Backend::gpu) throw;
     batch_.residence.reset();
     device_ = {nullptr, fmt::format("the device {} is not used: {}", device_.device->name(), fault.what())};
@@ -243,7 +243,7 @@ PackedRve RvePool::packed(std::size_t rve) const {
   PackedRve out;
   out.packing = batch_.packing(rve);
   load_rve(batch_.committed, rve, out);
-  out.void_ratio = void_ratio_of(rve);
+  out.void_ratio = void_ratio_at(rve, out.cell.det());
   out.pressure = report.pressure();
   out.coordination = 2.0 * report.contacts / out.packing.size();
   out.unbalanced = report.unbalanced;

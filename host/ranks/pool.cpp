@@ -280,7 +280,9 @@ std::vector<io::RveSnapshot> RankPool::snapshots(std::span<const std::int64_t> p
     if (point < 0 || point >= static_cast<std::int64_t>(size()))
       throw std::out_of_range("there is no Gauss point of this number");
     const auto p = static_cast<std::size_t>(point);
-    RvePool one(mix_.part({p}), options_);
+    PoolOptions by_lanes = options_;
+    by_lanes.engine.backend = Backend::lanes;
+    RvePool one(mix_.part({p}), by_lanes);
     for (std::size_t r = 0; r < points_.size(); ++r) {
       const auto found = std::lower_bound(points_[r].begin(), points_[r].end(), p);
       if (found == points_[r].end() || *found != p) continue;

@@ -1,6 +1,6 @@
 #pragma once
 /// The course of one RVE from its committed to its trial state, in double, the same for a lane of a group and for a
-/// team: the motion of its cell, the steps at which its list is renewed and its state is judged, and its end.
+/// block: the motion of its cell, the steps at which its list is renewed and its state is judged, and its end.
 
 #include <cmath>
 

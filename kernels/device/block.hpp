@@ -6,6 +6,7 @@
 /// the others wrote before it.
 
 #include <Kokkos_Core.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -80,6 +81,17 @@ template <class real>
 struct alignas(2 * sizeof(real)) Two {
   real x, y;
 };
+
+inline constexpr int levels_in_memory = 3;
+
+/// Pairs for which a block has room whose pairs are in memory: twice with room for lists of usual and of wide skins,
+/// which have 2 to 4 pairs a grain, and then for all pairs, as far as 32 bits number the entries of both grains.
+[[nodiscard]] inline int room_in_memory(int level, int grains) {
+  constexpr std::int64_t most = std::int64_t(1) << 29;
+  const std::int64_t n = grains, of_all = std::max(n * (n - 1) / 2, 2 * n);
+  const std::int64_t few = (level == 0 ? 8 : 64) * n;
+  return static_cast<int>(std::min(most, level + 1 == levels_in_memory ? of_all : std::min(few, of_all)));
+}
 
 /// Gives out pieces of a memory, one after another.
 class Carver {

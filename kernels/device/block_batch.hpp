@@ -77,6 +77,7 @@ struct DeviceCandidates {
   double* spent;       ///< most by which two grains have come nearer since, in the committed state [m]
   double* spending;    ///< the same in the trial state [m]; negative: not known
   int capacity;        ///< of an RVE
+  bool of_blocks;      ///< the arrays are by block and not by RVE: candidates of this launch alone
 };
 
 /// What one call works on. `order` has the RVEs of the call, most work first; block k advances order[k].

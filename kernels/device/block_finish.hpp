@@ -102,10 +102,11 @@ template <class Run>
   reduce_for_all<Largest>(run, numbers);
   const DeviceCandidates& of = run.batch.candidates;
   alone(run, [&] {
-    const double skin = of.skin[run.rve];
+    const double skin = of.skin[run.candidates()];
     if (skin < 0) return;  // there was a rebase, and the motion before it is not known any more
     const double farthest = run.scales().reach + skin - run.scales().skin;
-    of.spending[run.rve] = of.spent[run.rve] + 2.0 * std::sqrt(numbers[0]) + run.course().f_minus_i.norm() * farthest;
+    of.spending[run.candidates()] = of.spent[run.candidates()] + 2.0 * std::sqrt(numbers[0]) +
+                                    run.course().f_minus_i.norm() * farthest;
   });
   return !(numbers[1] > 0);
 }

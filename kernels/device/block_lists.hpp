@@ -125,7 +125,8 @@ template <class Run>
 template <class Run>
 [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Listing find_candidates(const Run& run, const double* position, double skin) {
   const DeviceCandidates& to = run.batch.candidates;
-  std::uint32_t* const keys = to.key + static_cast<std::size_t>(run.rve) * static_cast<std::size_t>(to.capacity);
+  std::uint32_t* const keys = to.key +
+                              static_cast<std::size_t>(run.candidates()) * static_cast<std::size_t>(to.capacity);
   const Bins bins(run.at.control->cell, 2.0 * run.scales().largest_radius + skin, run.grains);
   const BinScratch scratch(run);
   fill_bins(run, bins, scratch, position);
@@ -153,7 +154,7 @@ template <class Run>
     meet(i, [&](int j) { row[own++] = pair_key(i, j); });
     sort_few(row, own);
   });
-  alone(run, [&] { to.count[run.rve] = all; });
+  alone(run, [&] { to.count[run.candidates()] = all; });
   return Listing::done;
 }
 
@@ -163,13 +164,14 @@ template <class Run>
   const DeviceCandidates& to = run.batch.candidates;
   const double wide = candidate_skin * run.scales().skin;
   // Without candidates, what was spent is not known.
-  const bool hold = to.skin[run.rve] >= 0 && to.spent[run.rve] <= to.skin[run.rve] - run.scales().skin;
+  const bool hold = !to.of_blocks && to.skin[run.candidates()] >= 0 &&
+                    to.spent[run.candidates()] <= to.skin[run.candidates()] - run.scales().skin;
   run.block.barrier();
   if (hold) return Listing::done;
   if (find_candidates(run, position, wide) == Listing::too_many) return Listing::too_many;
   alone(run, [&] {
-    to.skin[run.rve] = wide;
-    to.spent[run.rve] = 0;
+    to.skin[run.candidates()] = wide;
+    to.spent[run.candidates()] = 0;
   });
   return Listing::done;
 }
@@ -178,9 +180,9 @@ template <class Run>
 template <class Run>
 [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION Listing choose_pairs(Run& run, const double* position) {
   const DeviceCandidates& from = run.batch.candidates;
-  const std::uint32_t* const keys = from.key +
-                                    static_cast<std::size_t>(run.rve) * static_cast<std::size_t>(from.capacity);
-  const int candidates = from.count[run.rve];
+  const std::uint32_t* const keys = from.key + static_cast<std::size_t>(run.candidates()) *
+                                                   static_cast<std::size_t>(from.capacity);
+  const int candidates = from.count[run.candidates()];
   if (candidates > most_candidates(run)) return Listing::too_many;
   static_assert(candidates_per_pair * sizeof(int) <= sizeof(Four<typename Run::real>), "a flag for each candidate");
   int* const flag = reinterpret_cast<int*>(run.at.action);

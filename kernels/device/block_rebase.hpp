@@ -59,7 +59,7 @@ template <class Run>
     run.batch.overflown[run.rve] = 0;
     if (run.batch.sample_room > 0) run.batch.sample_count[run.rve] = 0;  // a block without room may have taken some
     run.batch.states.evaluated[run.rve] = 0;
-    run.batch.candidates.spending[run.rve] = -1;
+    run.batch.candidates.spending[run.candidates()] = -1;
   });
   double unknown[1] = {0};
   each_grain(run, [&](int i) {
@@ -119,8 +119,8 @@ template <class Run>
   });
   alone(run, [&] {
     run.course().f_minus_i = Mat2{};
-    run.batch.candidates.skin[run.rve] = -1;  // the candidates of the trial state's way are not those of the committed
-                                              // one
+    run.batch.candidates.skin[run.candidates()] = -1;  // the candidates of the trial state's way are not those of the
+                                                       // committed one
   });
   const KeptContacts<real> contacts{run.at.kept_key, run.at.kept_history, kept};
   if (!reduce_cell(run, to.position)) {

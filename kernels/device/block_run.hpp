@@ -189,6 +189,8 @@ struct BlockRun {
     if constexpr (!classes) return first_material;
     return batch.packings.materials[packing * batch.packings.class_stride + batch.packings.class_of[grain(i)]];
   }
+  /// Where the block's candidates stand among those of all.
+  [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION int candidates() const { return batch.candidates.of_blocks ? number : rve; }
   [[nodiscard]] KOKKOS_FORCEINLINE_FUNCTION DeviceState committed() const {
     return state_of(batch.states, batch.states.committed_slot[rve], rve);
   }
@@ -285,7 +287,7 @@ struct BlockSlots {
   Slots<HeldPair<typename Run::Law>, Run::Plan::pair_slots> pair;
 
   KOKKOS_FORCEINLINE_FUNCTION explicit BlockSlots(const Run& run)
-      : pair(run.at.pairs, run.capacity, run.block.thread(), run.block.threads()) {}
+      : pair(run.at.pairs, run.listed, run.block.thread(), run.block.threads()) {}
 
   /// Takes the pairs over from the device's memory.
   KOKKOS_FORCEINLINE_FUNCTION void load(const Run& run) {

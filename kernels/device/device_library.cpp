@@ -36,6 +36,11 @@ void take_functions(void* handle, Library& to) {
   }
   to.count = reinterpret_cast<CountFunction>(::dlsym(handle, count_symbol));
   to.open = reinterpret_cast<OpenFunction>(::dlsym(handle, open_symbol));
+  if (to.count == nullptr || to.open == nullptr) {
+    to.why = "the library " + to.path + " lacks functions";
+    to.count = nullptr;
+    to.open = nullptr;
+  }
 }
 
 Library open_library() {

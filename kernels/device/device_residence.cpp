@@ -23,6 +23,7 @@ class DeviceResidence final : public Residence {
     return advance_with(batch, requests, settings, reports, rves);
   }
   void commit(std::span<const int> kept) override {
+    if (outdated_) throw std::logic_error("states that the host has written since were not advanced");
     work_ += rves_->commit(kept);
     ahead_ = true;
   }

@@ -8,9 +8,10 @@
 ///   copy_committed(from, to)        copy_committed_state for all RVEs
 ///   WayBeside                       its copy_down may run beside the other functions, in a thread of its own
 ///   follows_stresses                whether servo drives are compiled
-///   levels, first_level(grains)     how many instances with ever more room there are, and the first that fits
-///   room<Law, Drive>(level, grains) pairs for which a block of a level has room
-///   launch<Law, Drive, classes>(batch, settings, level, blocks, pairs)   advances the RVEs order[0 .. blocks - 1], and
+///   levels                          how many instances with ever more room there are
+///   level_from<Law, Drive>(level, grains)   the first of them from `level` on that the device grants and the grains
+///   fit room<Law, Drive>(level, grains) pairs for which a block of a level has room launch<Law, Drive, classes>(batch,
+///   settings, level, blocks, pairs)   advances the RVEs order[0 .. blocks - 1], and
 ///                                   returns when all have ended
 ///   describe(batch)                 describes the committed states of all RVEs (block_network.hpp)
 
@@ -43,13 +44,15 @@ struct HostBackend {
     static void copy_down(void* to, const void* from, std::size_t bytes) { HostBackend::copy_down(to, from, bytes); }
   };
 
-  [[nodiscard]] static int first_level(int) { return 0; }
+  /// The first level from `level` on that serves packings of so many grains on this device.
+  template <class Law, class Drive>
+  [[nodiscard]] static int level_from(int level, int) {
+    return level;
+  }
   /// A list with a skin of usual size has 2 to 4 pairs for each grain; the last level has room for all pairs.
   template <class Law, class Drive>
   [[nodiscard]] static int room(int level, int grains) {
-    const int of_all = std::max(grains * (grains - 1) / 2, 2 * grains);
-    const int few = level == 0 ? 8 * grains : 64 * grains;
-    return std::max(level == 2 ? of_all : std::min(few, of_all), 64);
+    return std::max(room_in_memory(level, grains), 64);
   }
 
   template <class Law, class Drive, bool classes>

@@ -25,6 +25,33 @@ struct CallArrays {
   int sample_room = 0;
 };
 
+/// Candidates on the device, of RVEs or of the blocks of one launch.
+template <class Backend>
+struct CandidateArrays {
+  DeviceArray<std::uint32_t, Backend> key;
+  DeviceArray<int, Backend> count;
+  DeviceArray<double, Backend> skin, spent, spending;
+  int capacity = 0;
+
+  /// Makes room. Returns whether what was there is lost.
+  bool grow(std::size_t owners, int pairs) {
+    const int wanted = candidates_per_pair * pairs;
+    if (wanted <= capacity && owners <= count.size()) return false;
+    capacity = 0;  // in case that there is no memory
+    key = DeviceArray<std::uint32_t, Backend>();
+    key = DeviceArray<std::uint32_t, Backend>(owners * static_cast<std::size_t>(wanted));
+    count.at_least(owners);
+    skin.at_least(owners);
+    spent.at_least(owners);
+    spending.at_least(owners);
+    capacity = wanted;
+    return true;
+  }
+  [[nodiscard]] DeviceCandidates view(bool of_blocks) const {
+    return {key.data(), count.data(), skin.data(), spent.data(), spending.data(), capacity, of_blocks};
+  }
+};
+
 /// Makes room for the traces that requests ask for.
 template <class Arrays>
 void make_sample_room(Arrays& to, std::span<const ServoRequest> requests) {
@@ -70,11 +97,7 @@ class ResidentBatch final : public ResidentRves {
         packings_(all_packings_),
         states_(static_cast<int>(size()), packings_.grains(), rves.committed.contacts, rves.committed.history),
         packing_of_(size()),
-        overflown_(size()),
-        candidate_count_(size()),
-        candidate_skin_(size()),
-        candidate_spent_(size()),
-        candidate_spending_(size()) {
+        overflown_(size()) {
     if (rves.committed.history != history_size<Law>)
       throw std::invalid_argument("the batch holds the histories of another law");
     packing_of_.write(packing_of_rve_);
@@ -107,13 +130,14 @@ class ResidentBatch final : public ResidentRves {
     const std::size_t n = changes.size();
     std::vector<double> skin(n), spent(n), spending(n);
     DeviceWork work{.bytes_up = 2 * n, .bytes_down = n};
-    work.bytes_down += candidate_skin_.read(skin) + candidate_spent_.read(spent) + candidate_spending_.read(spending);
+    if (kept_.capacity == 0) return work;  // nothing was advanced
+    work.bytes_down += kept_.skin.read(skin) + kept_.spent.read(spent) + kept_.spending.read(spending);
     for (std::size_t k = 0; k < n; ++k) {
       if (changes[k] == 0) continue;
       if (spending[k] < 0) skin[k] = -1;
       spent[k] = spending[k];
     }
-    work.bytes_up += candidate_skin_.write(skin) + candidate_spent_.write(spent);
+    work.bytes_up += kept_.skin.write(skin) + kept_.spent.write(spent);
     return work;
   }
   DeviceWork describe(const MicrostructureRequest& wanted, std::span<CommittedSums> out) override {
@@ -134,10 +158,8 @@ class ResidentBatch final : public ResidentRves {
   double skin_ = -1, overlap_limit_ = -1;   ///< of the settings for which the packings are written
   DeviceArray<int, Backend> packing_of_;
   DeviceArray<std::uint8_t, Backend> overflown_;
-  DeviceArray<std::uint32_t, Backend> candidate_key_;
-  DeviceArray<int, Backend> candidate_count_;
-  DeviceArray<double, Backend> candidate_skin_, candidate_spent_, candidate_spending_;
-  int candidate_capacity_ = 0;
+  CandidateArrays<Backend> kept_;       ///< by RVE, from evaluation to evaluation
+  CandidateArrays<Backend> of_launch_;  ///< by block, of RVEs that run again with more room
   DeviceArray<ContactCounts, Backend> contact_counts_;
   DeviceArray<CommittedSums, Backend> committed_sums_;
   CallArrays<StrainDrive, Backend> strain_;
@@ -150,14 +172,17 @@ class ResidentBatch final : public ResidentRves {
   [[nodiscard]] auto& arrays_of(const StrainDrive*) { return strain_; }
   [[nodiscard]] auto& arrays_of(const ServoControl*) { return servo_; }
 
-  void forget_candidates() { candidate_skin_.write(std::vector<double>(size(), -1.0)); }
-
-  void grow_candidates(int pairs) {
-    const int wanted = candidates_per_pair * pairs;
-    if (wanted <= candidate_capacity_) return;
-    candidate_capacity_ = wanted;
-    candidate_key_ = DeviceArray<std::uint32_t, Backend>(size() * static_cast<std::size_t>(wanted));
-    forget_candidates();
+  void forget_candidates() {
+    if (kept_.capacity > 0) kept_.skin.write(std::vector<double>(size(), -1.0));
+  }
+  /// Candidates for a launch. Those of RVEs that run again are not kept, since few RVEs would decide the room of all.
+  [[nodiscard]] DeviceCandidates candidates(bool again, int blocks, int pairs) {
+    if (again) {
+      of_launch_.grow(static_cast<std::size_t>(blocks), pairs);
+    } else if (kept_.grow(size(), pairs)) {
+      forget_candidates();
+    }
+    return again ? of_launch_.view(true) : kept_.view(false);
   }
 
   void write_packings(const EngineSettings& settings) {
@@ -184,27 +209,17 @@ class ResidentBatch final : public ResidentRves {
   }
 
   template <class Drive>
-  [[nodiscard]] BlockBatch<real, Drive> view(CallArrays<Drive, Backend>& of) {
-    return {packings_.view(),
-            states_.view(),
-            {candidate_key_.data(), candidate_count_.data(), candidate_skin_.data(), candidate_spent_.data(),
-             candidate_spending_.data(), candidate_capacity_},
-            packing_of_.data(),
-            of.order.data(),
-            of.drives.data(),
-            of.reports.data(),
-            of.samples.data(),
-            of.sample_count.data(),
-            of.sample_room,
-            overflown_.data()};
+  [[nodiscard]] BlockBatch<real, Drive> view(CallArrays<Drive, Backend>& of, const DeviceCandidates& candidates) {
+    return {packings_.view(),       states_.view(),   candidates,        packing_of_.data(),
+            of.order.data(),        of.drives.data(), of.reports.data(), of.samples.data(),
+            of.sample_count.data(), of.sample_room,   overflown_.data()};
   }
 
-  /// Runs the RVEs of the call in blocks of one level of room.
+  /// Runs the RVEs of the call in blocks of one level of room. @param again whether they had too little room before
   template <class Drive>
-  void launch(CallArrays<Drive, Backend>& arrays, const EngineSettings& settings, int level, int blocks) {
+  void launch(CallArrays<Drive, Backend>& arrays, const EngineSettings& settings, int level, bool again, int blocks) {
     const int pairs = Backend::template room<Law, Drive>(level, packings_.grains());
-    grow_candidates(pairs);
-    const BlockBatch<real, Drive> batch = view(arrays);
+    const BlockBatch<real, Drive> batch = view(arrays, candidates(again, blocks, pairs));
     if constexpr (Law::has_rolling) {
       if (packings_.classes()) return Backend::template launch<Law, Drive, true>(batch, settings, level, blocks, pairs);
     }
@@ -227,10 +242,12 @@ class ResidentBatch final : public ResidentRves {
       return predicted_steps(requests[k], reports[k].steps);
     };
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return steps(a) > steps(b); });
-    for (int level = Backend::first_level(packings_.grains()); !order.empty(); ++level) {
+    const int first = Backend::template level_from<Law, Drive>(0, packings_.grains());
+    for (int level = first; !order.empty();
+         level = Backend::template level_from<Law, Drive>(level + 1, packings_.grains())) {
       const bool last = level + 1 == Backend::levels;
       work.bytes_up += write_requests<Drive>(arrays, requests, settings, order);
-      launch<Drive>(arrays, settings, level, static_cast<int>(order.size()));
+      launch<Drive>(arrays, settings, level, level != first, static_cast<int>(order.size()));
       order = take_answers(arrays, reports, order, last, work);
       work.enlarged += order.size();
     }

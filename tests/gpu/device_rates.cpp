@@ -55,6 +55,8 @@ Time time_of(kernels::RveBatch& batch, int steps, kernels::Precision precision, 
   return out;
 }
 
+int faults = 0;  ///< RVEs that failed, and calls that did
+
 void print_rates(const char* what, kernels::RveBatch& batch, kernels::Precision precision) {
   const Time few = time_of(batch, 10, precision, kernels::TangentKind::contact);
   const Time many = time_of(batch, 410, precision, kernels::TangentKind::contact);
@@ -66,6 +68,7 @@ void print_rates(const char* what, kernels::RveBatch& batch, kernels::Precision 
               1e-9 * static_cast<double>(many.particle_steps) / many.seconds,
               1e-9 * static_cast<double>(mesh.particle_steps) / mesh.seconds, few.failed + many.failed + mesh.failed);
   std::fflush(stdout);
+  faults += few.failed + many.failed + mesh.failed;
 }
 
 void measure(const std::shared_ptr<kernels::device::Device>& device, const host::PackedRve& rve, std::size_t n) {
@@ -80,6 +83,7 @@ void measure(const std::shared_ptr<kernels::device::Device>& device, const host:
                   static_cast<double>(work.bytes_down) / static_cast<double>(9 * n), work.enlarged);
     } catch (const std::exception& error) {
       std::printf("%5d %6zu: %s\n", rve.packing.size(), n, error.what());
+      ++faults;
     }
   }
 }
@@ -107,5 +111,6 @@ int main(int argc, char** argv) {
     kernels::RveBatch lanes = clones(rve, 64);
     print_rates("lanes", lanes, kernels::Precision::float32);
   }
-  return 0;
+  if (faults > 0) std::printf("%d calls or RVEs failed\n", faults);
+  return faults > 0 ? 1 : 0;
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// A device with CUDA: its memory, and the launch of one block for each RVE. host_backend.hpp says what a backend has.
 ///
-/// The kernel is a plain __global__ function and not a Kokkos team policy: an RVE of 700 grains wants 50 KiB of fast
+/// The kernel is a plain __global__ function and not a Kokkos team policy: an RVE of 700 grains wants 79 KiB of fast
 /// memory, and Kokkos 4.5 grants a team 41 KiB of the 227 KiB that a block of compute capability 9.0 may have.
 
 #include <algorithm>
@@ -89,16 +89,19 @@ struct CudaBackend {
     await_kernel();
   }
 
-  [[nodiscard]] static int first_level(int grains) {
-    return grains <= SmallPlan::grains ? 0 : (grains <= MiddlePlan::grains ? 1 : (grains <= LargePlan::grains ? 2 : 3));
+  /// An instance whose block needs more fast memory than the device grants is left out (Large in double).
+  template <class Law, class Drive>
+  [[nodiscard]] static int level_from(int level, int grains) {
+    if (level <= 0 && grains <= SmallPlan::grains && is_granted<Law, Drive, SmallPlan>()) return 0;
+    if (level <= 1 && grains <= MiddlePlan::grains && is_granted<Law, Drive, MiddlePlan>()) return 1;
+    if (level <= 2 && grains <= LargePlan::grains && is_granted<Law, Drive, LargePlan>()) return 2;
+    return std::max(level, 3);
   }
   template <class Law, class Drive>
   [[nodiscard]] static int room(int level, int grains) {
     constexpr std::array<int, 3> in_registers{SmallPlan::pairs, MiddlePlan::pairs, LargePlan::pairs};
     if (level < 3) return in_registers[static_cast<std::size_t>(level)];
-    const int of_all = std::max(grains * (grains - 1) / 2, 2 * grains);
-    const int few = level == 3 ? 8 * grains : 64 * grains;
-    return std::max(level == 5 ? of_all : std::min(few, of_all), 1024);
+    return std::max(room_in_memory(level - 3, grains), 1024);
   }
 
   template <class Law, class Drive, bool classes>
@@ -117,16 +120,32 @@ struct CudaBackend {
   }
 
  private:
+  template <class Law, class Drive, class Of>
+  [[nodiscard]] static bool is_granted() {
+    int device = 0, most = 0;
+    check_cuda(cudaGetDevice(&device), "no device is chosen");
+    check_cuda(cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device),
+               "the device does not say what it grants");
+    const BlockMemory<Law, Drive, typename Of::Plan> sizes(no_memory(), no_memory(), Of::grains, Of::pairs,
+                                                           Of::threads);
+    return sizes.fast_bytes <= static_cast<std::size_t>(most);
+  }
+
   /// Waits for the kernel launched last, and not for copies beside it.
   static void await_kernel() {
     check_cuda(cudaGetLastError(), "the kernel was not launched");
     check_cuda(cudaStreamSynchronize(nullptr), "the kernel failed");
   }
 
+  /// How much slow memory there is.
+  [[nodiscard]] static std::size_t& slow_bytes() {
+    static std::size_t size = 0;
+    return size;
+  }
   /// The slow memory of all blocks of a launch; it is kept from launch to launch.
   [[nodiscard]] static char* slow_memory(std::size_t bytes) {
     static char* memory = nullptr;
-    static std::size_t size = 0;
+    std::size_t& size = slow_bytes();
     if (bytes > size) {
       if (memory != nullptr) release(memory);
       memory = nullptr;
@@ -147,8 +166,10 @@ struct CudaBackend {
         cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(sizes.fast_bytes)),
         "the device grants a block too little fast memory");
     const std::size_t slow = (sizes.slow_bytes + 255) / 256 * 256;
-    // Blocks whose memory would exceed a share of the device's come one after another.
-    constexpr std::size_t most = std::size_t(8) << 30;
+    // Blocks whose memory would exceed half of what the device has left come one after another.
+    std::size_t left = 0, all = 0;
+    check_cuda(cudaMemGetInfo(&left, &all), "the device does not say how much memory it has");
+    const std::size_t most = std::max(left / 2, slow_bytes());
     const int at_once = static_cast<int>(std::clamp<std::size_t>(most / std::max<std::size_t>(slow, 1), 1, 1U << 30));
     BlockBatch<real_of<typename Law::Value>, Drive> part = batch;
     for (int first = 0; first < blocks; first += at_once) {

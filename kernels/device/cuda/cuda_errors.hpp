@@ -10,7 +10,9 @@ namespace voussoir::kernels::device {
 
 /// @throws std::runtime_error with the words of the runtime
 inline void check_cuda(cudaError_t error, const char* what) {
-  if (error != cudaSuccess) throw std::runtime_error(std::string(what) + ": " + cudaGetErrorString(error));
+  if (error == cudaSuccess) return;
+  cudaGetLastError();  // the runtime would tell it to the next launch again
+  throw std::runtime_error(std::string(what) + ": " + cudaGetErrorString(error));
 }
 
 }  // namespace voussoir::kernels::device
