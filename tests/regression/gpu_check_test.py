@@ -55,7 +55,8 @@ if AGREEMENT.exists():
     shown, summary = gpu_check(real, "agreement", library=os.environ["VOUSSOIR_EMULATED_GPU"])
     check("agreement          done" in shown, f"the emulated device: {shown}")
     check(summary[1].startswith("device: emulated device 0"), f"the device is not named: {summary[1]}")
-    check("float stress off by" in summary[2] and "good" in summary[2], f"the differences are not told: {summary[2]}")
+    told = "in float: stress off by" in summary[2] and "good" in summary[2]
+    check(told, f"the differences are not told: {summary[2]}")
 
 # Programs that fail, hang or are missing, with a device that a script pretends.
 pretend = 'case $1 in info) echo "device 0: pretended" ;; run) echo "no equilibrium was found"; exit 3 ;; esac'
