@@ -35,7 +35,6 @@ class BlockDevice final : public device::Device {
  public:
   explicit BlockDevice(const Blocks& blocks) : blocks_(blocks) {}
   [[nodiscard]] std::string name() const override { return "blocks on the host"; }
-  [[nodiscard]] std::size_t memory_bytes() const override { return std::size_t(1) << 33; }
   [[nodiscard]] std::unique_ptr<device::ResidentRves> hold(const device::RveSet& rves, Precision precision) override {
     return kernels::hold(rves, precision, blocks_);
   }

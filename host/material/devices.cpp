@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "host/case/engine.hpp"
+
 namespace voussoir::host {
 
 DeviceChoice choose_device(const EngineCase& engine, kernels::TangentKind tangent, int local_rank) {
@@ -22,6 +24,11 @@ DeviceChoice choose_device(const EngineCase& engine, kernels::TangentKind tangen
   if (engine.backend == Backend::gpu && !choice.device)
     throw std::runtime_error("a device is asked for, but none can be used: " + why);
   return choice;
+}
+
+DeviceChoice choose_device(const Case& input, int local_rank) {
+  if (!uses_engine(input.kind, input.material)) return {};
+  return choose_device(input.engine, tangent_kind(input.newton.tangent), local_rank);
 }
 
 std::string sentence_of(const DeviceChoice& choice) {

@@ -22,6 +22,9 @@ struct DeviceChoice {
 /// @throws std::runtime_error where the case asks for a device and there is none
 [[nodiscard]] DeviceChoice choose_device(const EngineCase& engine, kernels::TangentKind tangent, int local_rank);
 
+/// The same for a case; none where the case runs no RVEs of a mesh.
+[[nodiscard]] DeviceChoice choose_device(const Case& input, int local_rank);
+
 /// A sentence about the choice for people; empty where there is no device to speak of.
 [[nodiscard]] std::string sentence_of(const DeviceChoice& choice);
 

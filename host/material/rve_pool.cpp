@@ -13,6 +13,7 @@
 #include "host/material/answers.hpp"
 #include "host/material/deformation.hpp"
 #include "kernels/describe_committed.hpp"
+#include "kernels/device/device_residence.hpp"
 #include "kernels/state/committed_contacts.hpp"
 #include "kernels/state/mobility.hpp"
 

@@ -11,7 +11,6 @@
 #include "host/material/state_records.hpp"
 #include "host/packing/variety.hpp"
 #include "kernels/advance_rves.hpp"
-#include "kernels/device/device_residence.hpp"
 
 namespace voussoir::host {
 
@@ -61,7 +60,6 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   }  ///< least pressure that the reports' ratios are relative to [Pa]
   /// Says on which device the RVEs reside, or why they do not; empty where there is none to speak of.
   [[nodiscard]] std::string device_sentence() const { return sentence_of(device_); }
-  [[nodiscard]] kernels::device::DeviceWork device_work() const { return kernels::device::device_work(batch_); }
   [[nodiscard]] std::uint64_t identity() const;
   [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;  ///< of `n` RVEs
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);

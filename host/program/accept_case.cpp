@@ -68,9 +68,9 @@ CaseSize checked_size(const Case& input) {
 
 /// Refuses a case that asks for a GPU where there is none: the machine of this command decides, as for `engine.isa`.
 void refuse_missing_device(const Case& input) {
-  if (input.engine.backend != Backend::gpu || !uses_engine(input.kind, input.material)) return;
+  if (input.engine.backend != Backend::gpu) return;
   try {
-    static_cast<void>(choose_device(input.engine, tangent_kind(input.newton.tangent), local_rank()));
+    static_cast<void>(choose_device(input, local_rank()));
   } catch (const std::runtime_error& fault) {
     throw io::InputError(place_of(input, "engine.backend"), "engine.backend", fault.what());
   }

@@ -90,10 +90,8 @@ Outcome command_check(const std::filesystem::path& case_file, const std::vector<
   std::string answer = input.resolved + "\n";
   if (uses_engine(input.kind, input.material)) answer += "# " + engine_note(input.engine, input.soil) + "\n";
   answer += "# " + kernels::lanes_sentence(kernels::choose_lanes(input.engine.isa)) + "\n";
-  if (uses_engine(input.kind, input.material)) {
-    const DeviceChoice choice = choose_device(input.engine, tangent_kind(input.newton.tangent), local_rank());
-    if (const std::string line = sentence_of(choice); !line.empty()) answer += "# " + line + "\n";
-  }
+  if (const std::string line = sentence_of(choose_device(input, local_rank())); !line.empty())
+    answer += "# " + line + "\n";
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";
   if (!range.empty()) answer += "# " + range + "\n";

@@ -4,7 +4,6 @@
 
 #include <Kokkos_Core.hpp>
 
-#include "host/case/engine.hpp"
 #include "host/material/devices.hpp"
 #include "host/process/build_info.hpp"
 #include "host/ranks/session.hpp"
@@ -24,8 +23,7 @@ std::string lanes_of(const kernels::LaneChoice& choice) {
 }
 
 std::string device_of(const Case& input) {
-  if (!uses_engine(input.kind, input.material)) return "none";
-  const DeviceChoice choice = choose_device(input.engine, tangent_kind(input.newton.tangent), local_rank());
+  const DeviceChoice choice = choose_device(input, local_rank());
   return choice.device ? choice.device->name() : "none";
 }
 

@@ -31,7 +31,7 @@ struct DeviceSearch {
 /// version of the program: it is raised with every change of what crosses the border, and it changes with the sizes of
 /// what does.
 /// Vectors and texts of the standard library cross too, so that both sides must be compiled with the same one.
-inline constexpr std::size_t interface_number = 3 + 1000 * (sizeof(RveReport) + 7 * sizeof(StrainRequest) +
+inline constexpr std::size_t interface_number = 4 + 1000 * (sizeof(RveReport) + 7 * sizeof(StrainRequest) +
                                                             11 * sizeof(ServoRequest) + 13 * sizeof(EngineSettings) +
                                                             17 * sizeof(Packing) + 19 * sizeof(HostStates) +
                                                             23 * sizeof(DeviceWork) + 29 * sizeof(CommittedSums));

@@ -76,8 +76,8 @@ class DeviceResidence final : public Residence {
   Work advance_with(const RveBatch& batch, std::span<const Request> requests, const EngineSettings& settings,
                     std::span<RveReport> reports, std::span<const int> rves) {
     if (settings.precision != precision_) throw std::logic_error("a batch on a device keeps its precision");
-    if (outdated_ && arriving_.valid()) arriving_.get();
     if (outdated_) {
+      if (arriving_.valid()) arriving_.get();
       const HostStates states = plain(batch.committed);
       rves_->upload(states);
       work_.bytes_up += batch.size() * bytes_of_rve(states);

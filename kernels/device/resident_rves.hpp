@@ -87,7 +87,6 @@ class Device {
   virtual ~Device() = default;
 
   [[nodiscard]] virtual std::string name() const = 0;
-  [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
   /// Holds RVEs. @throws std::invalid_argument where the device cannot; std::runtime_error where it has no memory for
   /// them
   [[nodiscard]] virtual std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) = 0;

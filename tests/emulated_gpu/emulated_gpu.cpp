@@ -22,7 +22,6 @@ class EmulatedDevice final : public Device {
  public:
   explicit EmulatedDevice(std::size_t number) : number_(number) {}
   [[nodiscard]] std::string name() const override { return "emulated device " + std::to_string(number_); }
-  [[nodiscard]] std::size_t memory_bytes() const override { return std::size_t(1) << 33; }
   [[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) override {
     if (rves.packing_of.size() > number_in("VOUSSOIR_EMULATED_ROOM", rves.packing_of.size()))
       throw std::runtime_error("the device has no memory left");

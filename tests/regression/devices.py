@@ -9,6 +9,17 @@ LIBRARY = os.environ["VOUSSOIR_EMULATED_GPU"]
 EMULATED = {"VOUSSOIR_GPU_LIBRARY": LIBRARY}
 
 
+def small_column(elements=3, step=0.2, candidates=1):
+    """Settings of a column that is short on the emulated device, which is slow."""
+    return [
+        "packing.grains=60",
+        f"packing.candidates={candidates}",
+        "packing.folder=packings",
+        f"column.elements={elements}",
+        f"gravity.uniform_step={step}",
+    ]
+
+
 def with_environment(words, **environment):
     return ["env", *(f"{name}={value}" for name, value in environment.items()), *words]
 

@@ -2,18 +2,12 @@
 do is left to lanes or refused."""
 
 import numpy as np
-from devices import far_from, log_of, on_device
+from devices import far_from, log_of, on_device, small_column
 from program import PROGRAM, ROOT, check, check_same, command, fresh, run, table
 
 GPU = 'engine.backend="gpu"'
 DATA = ROOT / "tests/data/packings"
-SETTINGS = [
-    "packing.grains=60",
-    "packing.candidates=3",
-    "packing.folder=packings",
-    "column.elements=3",
-    "gravity.uniform_step=0.1",
-]
+SETTINGS = small_column(step=0.1, candidates=3)
 
 
 def words(folder, settings, *further, case="column"):

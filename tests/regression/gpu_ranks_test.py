@@ -4,18 +4,12 @@ import os
 import signal
 import subprocess
 
-from devices import log_of, on_device
+from devices import log_of, on_device, small_column
 from launcher import end, on_ranks, skip_without_mpi, start, worker
 from program import check, check_same, command, fresh, run
 
 skip_without_mpi()
-SETTINGS = [
-    "packing.grains=60",
-    "packing.candidates=1",
-    "packing.folder=packings",
-    "column.elements=3",
-    "gravity.uniform_step=0.2",
-]
+SETTINGS = small_column()
 
 
 def words(folder, *further):

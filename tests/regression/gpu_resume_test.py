@@ -3,16 +3,10 @@
 import signal
 
 import h5py
-from devices import far_from, log_of, on_device
+from devices import far_from, log_of, on_device, small_column
 from program import check, check_same, command, fresh, run, start_and_signal
 
-SETTINGS = [
-    "packing.grains=60",
-    "packing.candidates=1",
-    "packing.folder=packings",
-    "column.elements=4",
-    "gravity.uniform_step=0.05",
-]
+SETTINGS = small_column(elements=4, step=0.05)
 
 
 def words(folder, *further):

@@ -6,16 +6,10 @@ import subprocess
 
 import h5py
 import numpy as np
-from devices import EMULATED, far_from, last, log_of, on_device, with_environment
+from devices import EMULATED, far_from, last, log_of, on_device, small_column, with_environment
 from program import PROGRAM, check, check_same, command, fresh, run
 
-SETTINGS = [
-    "packing.grains=60",
-    "packing.candidates=1",
-    "packing.folder=packings",
-    "column.elements=3",
-    "gravity.uniform_step=0.2",
-]
+SETTINGS = small_column()
 
 
 def devices(**environment):

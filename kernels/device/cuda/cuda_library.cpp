@@ -21,7 +21,6 @@ class CudaDevice final : public Device {
     return std::string(properties_.name) + ", compute capability " + std::to_string(properties_.major) + "." +
            std::to_string(properties_.minor) + ", " + std::to_string(properties_.totalGlobalMem >> 20) + " MiB";
   }
-  [[nodiscard]] std::size_t memory_bytes() const override { return properties_.totalGlobalMem; }
   [[nodiscard]] std::unique_ptr<ResidentRves> hold(const RveSet& rves, Precision precision) override {
     check_cuda(cudaSetDevice(number_), "the device cannot be chosen");
     return choose_law(rves, precision, [&]<class Law>(Instance<Law>) { return hold_on_cuda<Law>(rves); });

@@ -65,7 +65,6 @@ class ListedDevice final : public device::Device {
  public:
   explicit ListedDevice(Calls& calls) : calls_(calls) {}
   [[nodiscard]] std::string name() const override { return "listed"; }
-  [[nodiscard]] std::size_t memory_bytes() const override { return 1; }
   [[nodiscard]] std::unique_ptr<device::ResidentRves> hold(const device::RveSet&, Precision) override {
     return std::make_unique<ListedRves>(calls_);
   }
