@@ -341,8 +341,7 @@ std::vector<Table> Table::tables(std::string_view key) const {
 }
 
 InputError Table::error(std::string_view key, const std::string& sentence) const {
-  const CaseNode* node = node_->find(key);
-  return {node != nullptr ? node->place : node_->place, full_key(key), sentence};
+  return {place(key), full_key(key), sentence};
 }
 
 CaseFile CaseFile::load(const std::filesystem::path& path, const std::vector<std::string>& overrides) {

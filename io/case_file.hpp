@@ -78,6 +78,21 @@ class Table {
   /// keys that the user wrote are reported (CaseFile::idle_keys).
   void declare_idle(std::string_view key, const std::string& reason) const;
 
+  /// The same, where one [key] table may stand for an array of one.
+  [[nodiscard]] std::vector<Table> table_or_tables(std::string_view key) const;
+  /// The names of the keys that the file holds in this table, in its order, for tables whose keys the user names.
+  [[nodiscard]] std::vector<std::string> names() const;
+  /// The entries of an array, or one value for an array of one, each as TOML: values that are handed on as overrides.
+  /// An entry is a number, a text, a boolean, or an array of these.
+  [[nodiscard]] std::vector<std::string> values_as_toml(std::string_view key) const;
+  /// A text, or an array of texts.
+  [[nodiscard]] std::vector<std::string> text_or_texts(std::string_view key) const;
+  /// An array of arrays of texts; none where the key is not written.
+  [[nodiscard]] std::vector<std::vector<std::string>> lists_of_texts(std::string_view key) const;
+  [[nodiscard]] bool is_table(std::string_view key) const;  ///< whether the file holds a table under the key
+
+  /// "sweep.toml:12", where the key stands; the table's own place where the file does not hold the key.
+  [[nodiscard]] std::string place(std::string_view key) const;
   /// An error at this key's place in the file, for checks that need more than one value.
   [[nodiscard]] InputError error(std::string_view key, const std::string& sentence) const;
 

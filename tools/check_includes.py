@@ -43,6 +43,7 @@ ROOMS = {
         ("record",),
         ("stages", "element_tests"),
         ("estimate", "ensemble"),
+        ("sweep",),
         ("program",),
     ),
 }

@@ -286,4 +286,7 @@ inline constexpr std::array<std::pair<CaseKind, const char*>, 7> case_kind_names
 [[nodiscard]] std::string to_string(CaseKind kind);
 [[nodiscard]] std::string to_string(MaterialKind kind);
 
+/// The place of a key. A key that the user did not write stands where its table does, or is said with the title.
+[[nodiscard]] std::string place_of(const Case& input, const std::string& key);
+
 }  // namespace voussoir::host

@@ -78,11 +78,6 @@ void refuse_missing_device(const Case& input) {
 
 }  // namespace
 
-std::string place_of(const Case& input, const std::string& key) {
-  const auto found = input.places.find(key);
-  return found != input.places.end() && !found->second.empty() ? found->second : input.name;
-}
-
 void refuse_endless_mesh(const Case& input) {
   if (input.kind != CaseKind::tunnel || !input.ground.mesh_file.empty()) return;
   const GroundCase& ground = input.ground;

@@ -21,9 +21,6 @@ struct AcceptedCase {
 /// io::InputError where any of these shows that the case cannot be run.
 [[nodiscard]] AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
-/// The place of a key. A key that the user did not write stands where its table does, or is said with the title.
-[[nodiscard]] std::string place_of(const Case& input, const std::string& key);
-
 /// Refuses a ground of so many elements that its mesh alone has no room, before the mesh is made, which would take
 /// minutes or hours. No mesh has fewer elements than half the squares of the size `mesh_size_far` that cover the
 /// ground; the study's meshes have seven times as many as these squares, since they are finer at the opening.

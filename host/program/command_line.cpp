@@ -37,6 +37,10 @@ struct Arguments {
   int members = 0;
   std::string until;
   std::string result;
+  bool list = false;
+  bool json = false;
+  bool gather = false;
+  std::string only;
 };
 
 /// The table of exit codes, for the end of `--help`.
@@ -76,7 +80,7 @@ void add_processes(CLI::App& command, Arguments& a) {
 }
 
 ProcessOptions process_options(const Arguments& a) {
-  return {std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads, a.resume, a.take_over};
+  return {std::filesystem::read_symlink("/proc/self/exe"), a.processes, a.threads, a.resume, a.take_over, {}, {}};
 }
 
 void describe_ensemble(CLI::App& app, Arguments& a, const std::string& command_text, Outcome& outcome) {
@@ -102,6 +106,29 @@ void describe_ensemble(CLI::App& app, Arguments& a, const std::string& command_t
     outcome = command_ensemble(
         a.file, {a.output, process_options(a), a.overrides,
                  number->count() > 0 ? std::optional(a.members) : std::nullopt, a.until, a.result, command_text});
+  });
+}
+
+void describe_sweep(CLI::App& app, Arguments& a, const std::string& command_text, Outcome& outcome) {
+  CLI::App* sweep = app.add_subcommand("sweep", "run the cases of a list or a grid, and gather their results");
+  sweep->add_option("sweep", a.file, "sweep file (TOML)")->required();
+  sweep->add_option("-o,--output", a.output, "folder of the results; default: out/STEM of the sweep file")
+      ->check(not_empty);
+  add_processes(*sweep, a);
+  sweep->add_flag("--resume", a.resume, "skip finished runs and go on with interrupted ones");
+  CLI::Option* list = sweep->add_flag("--list", a.list, "print the runs with their estimated cost, and run nothing");
+  sweep->add_flag("--json", a.json, "print the list as JSON, for programs that start the runs")->needs(list);
+  CLI::Option* only = sweep->add_option("--only", a.only, "run this one run, and keep how it ended for --gather");
+  only->excludes(list);
+  sweep->add_flag("--gather", a.gather, "run nothing: write the tables and the means of what has been run")
+      ->excludes(list)
+      ->excludes(only);
+  sweep->callback([&a, &command_text, &outcome, only] {
+    const SweepTask task = a.list              ? SweepTask::list
+                           : a.gather          ? SweepTask::gather
+                           : only->count() > 0 ? SweepTask::run_one
+                                               : SweepTask::run_all;
+    outcome = command_sweep(a.file, {a.output, process_options(a), task, a.only, a.json, command_text});
   });
 }
 
@@ -141,14 +168,7 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
   add_overrides(*check, a);
   check->callback([&] { outcome = command_check(a.file, a.overrides); });
 
-  CLI::App* sweep = app.add_subcommand("sweep", "run a base case with lists of overrides");
-  sweep->add_option("sweep", a.file, "sweep file (TOML)")->required();
-  sweep->add_option("-o,--output", a.output, "folder of the results; default: out/STEM of the sweep file")
-      ->check(not_empty);
-  add_processes(*sweep, a);
-  sweep->add_flag("--resume", a.resume, "skip finished runs and go on with interrupted ones");
-  sweep->callback([&] { outcome = command_sweep(a.file, {a.output, process_options(a)}); });
-
+  describe_sweep(app, a, command_text, outcome);
   describe_ensemble(app, a, command_text, outcome);
   describe_mesh(app, a, outcome);
 

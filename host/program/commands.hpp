@@ -35,13 +35,20 @@ namespace voussoir::host {
 [[nodiscard]] Outcome command_info_cpu();
 [[nodiscard]] Outcome command_info_devices();
 
+/// What `voussoir sweep` is asked to do with the runs of its file.
+enum class SweepTask { run_all, list, run_one, gather };
+
 struct SweepOptions {
   std::filesystem::path folder;
   ProcessOptions runs;
+  SweepTask task = SweepTask::run_all;
+  std::string only = {};     ///< name of the run, for SweepTask::run_one
+  bool json = false;         ///< the list is JSON (io/run_list.hpp)
+  std::string command = {};  ///< command line, which the provenance of ensembles repeats
 };
 
-/// `voussoir sweep`: runs one base case with different overrides, each run in a folder of its own, and writes
-/// summary.csv.
+/// `voussoir sweep`: runs the cases that a sweep file asks for, each in a folder of its own, and gathers summary.csv,
+/// sweep.h5 and the means of members; or lists its runs, runs one of them, or gathers what other programs have run.
 [[nodiscard]] Outcome command_sweep(const std::filesystem::path& sweep_file, const SweepOptions& options);
 
 struct EnsembleOptions {

@@ -16,10 +16,15 @@ RunEnd end_of(int status, bool stopped) {
     if (asked) return {.outcome = Outcome::interrupted, .code = exit_code(Outcome::interrupted)};
     return {.outcome = Outcome::machine_failure, .code = 128 + signal, .signal = signal};
   }
-  const int code = WEXITSTATUS(status);
+  return end_of_code(WEXITSTATUS(status));
+}
+
+RunEnd end_of_code(int code) {
   const auto* const known = std::find_if(exit_table.begin(), exit_table.end(),
                                          [code](const ExitStatus& row) { return row.code == code; });
-  return {.outcome = known == exit_table.end() ? Outcome::machine_failure : known->outcome, .code = code};
+  if (known != exit_table.end()) return {.outcome = known->outcome, .code = code};
+  const bool killed = code > 128 && sigabbrev_np(code - 128) != nullptr;
+  return {.outcome = Outcome::machine_failure, .code = code, .signal = killed ? code - 128 : 0};
 }
 
 std::string name_of(const RunEnd& end) {

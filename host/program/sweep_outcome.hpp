@@ -20,6 +20,9 @@ struct RunEnd {
 /// @param stopped true where the sweep had asked the run to stop
 [[nodiscard]] RunEnd end_of(int status, bool stopped);
 
+/// The same of an exit code that was kept, 128 + signal where a signal killed the run.
+[[nodiscard]] RunEnd end_of_code(int code);
+
 /// In the summary: the name of the outcome, "killed by SIGKILL" or "not run".
 [[nodiscard]] std::string name_of(const RunEnd& end);
 

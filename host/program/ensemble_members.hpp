@@ -1,0 +1,41 @@
+#pragma once
+/// The members of an ensemble after their runs: which of them count, and their reduction to means and bands. Commands
+/// `ensemble` and `sweep` share it.
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/case/case.hpp"
+#include "host/ensemble/member.hpp"
+#include "host/program/ensemble_goal.hpp"
+#include "host/program/run_processes.hpp"
+#include "host/record/run_lock.hpp"
+
+namespace voussoir::host {
+
+struct EnsembleMembers {
+  Case input;                     ///< the case with the seed of the first member
+  std::filesystem::path folder;   ///< of the ensemble
+  std::string command;            ///< command line, which the provenance repeats
+  std::optional<Goal> goal = {};  ///< of --until
+  std::vector<ProcessRun> runs = {};
+  std::vector<bool> reduced = {};            ///< (run) its results are among `finished`
+  std::vector<MemberResults> finished = {};  ///< in the order of the runs
+};
+
+/// The run of a member, with its own seed, in its folder.
+[[nodiscard]] ProcessRun member_run(const EnsembleMembers& ensemble, const std::filesystem::path& case_file,
+                                    const std::vector<std::string>& overrides, std::size_t member);
+
+/// Reads the results of the runs from number `from` on that came to their end. Returns how many of them did.
+std::size_t collect(EnsembleMembers& ensemble, std::size_t from);
+
+/// Names the members that did not end well and writes ensemble.h5, fields/, curves.csv and members.csv in place of an
+/// earlier reduction's. `error` is the standard error that --until reached. Returns the outcome of the ensemble but for
+/// its goal: that of its runs, or interrupted where a request to stop ended the reduction.
+[[nodiscard]] Outcome reduce_members(const EnsembleMembers& ensemble, std::optional<double> error, const RunLock& lock);
+
+}  // namespace voussoir::host

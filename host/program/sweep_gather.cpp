@@ -1,0 +1,105 @@
+#include "host/program/sweep_gather.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "host/case/load_case.hpp"
+#include "host/process/interrupt.hpp"
+#include "host/process/standard_streams.hpp"
+#include "host/program/ensemble_members.hpp"
+#include "host/program/run_rows.hpp"
+#include "host/program/sweep_outcome.hpp"
+#include "io/atomic_file.hpp"
+#include "io/outcome_file.hpp"
+
+namespace voussoir::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A run of the plan with the end that was kept of it.
+ProcessRun ended_run(const PlannedRun& planned, const fs::path& folder) {
+  ProcessRun run{.name = planned.name,
+                 .case_file = planned.case_file,
+                 .overrides = planned.overrides,
+                 .folder = folder / planned.name};
+  if (const auto kept = io::read_outcome(outcome_path(folder, planned.name))) {
+    run.end = end_of_code(kept->exit_code);
+    run.reason = kept->reason;
+  }
+  return run;
+}
+
+io::SweepRow planned_row(const PlannedRun& planned, const ProcessRun& run) {
+  io::SweepRow row = row_of(run);
+  row.kind = to_string(load_case(planned.case_file, planned.overrides).kind);
+  row.grid = planned.grid;
+  row.point = planned.point;
+  row.axes = {planned.axes.begin(), planned.axes.end()};
+  return row;
+}
+
+/// Reduces the members of one point. Returns whether an ensemble.h5 came of it.
+bool reduce_point(const PlannedEnsemble& planned, const std::vector<ProcessRun>& runs, const fs::path& folder,
+                  const std::string& command) {
+  EnsembleMembers members{
+      .input = load_case(planned.case_file, planned.overrides), .folder = folder / planned.name, .command = command};
+  for (const std::size_t number : planned.runs) {
+    ProcessRun run = runs[number];
+    run.name = run.folder.filename().string();
+    if (run.end.outcome && run.end.outcome != Outcome::interrupted) members.runs.push_back(std::move(run));
+  }
+  if (members.runs.empty()) return false;
+  collect(members, 0);
+  const RunLock lock(members.folder, false);
+  write_summary(members.runs, members.folder / "summary.csv");
+  static_cast<void>(reduce_members(members, std::nullopt, lock));
+  return fs::exists(members.folder / "ensemble.h5");
+}
+
+/// One line for each run that did not end well, because a sweep of hundreds of runs hides it otherwise.
+void name_failed(const std::vector<ProcessRun>& runs) {
+  std::size_t failed = 0;
+  for (const ProcessRun& run : runs) failed += run.end.outcome == Outcome::done ? 0 : 1;
+  if (failed == 0) return;
+  std::fprintf(stderr, "voussoir: %zu of %zu runs did not end well:\n", failed, runs.size());
+  for (const ProcessRun& run : runs) {
+    if (run.end.outcome == Outcome::done) continue;
+    const std::string reason = run.reason.empty() ? "" : ": " + run.reason;
+    std::fprintf(stderr, "voussoir:   %s (%s)%s\n", run.name.c_str(), name_of(run.end).c_str(), reason.c_str());
+  }
+}
+
+}  // namespace
+
+void keep_outcome(const fs::path& folder, const ProcessRun& run) {
+  fs::create_directories(folder / "outcomes");
+  io::write_outcome(outcome_path(folder, run.name), {name_of(run.end), run.end.code, run.reason});
+}
+
+Outcome gather(const SweepPlan& plan, const fs::path& folder, const RunLock& lock, const std::string& command) {
+  std::vector<ProcessRun> runs;
+  std::vector<RunEnd> ends;
+  io::SweepData data{.input = plan.text, .runs = {}, .ensembles = {}};
+  for (const PlannedRun& planned : plan.runs) {
+    runs.push_back(ended_run(planned, folder));
+    ends.push_back(runs.back().end);
+    data.runs.push_back(planned_row(planned, runs.back()));
+  }
+  io::write_text(folder / "summary.csv", io::summary_csv(data.runs));
+  for (const PlannedEnsemble& ensemble : plan.ensembles) {
+    if (interrupted()) break;
+    if (const std::string changed = lock.confirm(); !changed.empty())
+      std::fprintf(stderr, "voussoir: %s\n", changed.c_str());
+    if (reduce_point(ensemble, runs, folder, command)) data.ensembles.push_back(ensemble.name);
+  }
+  io::write_sweep(folder / "sweep.h5", data);
+  std::printf("summary: %s\n", (folder / "summary.csv").c_str());
+  static_cast<void>(lost_output());
+  name_failed(runs);
+  return interrupted() ? Outcome::interrupted : outcome_of(ends);
+}
+
+}  // namespace voussoir::host

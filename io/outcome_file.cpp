@@ -1,0 +1,35 @@
+#include "io/outcome_file.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "io/atomic_file.hpp"
+#include "io/text_file.hpp"
+
+namespace voussoir::io {
+namespace {
+
+constexpr std::size_t most_bytes = 100'000;
+
+}  // namespace
+
+void write_outcome(const std::filesystem::path& file, const RunOutcome& outcome) {
+  const nlohmann::ordered_json text{
+      {"status", outcome.status}, {"exit_code", outcome.exit_code}, {"reason", outcome.reason}};
+  write_text(file, text.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
+std::optional<RunOutcome> read_outcome(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    const auto text = nlohmann::json::parse(read_text_file(file, most_bytes));
+    return RunOutcome{text.at("status").get<std::string>(), text.at("exit_code").get<int>(),
+                      text.at("reason").get<std::string>()};
+  } catch (const std::exception& damage) {
+    throw std::runtime_error(fmt::format("{} is no outcome of a run: {}", file.string(), in_one_line(damage.what())));
+  }
+}
+
+}  // namespace voussoir::io
