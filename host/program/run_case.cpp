@@ -43,8 +43,8 @@ Outcome answer(RunStatus status, const RunOptions& options) {
                    folder.c_str());
       return Outcome::interrupted;
     case RunStatus::failed:
-      std::fprintf(stderr, "no equilibrium was found (see %s/run.log); the last good checkpoint is kept\n",
-                   folder.c_str());
+      std::fprintf(stderr, "no equilibrium was found (see %s/run.log), the last good checkpoint is kept: %s\n",
+                   folder.c_str(), last_failure(options.folder / "run.log").c_str());
       return Outcome::no_equilibrium;
   }
   throw std::logic_error("a run ended in no known way");

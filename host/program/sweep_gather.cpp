@@ -41,9 +41,9 @@ io::SweepRow planned_row(const PlannedRun& planned, const ProcessRun& run) {
   return row;
 }
 
-/// Reduces the members of one point. Returns whether an ensemble.h5 came of it.
+/// Reduces the members of one point; the sweep's lock covers its folder. Returns whether an ensemble.h5 came of it.
 bool reduce_point(const PlannedEnsemble& planned, const std::vector<ProcessRun>& runs, const fs::path& folder,
-                  const std::string& command) {
+                  const RunLock& lock, const std::string& command) {
   EnsembleMembers members{
       .input = load_case(planned.case_file, planned.overrides), .folder = folder / planned.name, .command = command};
   for (const std::size_t number : planned.runs) {
@@ -53,7 +53,6 @@ bool reduce_point(const PlannedEnsemble& planned, const std::vector<ProcessRun>&
   }
   if (members.runs.empty()) return false;
   collect(members, 0);
-  const RunLock lock(members.folder, false);
   write_summary(members.runs, members.folder / "summary.csv");
   static_cast<void>(reduce_members(members, std::nullopt, lock));
   return fs::exists(members.folder / "ensemble.h5");
@@ -91,9 +90,7 @@ Outcome gather(const SweepPlan& plan, const fs::path& folder, const RunLock& loc
   io::write_text(folder / "summary.csv", io::summary_csv(data.runs));
   for (const PlannedEnsemble& ensemble : plan.ensembles) {
     if (interrupted()) break;
-    if (const std::string changed = lock.confirm(); !changed.empty())
-      std::fprintf(stderr, "voussoir: %s\n", changed.c_str());
-    if (reduce_point(ensemble, runs, folder, command)) data.ensembles.push_back(ensemble.name);
+    if (reduce_point(ensemble, runs, folder, lock, command)) data.ensembles.push_back(ensemble.name);
   }
   io::write_sweep(folder / "sweep.h5", data);
   std::printf("summary: %s\n", (folder / "summary.csv").c_str());

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <fstream>
 #include <stdexcept>
 
 #include "host/process/standard_streams.hpp"
@@ -12,6 +13,8 @@
 
 namespace voussoir::host {
 namespace {
+
+constexpr const char* failure_mark = " failed: ";
 
 /// One line about a failure of spdlog, whose own sentence ends in the file's name, a colon and the reason.
 std::runtime_error failure_of(const std::string& file, const std::string& said) {
@@ -63,6 +66,8 @@ void RunLog::line(const std::string& text) {
   file_->info(text);
 }
 
+void RunLog::failure(const std::string& stage, const std::string& reason) { line(stage + failure_mark + reason); }
+
 void RunLog::warning(const std::string& text) {
   show("warning: " + text);
   file_->warn(text);
@@ -76,6 +81,18 @@ void RunLog::live(const std::string& text) {
   std::printf("%s", text.c_str());
   std::fflush(stdout);
   live_width_ = text.size();
+}
+
+std::string last_failure(const std::filesystem::path& file) {
+  std::ifstream text(file);
+  std::string found;
+  for (std::string line; std::getline(text, line);) {
+    const std::size_t mark = line.find(failure_mark);
+    if (mark == std::string::npos) continue;
+    const std::size_t before = line.rfind(' ', mark - 1);  // the time and the level stand before the stage
+    found = line.substr(before == std::string::npos ? 0 : before + 1);
+  }
+  return found;
 }
 
 }  // namespace voussoir::host

@@ -20,7 +20,9 @@ class RunLog {
   RunLog(const RunLog&) = delete;
   RunLog& operator=(const RunLog&) = delete;
 
-  void line(const std::string& text);     ///< writes to the file and to standard output
+  void line(const std::string& text);  ///< writes to the file and to standard output
+  /// The same for the line that says why a stage found no equilibrium: "volume_loss failed: max_iterations ...".
+  void failure(const std::string& stage, const std::string& reason);
   void warning(const std::string& text);  ///< writes to both and marks the line as a warning
   void detail(const std::string& text);   ///< writes to the file only
   void live(const std::string& text);     ///< replaces the live line; does nothing unless standard output is a terminal
@@ -33,5 +35,8 @@ class RunLog {
   bool terminal_;
   std::size_t live_width_ = 0;
 };
+
+/// The last line that RunLog::failure wrote into a file, without its time; empty where there is none.
+[[nodiscard]] std::string last_failure(const std::filesystem::path& file);
 
 }  // namespace voussoir::host

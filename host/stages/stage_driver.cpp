@@ -62,7 +62,7 @@ RunStatus advance_stage(GroundRun& run, const Stage& stage) {
   progress.end();
   report_totals(run, stage.name);
   if (report.status == fem::StepStatus::gave_up) {
-    run.log().line(fmt::format("{} failed: {}", stage.name, report.message));
+    run.log().failure(stage.name, report.message);
     return RunStatus::failed;
   }
   const bool complete = ground.state.parameter == stage.targets.back();
