@@ -151,6 +151,16 @@ std::size_t wanted_tests(const PackingCase& recipe, const BiaxialCase& test) {
   return count_of_packings(recipe) * test.pressures.size();
 }
 
+/// The outcome of a run by the number of its valid tests; where some are not valid, standard error says how many.
+Outcome outcome_of_tests(std::size_t valid, std::size_t wanted) {
+  if (valid >= wanted) return Outcome::done;
+  std::fprintf(stderr,
+               "biaxial: %zu of %zu tests are not valid: they ended early, or did not hold sigma_xx, or passed the "
+               "contact law's range (column `valid` of the table `strength`)\n",
+               wanted - valid, wanted);
+  return Outcome::no_equilibrium;
+}
+
 /// Outcome of a finished run, from the tests in its folder; nothing where there is no finished run.
 std::optional<Outcome> finished_before(std::size_t wanted, const RunOptions& options) {
   const std::filesystem::path file = options.folder / "run.h5";
@@ -160,8 +170,8 @@ std::optional<Outcome> finished_before(std::size_t wanted, const RunOptions& opt
   if (strength == tables.end()) return {};
   for (const io::TableColumn& column : strength->second) {
     if (column.name != "valid") continue;
-    const auto held = static_cast<std::size_t>(std::count(column.values.begin(), column.values.end(), 1.0));
-    return held < wanted ? Outcome::no_equilibrium : Outcome::done;
+    return outcome_of_tests(static_cast<std::size_t>(std::count(column.values.begin(), column.values.end(), 1.0)),
+                            wanted);
   }
   return {};
 }
@@ -185,12 +195,12 @@ Outcome run_biaxial(const Case& input, const RunOptions& options) {
   confirm_lock(options, note);
   auto writer = io::ResultWriter::create(options.folder, provenance_of(options, input, "biaxial"), {});
   Summary summary;
-  bool failed = false;
+  std::size_t valid = 0;
   for (const BiaxialCurve& curve : curves) {
     const Strength s = strength_of(curve, test.window);
     print(curve, s);
     summary.add(curve, s, held(curve, s));
-    failed = failed || !held(curve, s);
+    valid += held(curve, s) ? 1 : 0;
     writer.set_table(fmt::format("seed_{}_{:.4g}_kPa", curve.seed, curve.pressure * 1e-3),
                      curve_table(curve, input.output.microstructure));
   }
@@ -216,7 +226,7 @@ Outcome run_biaxial(const Case& input, const RunOptions& options) {
     std::fprintf(stderr, "biaxial: %zu of %zu tests were left out because their packings do not come to rest\n",
                  wanted - curves.size(), wanted);
   }
-  return failed || curves.size() < wanted ? Outcome::no_equilibrium : Outcome::done;
+  return outcome_of_tests(valid, wanted);
 }
 
 }  // namespace voussoir::host
