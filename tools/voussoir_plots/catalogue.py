@@ -1,8 +1,17 @@
-"""All figures of a run, by the name of their file."""
+"""All figures and tables, by the name of their file, for each sort of source that `source.py` tells apart.
+
+A function that finds no data for its figure raises Missing, and the figure is skipped with a line. A new figure needs
+one line here. Names end in .png; `--format` replaces this.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 from . import (
     chains,
     convergence,
+    ensemble,
     fields,
     panels,
     paths,
@@ -11,11 +20,15 @@ from . import (
     rotation,
     settlements,
     stresses,
+    trend_table,
     troughs,
     widths,
 )
 
-FIGURES = {
+Figures = dict[str, Callable[[Any, Path], None]]
+
+# Of a tunnel; a column and a specimen have some of them.
+FIGURES: Figures = {
     "settlement_troughs.png": troughs.draw,
     "trough_widths.png": widths.draw,
     "settlement_growth.png": settlements.draw,
@@ -33,3 +46,31 @@ FIGURES = {
     "geostatic_stress.png": stresses.draw,
     "convergence.png": convergence.draw,
 }
+TRENDS: Figures = {"trends.md": trend_table.write}
+
+_OF_A_MESH: Figures = {
+    name: FIGURES[name]
+    for name in ("displacement.png", "deviatoric_strain.png", "void_ratio.png", "grain_rotation.png", "convergence.png")
+}
+
+OF: dict[str, Figures] = {
+    "a tunnel": FIGURES,
+    "a column": {"geostatic_stress.png": stresses.draw, **_OF_A_MESH},
+    "a biaxial specimen": {**_OF_A_MESH},
+    "an ensemble": ensemble.FIGURES,
+    "biaxial tests": {},
+    "a calibration": {},
+    "a probe": {},
+    "packings": {},
+    "a sweep": {},
+}
+
+
+def figures_of(what: str) -> Figures:
+    """The figures of one sort of source, with the trends where these are judged."""
+    return {**OF[what], **TRENDS} if what == "a tunnel" else OF[what]
+
+
+def stems() -> set[str]:
+    """All names that `--only` may have."""
+    return {Path(name).stem for what in OF for name in figures_of(what)}

@@ -11,7 +11,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from . import points
 from .resolution import percent
 from .result import Increment, Missing, Result, Snapshot
-from .style import save
+from .style import STRONG_FORCE, STRONGEST_FORCE, WEAK_FORCE, save
 
 STRONG = 1.0  # a contact with at least this multiple of the mean normal force is strong (C1 of the study's pictures)
 STRONGEST = 2.0  # the same for the strongest contacts (C2)
@@ -60,17 +60,17 @@ def draw(result: Result, path: Path) -> None:
     )
     for row, (label, name) in zip(axes, found):
         for axis, increment in zip(row, chosen):
-            _draw_rve(axis, increment.snapshot(name))
+            draw_rve(axis, increment.snapshot(name))
             axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])}", fontsize=10)
         row[0].set_ylabel(label, fontsize=11)
     figure.suptitle(
-        "Force chains: width of a bar by normal force;\nred from the RVE's mean on, dark red from twice the mean on",
+        "Force chains: width of a bar by normal force;\norange from the RVE's mean on, dark from twice the mean on",
         fontsize=12,
     )
     save(figure, path)
 
 
-def _draw_rve(axis: Axes, snapshot: Snapshot) -> None:
+def draw_rve(axis: Axes, snapshot: Snapshot) -> None:
     cell, position = snapshot["cell"], np.column_stack([snapshot["x"], snapshot["y"]])
     # The grains are moved into the cell, because positions are stored without regard to it.
     inside = position - (cell @ np.floor(np.linalg.solve(cell, position.T))).T
@@ -94,7 +94,7 @@ def _draw_rve(axis: Axes, snapshot: Snapshot) -> None:
         start = inside[snapshot["contact_i"]]
         bars = np.stack([start, start + snapshot["branch"]], axis=1)
         order = np.argsort(share)
-        colour = np.where(share >= STRONGEST, "darkred", np.where(share >= STRONG, "red", "steelblue"))
+        colour = np.where(share >= STRONGEST, STRONGEST_FORCE, np.where(share >= STRONG, STRONG_FORCE, WEAK_FORCE))
         axis.add_collection(
             LineCollection(list(bars[order]), linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order])
         )

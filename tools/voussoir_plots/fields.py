@@ -12,7 +12,7 @@ from matplotlib.tri import Triangulation
 from . import q8
 from .resolution import percent
 from .result import Increment, Missing, Result
-from .style import save
+from .style import DIVERGING, STRAIN, save
 
 
 def last_increment(result: Result) -> Increment:
@@ -154,7 +154,7 @@ def draw_deviatoric_strain(result: Result, path: Path) -> None:
         "gauss/deviatoric_strain",
         r"deviatoric strain  $\varepsilon_q$  [%]",
         "Deviatoric strain",
-        "magma_r",
+        STRAIN,
         factor=100,
     )
 
@@ -170,7 +170,7 @@ def draw_grain_rotation(result: Result, path: Path) -> None:
         "gauss/grain_rotation",
         "mean grain rotation, counter-clockwise positive  [deg]",
         "Grain rotation",
-        "coolwarm",
+        DIVERGING,
         symmetric=True,
         factor=180 / np.pi,
     )
