@@ -28,7 +28,7 @@ def chosen(arguments, what):
     """The functions that write the wanted files, by the names of the files."""
     if arguments.trends:
         if what != "a tunnel":
-            raise Missing(f"the study's trends are judged for single tunnels, and this is {what}")
+            raise Missing(f"the study's trends are judged for single runs of tunnels, and this is {what}")
         return TRENDS
     everything = figures_of(what)
     for name in sorted(set(arguments.only or ()) - {Path(known).stem for known in everything}):

@@ -117,7 +117,7 @@ class Runs(unittest.TestCase):
             self.assertIn(f"skipped trends: it is no figure of {what}", out)
             status, out, err = call(figures, folder, "--trends")
             self.assertEqual((status, out, len(err)), (2, [], 1))
-            self.assertIn(f"judged for single tunnels, and this is {what}", err[0])
+            self.assertIn(f"judged for single runs of tunnels, and this is {what}", err[0])
 
     def test_no_increments_and_no_run(self):
         bare = Path("runs/bare")
