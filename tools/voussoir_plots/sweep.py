@@ -86,12 +86,10 @@ def _run_folders(folder: Path, depth: int = 0) -> Iterator[Path]:
 def is_sweep(folder: Path) -> bool:
     """True for a folder with runs below it that is neither a run nor an ensemble."""
     try:
-        if not folder.is_dir() or (folder / "run.h5").exists():
+        if not folder.is_dir() or any((folder / name).exists() for name in ("run.h5", "ensemble.h5", "member_000")):
             return False
-        if (folder / INDEX).exists() or ((folder / "summary.csv").exists() and not (folder / "members.csv").exists()):
-            return not (folder / "ensemble.h5").exists()
+        if (folder / INDEX).exists() or (folder / "summary.csv").exists():
+            return True
     except OSError as error:
         raise Unreadable(f"{folder} cannot be read: {error.strerror}") from error
-    if (folder / "ensemble.h5").exists() or (folder / "member_000").exists():
-        return False
     return next(_run_folders(folder), None) is not None
