@@ -13,13 +13,16 @@ from . import (
     convergence,
     ensemble,
     fields,
+    grading,
     panels,
     paths,
     profiles,
     reaction,
     rotation,
     settlements,
+    strength_figures,
     stresses,
+    table_two,
     trend_table,
     troughs,
     widths,
@@ -53,15 +56,22 @@ _OF_A_MESH: Figures = {
     for name in ("displacement.png", "deviatoric_strain.png", "void_ratio.png", "grain_rotation.png", "convergence.png")
 }
 
+BIAXIAL: Figures = {
+    "biaxial_curves.png": strength_figures.draw_curves,
+    "biaxial_strength.png": strength_figures.draw_plane,
+    "biaxial_angles.png": strength_figures.draw_angles,
+    "table_2.md": table_two.write,
+}
+
 OF: dict[str, Figures] = {
     "a tunnel": FIGURES,
     "a column": {"geostatic_stress.png": stresses.draw, **_OF_A_MESH},
     "a biaxial specimen": {**_OF_A_MESH},
     "an ensemble": ensemble.FIGURES,
-    "biaxial tests": {},
+    "biaxial tests": BIAXIAL,
     "a calibration": {},
     "a probe": {},
-    "packings": {},
+    "packings": {"grading.png": grading.draw, "packings.png": chains.draw_packings},
     "a sweep": {},
 }
 

@@ -8,21 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .result import Missing, Snapshot, Unreadable, check_format, plain, reading
-
-UNITS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "": 1.0}
-GRAVEL_FROM = 4.75e-3  # [m], as in the study
-
-
-def quantity(text: str) -> float:
-    """ "3 GPa" -> 3e9: a value of the labels in SI units."""
-    found = re.fullmatch(r"\s*(\S+)\s*(\w*)\s*", text)
-    if not found or found[2] not in UNITS:
-        raise Missing(f'the value "{text}" of a label has no unit that is known here')
-    try:
-        return float(found[1]) * UNITS[found[2]]
-    except ValueError:
-        raise Missing(f'the value "{text}" of a label is no number') from None
+from .result import GRAVEL_FROM, Missing, Snapshot, Unreadable, check_format, plain, reading
+from .units import quantity
 
 
 def branches(positions: np.ndarray, cell: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
@@ -72,7 +59,7 @@ class Packing:
     @property
     def soil(self) -> str:
         """ "gravel", "medium dense sand" or "dense sand", as for a run."""
-        if 2 * self.radius.max() > 2 * GRAVEL_FROM:
+        if 2 * self.radius.max() > GRAVEL_FROM:
             return "gravel"
         loose = self.void_ratio > 0.22 or self.numbers.get("consolidation_friction", 0) > 0.1
         return "medium dense sand" if loose else "dense sand"
@@ -84,13 +71,20 @@ class Packing:
         moduli: list[float] = []
         while f"soil.class[{len(sizes)}].size_to" in self.labels:
             table = f"soil.class[{len(sizes)}]"
-            sizes.append(quantity(self.labels[f"{table}.size_to"]))
-            moduli.append(quantity(self.labels.get(f"{table}.modulus", self.labels.get("soil.modulus", ""))))
+            moduli.append(self._label(f"{table}.modulus"))
+            sizes.append(self._label(f"{table}.size_to"))
         if not sizes:
-            if "soil.modulus" not in self.labels:
-                raise Missing(f"{self.path} does not tell the contact modulus of its soil (label soil.modulus)")
-            return np.full(len(self.radius), quantity(self.labels["soil.modulus"]))
+            return np.full(len(self.radius), self._label("soil.modulus"))
+        # A grain belongs to the first class whose upper size it does not exceed, as in host/packing/packed_rve.cpp.
         return np.array(moduli)[np.minimum(np.searchsorted(sizes, 2 * self.radius), len(sizes) - 1)]
+
+    def _label(self, name: str) -> float:
+        if name not in self.labels:
+            raise Missing(f"{self.path} does not tell its soil: it has no label {name}")
+        try:
+            return quantity(self.labels[name])
+        except ValueError as error:
+            raise Missing(f"{self.path}: label {name}: {error}") from None
 
     def normal_forces(self) -> tuple[np.ndarray, np.ndarray]:
         """Branch (contact, 2) [m] and normal force (contact) [N] of each contact: f_n = k_n times the overlap, where

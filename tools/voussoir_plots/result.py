@@ -4,7 +4,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 
 from .settings import Settings
+from .units import quantity
 
 FORMAT_VERSION = 1  # of io/FORMAT.md
 KINDS = (
@@ -21,7 +22,7 @@ KINDS = (
 )
 
 LENGTHS = ("surface_y", "diameter", "axis_depth", "width", "height")  # of the geometry, which must be positive
-MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1e3, "km": 1e6}
+GRAVEL_FROM = 10e-3  # [m]: a soil with larger grains is gravel
 
 Snapshot = dict[str, np.ndarray]  # arrays of one RVE, by the names of io/FORMAT.md
 T = TypeVar("T")
@@ -143,8 +144,7 @@ class RunIndex:
         if self.case.get("material", "grains") != "grains":
             return "no grains"
         soil, packing = self.case.get("soil", {}), self.case.get("packing", {})
-        sizes = [re.fullmatch(r"\s*(\S+?)\s*(mm|cm|m|km)\s*", str(size)) for size in soil.get("sizes", [])]
-        if any(float(size[1]) * MILLIMETRES[size[2]] > 10 for size in sizes if size):
+        if any(largest > GRAVEL_FROM for largest in _lengths(soil.get("sizes", []))):
             return "gravel"
         loose = packing.get("void_ratio", 0) > 0.22 or packing.get("consolidation_friction", 0) > 0.1
         return "medium dense sand" if loose else "dense sand"
@@ -274,6 +274,13 @@ class Result(RunIndex):
             raise Missing("run.h5 has no boundary tunnel")
         nodes = self.boundaries["tunnel"]
         return nodes[np.argmax(self.coordinates[nodes, 1])]
+
+
+def _lengths(written: Iterable[Any]) -> Iterator[float]:
+    """The lengths among what a case file lists [m]."""
+    for one in written:
+        with suppress(ValueError):
+            yield quantity(one)
 
 
 def _check_folder(folder: Path, index: Path) -> None:

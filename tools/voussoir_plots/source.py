@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from . import ensemble
+from . import element_tests, ensemble
 from .packings import Packings, is_packing, packing_files
 from .probes import Probe, is_probe
 from .result import Missing, Result, RunIndex, Unreadable
@@ -54,7 +54,7 @@ def _run(path: Path, settings: Settings) -> Source:
     if what is None:
         raise Unreadable(f"{path} has results of the kind {index.kind}, which these tools do not know")
     if what == "biaxial tests":
-        return Source(what, [index], index.left_out)
+        return Source(what, [element_tests.Series(index)])
     if what == "a calibration":
         return Source(what, index, index.left_out)
     result = Result(path, settings)
@@ -63,16 +63,7 @@ def _run(path: Path, settings: Settings) -> Source:
 
 def _several_runs(paths: Sequence[Path]) -> Source:
     """Runs of kind biaxial are drawn together; those that cannot be read are left out."""
-    runs: list[RunIndex] = []
-    left_out: list[Missing] = []
-    for path in paths:
-        try:
-            run = RunIndex(path)
-            if run.kind != "biaxial":
-                raise Unreadable(f"{path} is a run of kind {run.kind}; only runs of kind biaxial are drawn together")
-            runs.append(run)
-        except Missing as reason:
-            left_out.append(reason)
-    if not runs:
+    series, left_out = element_tests.read(paths)
+    if not series:
         raise left_out[0]
-    return Source("biaxial tests", runs, left_out)
+    return Source("biaxial tests", series, left_out)
