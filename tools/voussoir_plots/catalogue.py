@@ -11,6 +11,7 @@ from typing import Any
 from . import (
     chains,
     convergence,
+    earth_pressure,
     ensemble,
     fields,
     grading,
@@ -20,6 +21,7 @@ from . import (
     reaction,
     rotation,
     settlements,
+    specimen,
     strength_figures,
     stresses,
     table_two,
@@ -47,6 +49,7 @@ FIGURES: Figures = {
     "rve_network.png": paths.draw_network,
     "force_chains.png": chains.draw,
     "geostatic_stress.png": stresses.draw,
+    "k0.png": earth_pressure.draw,
     "convergence.png": convergence.draw,
 }
 TRENDS: Figures = {"trends.md": trend_table.write}
@@ -65,8 +68,8 @@ BIAXIAL: Figures = {
 
 OF: dict[str, Figures] = {
     "a tunnel": FIGURES,
-    "a column": {"geostatic_stress.png": stresses.draw, **_OF_A_MESH},
-    "a biaxial specimen": {**_OF_A_MESH},
+    "a column": {"k0.png": earth_pressure.draw, "geostatic_stress.png": stresses.draw, **_OF_A_MESH},
+    "a biaxial specimen": {"specimen.png": specimen.draw, **_OF_A_MESH},
     "an ensemble": ensemble.FIGURES,
     "biaxial tests": BIAXIAL,
     "a calibration": {},

@@ -103,8 +103,8 @@ def _curve_name(run: RunIndex, seed: int, pressure: float) -> tuple[str, float]:
 
 
 def common_angle(rows: np.ndarray) -> float:
-    """The angle of the line q against p through the origin that fits tests (pressure, angle) [Pa, rad] at the moments at
-    which they have these angles: there p = pressure / (1 - sin(angle)) and q = p sin(angle)."""
+    """The angle of the line q against p through the origin that fits tests (pressure, angle) [Pa, rad] at the moments
+    at which they have these angles: there p = pressure / (1 - sin(angle)) and q = p sin(angle)."""
     sine = np.sin(rows[:, 1])
     p = rows[:, 0] / (1 - sine)
     return float(np.arcsin(min(np.sum(p * p * sine) / np.sum(p * p), 1.0)))

@@ -66,7 +66,8 @@ def canvas(result: Result, increment: Increment) -> tuple[Figure, Axes, np.ndarr
     margin = 0.03 * np.max(high - low)
     axis.set_xlim(low[0] - margin, high[0] + margin)
     axis.set_ylim(low[1] - margin, high[1] + margin)
-    axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
+    tunnel = "diameter" in result.geometry
+    axis.set_xlabel("distance from the tunnel axis  $x$  [m]" if tunnel else "$x$  [m]")
     axis.set_ylabel("height above the base  $y$  [m]")
     note = "" if factor == 1 else f"deformation × {factor:g}"
     return figure, axis, deformed, note

@@ -1,4 +1,5 @@
-"""Statistics of a few samples without further packages: standard errors, the coefficient of variation and its interval."""
+"""Statistics of a few samples, without further packages: standard errors, the coefficient of variation and its
+interval."""
 
 import math
 from collections.abc import Callable, Sequence

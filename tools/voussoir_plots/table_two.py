@@ -21,8 +21,8 @@ LABORATORY = {
     "Hostun sand, loose": (34.4, 34.4, 0.0),
 }
 METHOD = (
-    "Angles in degrees ± standard error over the packings; sin φ is the slope of q against p through the origin over all "
-    "valid tests, sin ψ_max the mean of the tests' largest dilatancies."
+    "Angles in degrees ± standard error over the packings; sin φ is the slope of q against p through the origin over "
+    "all valid tests, sin ψ_max the mean of the tests' largest dilatancies."
 )
 MET = 2.0  # standard errors within which a value counts as met
 
