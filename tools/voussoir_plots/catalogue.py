@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from . import (
+    calibration_figure,
     chains,
     convergence,
     earth_pressure,
@@ -17,6 +18,7 @@ from . import (
     grading,
     panels,
     paths,
+    probe_figures,
     profiles,
     reaction,
     rotation,
@@ -72,8 +74,8 @@ OF: dict[str, Figures] = {
     "a biaxial specimen": {"specimen.png": specimen.draw, **_OF_A_MESH},
     "an ensemble": ensemble.FIGURES,
     "biaxial tests": BIAXIAL,
-    "a calibration": {},
-    "a probe": {},
+    "a calibration": {"calibration.png": calibration_figure.draw},
+    "a probe": {"probe_responses.png": probe_figures.draw_responses, "probe_path.png": probe_figures.draw_path},
     "packings": {"grading.png": grading.draw, "packings.png": chains.draw_packings},
     "a sweep": {},
 }
