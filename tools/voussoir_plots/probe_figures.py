@@ -10,6 +10,14 @@ from .probes import COMPONENTS, STRAINED, Probe
 from .result import Missing
 from .style import CYCLE, LINES, MARKERS, save
 
+SAID = {
+    "xx": "extension xx",
+    "yy": "extension yy",
+    "xy": r"shear $\gamma_{xy}$",
+    "-xx": "compression xx",
+    "-yy": "compression yy",
+}
+
 
 def draw_responses(probe: Probe, path: Path) -> None:
     """Change of stress over the size of the strain, in MPa: responses as symbols, tangents as bars."""
@@ -42,7 +50,7 @@ def _draw_seed(axis: Axes, probe: Probe, rows: list[dict[str, str]], strain: flo
     for k, component in enumerate(COMPONENTS):
         axis.bar(0, 0, color=CYCLE[k], alpha=0.45, label=rf"by the tangent $\sigma_{{{component}}}$")
     axis.axhline(0, color="black", linewidth=0.8)
-    axis.set_xticks(range(len(names)), [name if name == "rotation" else rf"$\varepsilon$ {name}" for name in names])
+    axis.set_xticks(range(len(names)), [SAID.get(name, name) for name in names])
     axis.set_ylabel("change of stress over strain,\ntension positive  [MPa]")
     axis.grid(axis="x", visible=False)
 

@@ -47,8 +47,8 @@ class Probe:
         return sign * np.array([self._tangent(row, c, strained) for c in COMPONENTS])
 
     def _tangent(self, row: Row, stressed: str, strained: str) -> float:
-        """tangent_yyxx_Pa is the change of sigma_yy by the strain xx. Static tangents are symmetric, and their files may
-        lack the lower half."""
+        """tangent_yyxx_Pa is the change of sigma_yy by the strain xx. Static tangents are symmetric, and their files
+        may lack the lower half."""
         name, mirrored = f"tangent_{stressed}{strained}_Pa", f"tangent_{strained}{stressed}_Pa"
         return self.number(row, name if row.get(name) else mirrored)
 

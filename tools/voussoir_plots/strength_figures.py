@@ -7,6 +7,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.typing import ColorType
 
 from .element_tests import Series, Test, labels
 from .result import Missing
@@ -32,11 +33,11 @@ def draw_curves(all_series: Sequence[Series], path: Path) -> None:
                 draw_mean(axis, series, series.of_pressure(pressure), name, factor, CYCLE[k], f"{pressure / 1e3:g} kPa")
             axis.set_ylabel(text)
             axis.set_xlim(left=0)
-        column[0].set_ylim(bottom=0)
+        column[0].set_ylim(0, 1.3 * column[0].get_ylim()[1])  # room for the legend
         column[1].set_ylim(bottom=0)
         column[2].axhline(0, color="0.4", linewidth=0.8)
         column[2].set_xlabel(r"axial strain  $\varepsilon_a$  [%]")
-        column[0].legend(title="lateral stress", loc="upper right")
+        column[0].legend(title="lateral stress", loc="upper right", ncol=3)
     _same_limits(axes)
     figure.suptitle(
         "Drained biaxial tests: mean over the packings (thick),\n± one standard deviation (band), packings (thin)",
@@ -61,7 +62,14 @@ def _same_limits(axes: np.ndarray) -> None:
 
 
 def draw_mean(
-    axis: Axes, series: Series, tests: Sequence[Test], name: str, factor: float, colour: str, label: str
+    axis: Axes,
+    series: Series,
+    tests: Sequence[Test],
+    name: str,
+    factor: float,
+    colour: ColorType,
+    label: str,
+    lines: bool = True,
 ) -> None:
     """Mean of tests over the axial strain, with their standard deviation and, of few packings, all of them."""
     if not tests:
@@ -74,7 +82,7 @@ def draw_mean(
     if len(tests) > 1:
         spread = values.std(axis=0, ddof=1)
         axis.fill_between(strain, mean - spread, mean + spread, color=colour, alpha=0.2, linewidth=0)
-    if 1 < len(tests) <= MOST_LINES:
+    if lines and 1 < len(tests) <= MOST_LINES:
         axis.plot(strain, values.T, color=colour, linewidth=0.5, alpha=0.45)
     axis.plot(strain, mean, color=colour, linewidth=2.0, label=label)
 
