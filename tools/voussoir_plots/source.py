@@ -44,7 +44,8 @@ def open_source(paths: Sequence[Path], settings: Settings) -> Source:
     if ensemble.is_ensemble(path):
         return Source("an ensemble", ensemble.Ensemble(path, settings))
     if is_probe(path):
-        return Source("a probe", Probe(path))
+        probe = Probe(path)
+        return Source("a probe", probe, probe.left_out)
     return _run(path, settings)
 
 

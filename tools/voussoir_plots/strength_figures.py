@@ -17,7 +17,16 @@ from .table_two import ANGLES, LABORATORY, STUDY
 MOST_LINES = 12  # of packings that are drawn one by one
 
 
+def valid_ones(all_series: Sequence[Series]) -> list[Series]:
+    """The runs that have a valid test."""
+    found = [series for series in all_series if series.valid]
+    if not found:
+        raise Missing(f"{all_series[0].run.folder} has no valid test")
+    return found
+
+
 def draw_curves(all_series: Sequence[Series], path: Path) -> None:
+    all_series = valid_ones(all_series)
     rows = (
         ("q", 1e-3, "deviatoric stress  $q$  [kPa]"),
         ("q_over_p", 1.0, "stress ratio  $q/p$  [-]"),
@@ -89,10 +98,9 @@ def draw_mean(
 
 def draw_plane(all_series: Sequence[Series], path: Path) -> None:
     """Stress paths in the p-q plane, the tests' peaks and critical states, and the lines through them."""
+    all_series = valid_ones(all_series)
     figure, axes = plt.subplots(1, len(all_series), figsize=(5.6 * len(all_series), 5.2), squeeze=False)
     for axis, series, label in zip(axes[0], all_series, labels(all_series)):
-        if not series.valid:
-            raise Missing(f"{series.run.folder} has no valid test")
         _draw_plane(axis, series)
         axis.set_title(label)
     figure.tight_layout()
@@ -136,6 +144,7 @@ def degrees(angle: float, error: float) -> str:
 def draw_angles(all_series: Sequence[Series], path: Path) -> None:
     """Peak, critical and dilatancy angle of each run with its standard error, the study's value, and the sands of the
     laboratory that the study quotes."""
+    all_series = valid_ones(all_series)
     columns = len(all_series) + len(LABORATORY)
     figure, axis = plt.subplots(figsize=(1.5 * columns + 1.6, 5.0))
     for k, (name, text) in enumerate(ANGLES.items()):
