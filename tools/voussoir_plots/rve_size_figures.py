@@ -22,7 +22,7 @@ METHOD = (
 def draw_variation(sweep: Sweep, path: Path) -> None:
     """Fig. A1: the coefficient of variation of q against the number of grains."""
     found = studies(sweep)
-    figure, axes = plt.subplots(1, len(found), figsize=(6.6 * len(found), 5.2), squeeze=False, sharey=True)
+    figure, axes = plt.subplots(1, len(found), figsize=(6.2 * len(found) + 2.6, 5.2), squeeze=False, sharey=True)
     for axis, study in zip(axes[0], found):
         _draw_variation(axis, study)
     axes[0, 0].set_ylabel("coefficient of variation of $q$  [-]")
@@ -137,6 +137,7 @@ def in_words(study: SizeStudy) -> str:
     parts = []
     if smallest is None:
         parts.append(f"No size meets a coefficient of variation of {BOUND:g} at all strains.")
+        parts += _what_the_largest_misses(study)
     else:
         parts.append(f"The smallest size that meets {BOUND:g} at all strains has {smallest} grains.")
         row = study.table[study.sizes.index(smallest)]
@@ -150,3 +151,14 @@ def in_words(study: SizeStudy) -> str:
     if study.soil in STUDY:
         parts.append(f"The study chose {STUDY[study.soil]} grains.")
     return " ".join(parts)
+
+
+def _what_the_largest_misses(study: SizeStudy) -> list[str]:
+    missed = [(strain, one) for strain, one in zip(STRAINS, study.table[-1]) if one.cov > BOUND]
+    if not missed:
+        return []
+    said = ", ".join(f"{100 * strain:g} % ({one.cov:.3f})" for strain, one in missed)
+    parts = [f"The largest one misses it at {said}."]
+    if all(one.low <= BOUND for _, one in missed):
+        parts.append("The bound lies within the intervals there, so that another draw of packings may meet it.")
+    return parts

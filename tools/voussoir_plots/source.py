@@ -51,7 +51,7 @@ def open_source(paths: Sequence[Path], settings: Settings) -> Source:
 
 def _run(path: Path, settings: Settings) -> Source:
     index = RunIndex(path)
-    what = SORTS.get(index.kind)
+    what = SORTS.get(index.kind, "a tunnel" if index.has_mesh else None)
     if what is None:
         raise Unreadable(f"{path} has results of the kind {index.kind}, which these tools do not know")
     if what == "biaxial tests":
