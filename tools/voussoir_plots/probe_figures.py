@@ -21,7 +21,7 @@ SAID = {
 
 def draw_responses(probe: Probe, path: Path) -> None:
     """Change of stress over the size of the strain, in MPa: responses as symbols, tangents as bars."""
-    strain = probe.strain()
+    strain, found = probe.strain()
     seeds = probe.seeds()
     figure, axes = plt.subplots(len(seeds), 1, figsize=(9.5, 4.4 * len(seeds) + 0.8), squeeze=False)
     for axis, seed in zip(axes.flat, seeds):
@@ -30,7 +30,7 @@ def draw_responses(probe: Probe, path: Path) -> None:
         kinds = sorted({row.get("tangent", "") for row in rows} - {""})
         axis.set_title(f"packing of seed {seed}, tangent: {', '.join(kinds) or 'none'}")
     axes.flat[0].legend(loc="upper center", bbox_to_anchor=(0.5, 1.32), ncol=3)
-    axes.flat[-1].set_xlabel(f"probe (size of the strain {strain:.3g}, the one that fits the tangents best)")
+    axes.flat[-1].set_xlabel(f"probe (size of the strain {strain:.3g}: {found})")
     figure.tight_layout()
     save(figure, path)
 
