@@ -166,6 +166,19 @@ class KnownAnswers(unittest.TestCase):
         self.assertIn("A larger one misses it again; from 400 grains on all meet it.", table)
         self.assertIn("| 300 | 3 | 0.120 (", table)
 
+    def test_axes_of_a_sweep(self):
+        """The values of the axes come from sweep.h5, an empty one being none; runs without results are left out."""
+        shutil.rmtree("axes", ignore_errors=True)
+        made_up_tests("axes/size_1-dense", 100, [1e5, 1e5])
+        with h5py.File("axes/sweep.h5", "w") as file:
+            file.attrs["format"], file.attrs["format_version"] = "voussoir sweep", 1
+            texts = {"runs/name": ("size_2", "size_1-dense"), "axes/size": ("2", "1"), "axes/soil": ("", "dense")}
+            for name, values in texts.items():
+                file[name] = np.array(values, dtype=h5py.string_dtype())
+        (member,) = Sweep("axes").members
+        self.assertEqual((member.name, member.kind), ("size_1-dense", "biaxial"))
+        self.assertEqual(member.axes, {"size": "1", "soil": "dense"})
+
     def test_a_stress_that_was_not_held(self):
         """Where sigma_xx is off by 20 % around 5 % of strain, the test does not count there, and counts elsewhere."""
         made_up_tests("runs/unheld", 100, [1e5, 1e5, 1e5])
