@@ -10,12 +10,12 @@ from . import q8
 from .fields import since_start
 from .resolution import percent
 from .result import Missing, Result
-from .style import save
+from .style import DIVERGING, STRAIN, save
 
 # Field, factor, label, colour map, symmetric about the value at V_l = 0.
 FIELDS = [
-    ("gauss/deviatoric_strain", 100, r"deviatoric strain  $\varepsilon_q$  [%]", "magma_r", False),
-    ("gauss/grain_rotation", 180 / np.pi, "mean grain rotation, counter-\nclockwise positive  [deg]", "coolwarm", True),
+    ("gauss/deviatoric_strain", 100, r"deviatoric strain  $\varepsilon_q$  [%]", STRAIN, False),
+    ("gauss/grain_rotation", 180 / np.pi, "mean grain rotation, counter-\nclockwise positive  [deg]", DIVERGING, True),
     ("gauss/void_ratio", 1, "void ratio  $e$  [-]", "viridis", False),
 ]
 
