@@ -1,6 +1,7 @@
 """What the figures of a study share: curves with bands, the colours of covers, soils and depths, the note below."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -91,10 +92,17 @@ def about_members(tunnels: Sequence[Tunnel]) -> str:
     )
 
 
-def finish(figure: Figure, path: Path, *notes: str) -> None:
-    """Writes the figure with the notes below it."""
+@contextmanager
+def noted(*notes: str) -> Iterator[None]:
+    """Figures that are written meanwhile have these notes below them."""
     set_note(" ".join(note for note in notes if note))
     try:
-        save(figure, path)
+        yield
     finally:
         set_note("")
+
+
+def finish(figure: Figure, path: Path, *notes: str) -> None:
+    """Writes the figure with the notes below it."""
+    with noted(*notes):
+        save(figure, path)

@@ -44,6 +44,12 @@ def at_point(name: str, field: str, result: Result) -> np.ndarray:
     return points.history(result, f"gauss/{field}", point(result, name))
 
 
+def strong_at(name: str, field: str, result: Result) -> np.ndarray:
+    """Z_m of a strong network at a followed point; NaN where no grain has two of its contacts (files have 0)."""
+    found = at_point(name, field, result)
+    return np.where(found > 0, found, np.nan)
+
+
 def ratio_at(name: str, result: Result) -> np.ndarray:
     """q/p [-]."""
     return paths.stress_ratio(result, point(result, name))
@@ -122,13 +128,15 @@ def draw_networks(study: Study, path: Path) -> None:
     left.legend()
     for tunnel in (t for t in tunnels if t.soil != "medium dense sand"):
         for (threshold, field), line in zip(STRONG.items(), LINES):
-            bands = tunnel.over_loss(partial(at_point, "Aa", field))
+            bands = tunnel.over_loss(partial(strong_at, "Aa", field))
             label = rf"{tunnel.code}, $\xi$ = {threshold:g}"
             draw_bands(right, 100 * tunnel.loss, bands, colour_of_soil(tunnel), label, line=line)
     over_the_loss(right, "mechanical coordination of the strong network  [-]")
     right.set_title(r"(b) contacts with $f_n \geq \xi \langle f_n \rangle$ at Aa")
     right.legend(ncol=2)
-    finish(figure, path, about_bands(tunnels))
+    finish(
+        figure, path, about_bands(tunnels), "(b) has gaps where in a member no grain has two contacts of the network."
+    )
 
 
 def _grid(rows: int, names: list[str]) -> tuple[plt.Figure, np.ndarray]:

@@ -20,6 +20,7 @@ from .settlements import wanted_losses
 
 STRESS_LOSSES = (0.02, 0.05, 0.20)  # V_l of the changes of stress [-]
 REACH = 2.0  # how far the pictures of stress reach from the tunnel's axis, in D
+LOWEST = -60  # [deg]: axes above the crown are level, and must not jump between 90° and -90°
 SPACING = 0.3  # of the axes of principal stress, in D
 
 
@@ -72,10 +73,10 @@ def draw_changes(study: Study, path: Path) -> None:
         _add_axes(column[2], result, stress)
         column[0].set_title(f"$V_l$ = {percent(loss)}", fontsize=11)
     figure.colorbar(
-        drawn, ax=list(axes[:2].flat), label="stress over its value at $V_l$ = 0  [-]", extend="max", shrink=0.7,
+        drawn, ax=axes, label="stress over its value at $V_l$ = 0  [-]", extend="max", shrink=0.5, aspect=30,
         ticks=[0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2],
     )
-    names = (r"horizontal  $\sigma_{xx}$", r"vertical  $\sigma_{yy}$", "axes of the major\nprincipal stress")
+    names = (r"horizontal  $\sigma_{xx}$", r"vertical  $\sigma_{yy}$", "axes of major stress")
     for row, name in zip(axes, names):
         row[0].set_ylabel(f"{name}\nheight above the axis  $y/D$  [-]")
     for axis in axes[-1]:
@@ -154,8 +155,8 @@ def draw_rotation(study: Study, path: Path) -> None:
         _add_directions(axis, x, fabric, CYCLE[3], "s", r"fabric direction  $\theta_a$, eq. (22)")
         away = mean_difference(stress, fabric)
         axis.set_title(f"$V_l$ = {percent(loss)};  mean difference {np.mean(away):.0f}°", fontsize=11)
-        axis.set_ylim(-95, 95)
-        axis.set_yticks(range(-90, 91, 30))
+        axis.set_ylim(LOWEST, LOWEST + 180)
+        axis.set_yticks(range(LOWEST, LOWEST + 181, 30))
         axis.set_xlim(0, 3)
     for axis in axes[:, 0]:
         axis.set_ylabel("angle from the vertical  [deg]")
@@ -191,15 +192,20 @@ def mean_difference(stress: np.ndarray, fabric: np.ndarray) -> np.ndarray:
 
 
 def _add_directions(axis: Axes, x: np.ndarray, angles: np.ndarray, colour: str, symbol: str, label: str) -> None:
-    """The mean thick, the members thin; a line is cut where the axis passes through ±90°, which is one direction."""
-    thin = [angles[k] for k in range(len(angles))] if len(angles) > 1 else []
-    for member in thin:
-        axis.plot(*_cut(x, np.degrees(member)), color=colour, linewidth=0.4, alpha=0.8)
-    mean = np.degrees(mean_axis(angles))
+    """The mean thick, the members thin; a line is cut where the axis passes through the ends of the scale."""
+    if len(angles) > 1:
+        for member in angles:
+            axis.plot(*_cut(x, _degrees(member)), color=colour, linewidth=0.4, alpha=0.8)
+    mean = _degrees(mean_axis(angles))
     if symbol == "-":
         axis.plot(*_cut(x, mean), "-", color=colour, linewidth=2.0, label=label)
     else:
         axis.plot(x, mean, symbol, color=colour, markersize=4.5, label=label)
+
+
+def _degrees(angle: np.ndarray) -> np.ndarray:
+    """Axes [deg] from LOWEST on."""
+    return np.mod(np.degrees(angle) - LOWEST, 180) + LOWEST
 
 
 def _cut(x: np.ndarray, degrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
