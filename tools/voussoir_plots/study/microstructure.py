@@ -24,6 +24,7 @@ CHAIN_LOSSES = (0.05, 0.125, 0.20)  # of fig. 20
 NETWORK_LOSS = 0.10  # of fig. 24
 NEAR = 0.25  # an RVE that was written within this distance of a point stands for it, in D
 SHOULDER, FOOT = (0.55, 0.55), (0.85, 0.0)  # B and C of fig. 17 from the tunnel's axis, in D
+ROSE = 0.28  # density at the rim of a rose [1/rad]; it is 0.16 where contacts have no direction
 BINS = 18  # of a rose, over half a turn
 
 
@@ -133,6 +134,7 @@ def _add_rose(axis: Axes, increment: Increment, place: Place) -> None:
         axis.bar(both, np.tile(density, 2), width=np.pi / BINS, color=CYCLE[5], alpha=0.6, edgecolor="0.4", linewidth=0.4)
     turn = np.linspace(0, 2 * np.pi, 361)
     axis.plot(turn, fourier(turn, anisotropy, direction), color=CYCLE[3], linewidth=1.8)
+    axis.set_ylim(0, ROSE)
     axis.set_yticklabels([])
     axis.set_xticks(np.radians(range(0, 360, 45)))
     axis.tick_params(labelsize=8)
