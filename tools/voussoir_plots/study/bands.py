@@ -1,6 +1,7 @@
 """Means over the members of an ensemble with their bands, as `ensemble.h5` defines them (io/FORMAT.md)."""
 
 import functools
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,3 +66,21 @@ def number(values: npt.ArrayLike) -> Number:
         return Number(np.nan, np.nan, 0)
     bands = of_members(known)
     return Number(float(bands.mean), float(bands.mean_half_width), len(known))
+
+
+def exceeds(one: Number, other: Number) -> bool | None:
+    """Whether one mean lies above another; None where their difference is within its own band, whose half width is
+    the root of the sum of both squares. Without bands the means alone decide."""
+    difference = one.mean - other.mean
+    half = np.hypot(one.half_width, other.half_width)
+    if not np.isfinite(difference) or (np.isfinite(half) and abs(difference) <= half):
+        return None
+    return bool(difference > 0)
+
+
+def all_hold(answers: Iterable[bool | None]) -> bool | None:
+    """True where all are True, False where any is False, else None."""
+    known = list(answers)
+    if False in known:
+        return False
+    return None if None in known else True

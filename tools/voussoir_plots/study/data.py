@@ -99,7 +99,9 @@ class Study:
     """All tunnels, by soil and cover."""
 
     def __init__(self, tunnels: Sequence[Tunnel], left_out: Sequence[Missing] = ()) -> None:
-        self.tunnels = sorted(tunnels, key=lambda t: (list(SOILS).index(t.soil) if t.soil in SOILS else 9, t.cover_ratio))
+        self.tunnels = sorted(
+            tunnels, key=lambda t: (list(SOILS).index(t.soil) if t.soil in SOILS else 9, t.cover_ratio)
+        )
         self.left_out = list(left_out)
         if not self.tunnels:
             raise Missing(str(self.left_out[0]) if self.left_out else "there is no tunnel with a volume loss")

@@ -87,9 +87,7 @@ def about_members(tunnels: Sequence[Tunnel]) -> str:
             parts.append(f"{tunnel.name}: {tunnel.representative.folder.name} of {tunnel.count}")
         else:
             parts.append(f"{tunnel.name}: a single run")
-    return (
-        f"Members shown: {'; '.join(parts)} (the member whose settlement of the surface at the end is the median)."
-    )
+    return f"Members shown: {'; '.join(parts)} (the member whose settlement of the surface at the end is the median)."
 
 
 @contextmanager

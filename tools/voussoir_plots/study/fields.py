@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from .. import q8, settlements
@@ -50,7 +51,7 @@ def grid(tunnels: Sequence[Tunnel], losses: Sequence[float]) -> tuple[list[float
     return wanted, rows
 
 
-def _canvas(rows: list[list[Cell]]) -> tuple[plt.Figure, np.ndarray]:
+def _canvas(rows: list[list[Cell]]) -> tuple[Figure, np.ndarray]:
     depths = []
     for row in rows:
         (diameter,) = row[0].result.need("diameter")
@@ -59,7 +60,12 @@ def _canvas(rows: list[list[Cell]]) -> tuple[plt.Figure, np.ndarray]:
     wide = WIDE * diameter
     inches = 2.5  # of a picture's width
     figure, axes = plt.subplots(
-        len(rows), len(rows[0]), squeeze=False, sharex=True, height_ratios=depths, layout="constrained",
+        len(rows),
+        len(rows[0]),
+        squeeze=False,
+        sharex=True,
+        height_ratios=depths,
+        layout="constrained",
         figsize=(inches * len(rows[0]) + 0.9, inches / wide * sum(depths) + 0.35 * len(rows) + 1.5),
     )
     for row, of_row, depth in zip(axes, rows, depths):
@@ -91,12 +97,19 @@ def draw_displacement(study: Study, path: Path) -> None:
         for axis, cell in zip(row, of_row):
             crown = crown_displacement(cell)
             share = np.linalg.norm(cell.increment.field("node/displacement"), axis=1) / crown
-            triangles = Triangulation(*cell.deformed.T, q8.triangles(cell.result.connectivity))
+            triangles = Triangulation(cell.deformed[:, 0], cell.deformed[:, 1], q8.triangles(cell.result.connectivity))
             filled = axis.tricontourf(triangles, np.clip(share, 0, 1), levels=levels, cmap=SEQUENTIAL)
             axis.tricontour(triangles, share, levels=[0.5], colors="white", linewidths=0.9)
             axis.set_title(f"$V_l$ = {percent(cell.increment['volume_loss'])}, crown {1e3 * crown:.0f} mm", fontsize=9)
-    bar = figure.colorbar(filled, ax=axes, label="displacement over the crown's  $|u| / u_{crown}$  [-]",
-        location="bottom", shrink=0.6, aspect=40, pad=0.01)
+    bar = figure.colorbar(
+        filled,
+        ax=axes,
+        label="displacement over the crown's  $|u| / u_{crown}$  [-]",
+        location="bottom",
+        shrink=0.6,
+        aspect=40,
+        pad=0.01,
+    )
     bar.set_ticks(np.linspace(0, 1, 6))
     figure.suptitle("Displacement of the ground by cover; white line: half of the crown's", fontsize=12)
     finish(figure, path, about_members(tunnels))
@@ -145,5 +158,3 @@ def draw_points(axis: Axes, cell: Cell, values: np.ndarray, colour_map: str, lim
         list(patches), array=values.ravel(), cmap=colour_map, edgecolors="face", linewidths=0.3, clim=limits
     )
     axis.add_collection(drawn)
-
-

@@ -67,7 +67,7 @@ def _add_path(axis: Axes, tunnel: Tunnel) -> None:
     unit_weight, surcharge, surface_y, diameter = result.need("unit_weight", "surcharge", "surface_y", "diameter")
     where = points.original_points(result)
     heights = np.arange(0.25, surface_y, 0.5)
-    chosen = np.unique([points.nearest(result, "", PATH * diameter, y).index for y in heights])
+    chosen = np.unique([points.nearest(result, "", PATH * diameter, float(y)).index for y in heights])
     chosen = chosen[np.argsort(-where[chosen, 1])]
     depth = surface_y - where[chosen, 1]
     stress = geostatic(tunnel).reshape(tunnel.count, -1, 3)[:, chosen] / 1e3
@@ -128,4 +128,3 @@ def _add_rves(axis: Axes, tunnel: Tunnel) -> None:
         chains.draw_rve(inset, state.snapshot(name))
         inset.set_title(f"{when}\nload parameter {state['load_parameter']:.2g}", fontsize=10)
     axis.text(0.5, 0.0, f"RVE at Aa; {chains.COLOURS_OF_FORCES}", ha="center", fontsize=9, transform=axis.transAxes)
-

@@ -1,6 +1,7 @@
 """One sentence for each figure of the RVEs: our numbers over the members, and whether they show what the paper
 reports."""
 
+import itertools
 from functools import partial
 
 import numpy as np
@@ -9,11 +10,11 @@ from .. import chains as networks
 from .. import points, tensors, trends
 from ..resolution import percent
 from ..result import Missing, Result
-from .bands import Number, number
+from .bands import Number, all_hold, exceeds, number
 from .data import Study
 from .microstructure import NEAR, NETWORK_LOSS, arch_points, fabric_at, nearest_snapshot, strong_contacts, strong_share
 from .paths import STRONG, at_point, followed, point, ratio_at, strong_at
-from .sentences import each, says
+from .sentences import Claim, each, says
 from .settlements import wanted_losses
 from .stresses import directions, mean_difference
 
@@ -30,18 +31,18 @@ def fabric(study: Study) -> str:
         both = [[found(member, name, when) for member in tunnel.members] for when in (0, 1)]
         before, after = (number([a for a, _ in one]) for one in both)
         axes = [_mean_axis([angle for _, angle in one]) for one in both]
-        turned[name] = (before.mean, after.mean, axes[1])
+        turned[name] = (before, after, axes[1])
         parts.append(f"{name}: a from {before} to {after}, direction from {axes[0]:.0f}° to {axes[1]:.0f}°")
-    holds = (
-        all(after > before for before, after, _ in turned.values())
-        and abs(turned["A"][2]) < 30
-        and abs(abs(turned["C"][2]) - 90) < 30
-    )
     return says(
-        holds,
-        "anisotropy grows at all three points, contacts turn level at A and stay vertical at C",
-        f"fabric before the loss and at V_l = {percent(float(tunnel.loss[-1]))}, directions from the horizontal: "
+        f"the fabric before the loss and at V_l = {percent(float(tunnel.loss[-1]))}, with directions from the horizontal: "
         + "; ".join(parts),
+        (
+            all_hold(exceeds(after, before) for before, after, _ in turned.values()),
+            "the anisotropy a grows at A, B and C",
+        ),
+        (abs(turned["A"][2]) < 30, "contacts turn level at A"),
+        (30 < abs(turned["B"][2]) < 75, "contacts turn at B"),
+        (abs(turned["C"][2]) > 60, "contacts stay vertical at C"),
     )
 
 
@@ -58,9 +59,11 @@ def rotation(study: Study) -> str:
     }
     text = ", ".join(f"{value.text('.1f')}° at V_l = {percent(loss)}" for loss, value in found.items())
     return says(
-        all(value.mean < 20 for value in found.values()),
-        "the turn of the stress closely matches the direction of the fabric",
         f"along the line {study.settings.line:g} D above the crown both differ on average by {text}",
+        (
+            all(value.mean < 20 for value in found.values()),
+            "the turn of the stress matches the direction of the fabric",
+        ),
     )
 
 
@@ -77,10 +80,10 @@ def localisation(study: Study) -> str:
 
     turned, dilated = (tunnel.number(partial(share, which=k)) for k in (0, 1))
     return says(
-        min(turned.mean, dilated.mean) > 0.5,
-        "strain, grain rotation and void ratio localise in the same places",
         f"of the 5 % most sheared points {turned.text('.0f', 100, '%')} are among the 5 % most turned and "
         f"{dilated.text('.0f', 100, '%')} among the 5 % most dilated",
+        (turned.mean > 0.5, "grain rotation localises where the shear strain does"),
+        (dilated.mean > 0.5, "the void ratio localises where the shear strain does"),
     )
 
 
@@ -103,13 +106,14 @@ def chains(study: Study) -> str:
     when = {name: tunnel.number(partial(level, name=name)) for name in names}
     drops = {name: tunnel.number(partial(drop, name=name)) for name in ("Aa", "B")}
     known = [w.mean for w in when.values()]
-    ordered = all(np.isfinite(known)) and all(a < b for a, b in zip(known, known[1:]))
+    ordered = all(np.isfinite(known)) and all(a < b for a, b in itertools.pairwise(known))
     turned = ", ".join(f"{name} {_loss(value)}" for name, value in when.items())
+    none = Number(0.0, 0.0, 0)
     return says(
-        ordered and all(value.mean < 0 for value in drops.values()),
-        "contacts turn level one after another from the crown upwards, and get lost at Aa and B",
-        f"the fabric turns within 30° of the horizontal, with a above 0.1, at {turned}; Z_m changes by {drops['Aa']} at "
-        f"Aa and by {drops['B']} at B until the end",
+        f"the fabric is within 30° of the horizontal, with a above 0.1, from these V_l on: {turned}; Z_m changes by "
+        f"{drops['Aa']} at Aa and by {drops['B']} at B until the end",
+        (ordered, "contacts turn level one after another from the crown upwards"),
+        (all_hold(exceeds(none, value) for value in drops.values()), "contacts get lost at Aa and B"),
     )
 
 
@@ -129,18 +133,24 @@ def paths(study: Study) -> str:
 
     lowest = {n: tunnel.number(partial(least, name=n)) for n in names}
     peaks = {n: [tunnel.number(partial(peak, name=n, which=k)) for k in (0, 1, 2)] for n in names}
-    order = [peaks[n][0].mean for n in names]
     text = "; ".join(
         f"{n}: least q/p at V_l = {lowest[n].text('.1f', 100, '%')}, peak {peaks[n][1]} at "
         f"{peaks[n][0].text('.1f', 100, '%')}, softening after it in {round(peaks[n][2].mean * peaks[n][2].count)} of "
         f"{peaks[n][2].count}"
         for n in names
     )
+    order = [peaks[n][0].mean for n in names]
     return says(
-        all(a < b for a, b in zip(order, order[1:])) and peaks[names[0]][2].mean > 0.5,
-        "q/p falls first, Aa softens first, then Ab peaks, Ac last",
         text,
+        (min(low.mean for low in lowest.values()) > 0.01, "q/p falls at first"),
+        (peaks[names[0]][2].mean > 0.5, "Aa softens after its peak"),
+        (_follow(order), "the peaks follow one another from Aa upwards"),
     )
+
+
+def _follow(order: list[float]) -> bool:
+    """Whether Aa peaks first and no point before the one below it; two that still rise at the end have no order."""
+    return order[0] < order[-1] and all(a <= b for a, b in itertools.pairwise(order))
 
 
 def _known(ratio: np.ndarray) -> np.ndarray:
@@ -159,24 +169,26 @@ def paths_by_soil(study: Study) -> str:
         t.soil: {n: t.number(lambda m, n=n: float(at_point(n, "volumetric_strain", m)[-1])) for n in names}
         for t in tunnels
     }
-    if "dense sand" not in most or len(most) < 2:
+    claims: list[Claim] = []
+    if "dense sand" in most and "medium dense sand" in most:
+        pairs = [(most["dense sand"][n], most["medium dense sand"][n]) for n in names]
+        claims.append((all_hold(exceeds(*pair) for pair in pairs), "q/p stays lower in CPS_MD"))
+        loose = [volume["medium dense sand"][n] for n in names if n != "Aa"]
+        none = Number(0.0, 0.0, 0)
+        claims.append((all_hold(exceeds(value, none) for value in loose), "the RVEs Ab and Ac of CPS_MD contract"))
+    if "dense sand" in most and "gravel" in most:
+        pairs = [(most["gravel"][n], most["dense sand"][n]) for n in names]
+        claims.append((all_hold(exceeds(*pair) for pair in pairs), "q/p grows higher in CPG_D"))
+        dilates = [exceeds(volume["dense sand"][n], volume["gravel"][n]) for n in names if n != "Ac"]
+        claims.append((all_hold(dilates), "the RVEs Aa and Ab of CPG_D dilate more"))
+    if not claims:
         raise Missing("needs dense sand and another soil at the same cover")
-    dense = most["dense sand"]
-    holds = all(most.get("gravel", dense)[n].mean >= dense[n].mean for n in names) and all(
-        most.get("medium dense sand", dense)[n].mean <= dense[n].mean for n in names
-    )
     text = each(
         tunnels,
-        lambda t: ", ".join(
-            f"{n} {most[t.soil][n]} and {volume[t.soil][n].text('.2f', 100, '%')}" for n in names
-        ),
+        lambda t: ", ".join(f"{n} {most[t.soil][n]} and {volume[t.soil][n].text('.2f', 100, '%')}" for n in names),
         "soil",
     )
-    return says(
-        holds,
-        "lower q/p and contraction at Ab, Ac in CPS_MD, higher q/p and more dilation in CPG_D",
-        f"largest q/p, and volumetric strain at the end (contraction positive): {text}",
-    )
+    return says(f"the largest q/p, and the volumetric strain at the end (contraction positive): {text}", *claims)
 
 
 def connectivity(study: Study) -> str:
@@ -188,18 +200,19 @@ def connectivity(study: Study) -> str:
         ]
         for t in tunnels
     }
-    dense, loose = first.get("dense sand"), first.get("medium dense sand")
-    holds = dense is None or loose is None or loose.mean < dense.mean
+    claims: list[Claim] = []
+    if {"dense sand", "medium dense sand"} <= set(first):
+        claims.append((exceeds(first["dense sand"], first["medium dense sand"]), "Z_m is lower in CPS_MD at first"))
     if {"dense sand", "gravel"} <= set(strong):
-        holds = holds and all(g.mean > d.mean for g, d in zip(strong["gravel"], strong["dense sand"]))
-    text = each(
-        tunnels, lambda t: f"{first[t.soil]}; {', '.join(str(value) for value in strong[t.soil])}", "soil"
-    )
+        near = abs(first["gravel"].mean - first["dense sand"].mean) < 0.1 * first["dense sand"].mean
+        claims.append((near, "Z_m hardly differs between CPS_D and CPG_D"))
+        pairs = zip(strong["gravel"], strong["dense sand"])
+        claims.append((all_hold(exceeds(*p) for p in pairs), "the strong network of CPG_D is better connected"))
+    text = each(tunnels, lambda t: f"{first[t.soil]}; {', '.join(str(value) for value in strong[t.soil])}", "soil")
     return says(
-        holds,
-        "Z_m is lower in CPS_MD at first; the strong network of CPG_D is better connected",
-        f"at Aa, Z_m at V_l = 0, and Z_m of the contacts with f_n of 1, 2 and 2.5 times the mean and more, on average over "
-        f"V_l: {text}",
+        "at Aa, Z_m at V_l = 0, and Z_m of the contacts with f_n of 1, 2 and 2.5 times the mean and more, on average over "
+        f"V_l, are {text}",
+        *claims,
     )
 
 
@@ -208,14 +221,12 @@ def strong_networks(study: Study) -> str:
     found = {t.soil: [t.number(partial(_strong, which=k)) for k in (0, 1, 2)] for t in tunnels}
     text = each(tunnels, lambda t: _networks(found[t.soil]), "soil")
     dense, gravel, loose = (found.get(soil) for soil in ("dense sand", "gravel", "medium dense sand"))
-    holds = (dense is None or gravel is None or gravel[0].mean > dense[0].mean) and (
-        dense is None or loose is None or loose[2].mean < dense[2].mean
-    )
-    return says(
-        holds,
-        "in CPG_D the strong network spans the whole RVE, in sand it is sparser, in CPS_MD less level",
-        f"at Aa near V_l = {percent(NETWORK_LOSS)} {text}",
-    )
+    claims: list[Claim] = []
+    if dense and gravel:
+        claims.append((exceeds(gravel[0], dense[0]), "more grains of CPG_D than of CPS_D are in the strong network"))
+    if dense and loose:
+        claims.append((exceeds(dense[2], loose[2]), "the strong network of CPS_MD is less level than that of CPS_D"))
+    return says(f"at Aa near V_l = {percent(NETWORK_LOSS)} {text}", *claims)
 
 
 def _strong(member: Result, which: int) -> float:
@@ -236,4 +247,3 @@ def _strong(member: Result, which: int) -> float:
 def _networks(values: list[Number]) -> str:
     strong, strongest, level = (value.text(".0f", 100, "%") for value in values)
     return f"{strong} of the grains are in C1 or C2, {strongest} in C2, {level} of these contacts are level"
-

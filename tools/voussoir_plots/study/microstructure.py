@@ -98,7 +98,11 @@ def _add_rve(axis: Axes, increment: Increment, place: Place) -> None:
     if place.snapshot is None or place.snapshot not in increment.snapshots:
         axis.set_axis_off()
         axis.text(
-            0.5, 0.5, "No RVE was written\ngrain by grain near this point\n(output.rves).", ha="center", va="center",
+            0.5,
+            0.5,
+            "No RVE was written\ngrain by grain near this point\n(output.rves).",
+            ha="center",
+            va="center",
             transform=axis.transAxes,
         )
         return
@@ -131,7 +135,9 @@ def _add_rose(axis: Axes, increment: Increment, place: Place) -> None:
         density = np.histogram(angles, edges)[0] / max(1, len(angles)) / (2 * np.diff(edges))
         centres = (edges[1:] + edges[:-1]) / 2
         both = np.concatenate([centres, centres + np.pi])
-        axis.bar(both, np.tile(density, 2), width=np.pi / BINS, color=CYCLE[5], alpha=0.6, edgecolor="0.4", linewidth=0.4)
+        axis.bar(
+            both, np.tile(density, 2), width=np.pi / BINS, color=CYCLE[5], alpha=0.6, edgecolor="0.4", linewidth=0.4
+        )
     turn = np.linspace(0, 2 * np.pi, 361)
     axis.plot(turn, fourier(turn, anisotropy, direction), color=CYCLE[3], linewidth=1.8)
     axis.set_ylim(0, ROSE)
@@ -161,9 +167,7 @@ def draw_strong(study: Study, path: Path) -> None:
     shown = [(tunnel, increment, name) for tunnel, increment, name in found if name is not None]
     if not shown:
         raise Missing("no RVE near Aa was written grain by grain (output.rves)")
-    figure, axes = plt.subplots(
-        1, len(shown), figsize=(5.2 * len(shown), 6.0), squeeze=False, layout="constrained"
-    )
+    figure, axes = plt.subplots(1, len(shown), figsize=(5.2 * len(shown), 6.0), squeeze=False, layout="constrained")
     for axis, (tunnel, increment, name) in zip(axes[0], shown):
         snapshot = increment.snapshot(name)
         draw_network(axis, snapshot)
@@ -209,8 +213,15 @@ def draw_network(axis: Axes, snapshot: Snapshot) -> None:
     wide = 2 * snapshot["radius"]
     axis.add_collection(
         EllipseCollection(
-            wide, wide, np.zeros_like(wide), units="xy", offsets=inside, offset_transform=axis.transData,
-            facecolors="0.96", edgecolors="0.8", linewidths=0.3,
+            wide,
+            wide,
+            np.zeros_like(wide),
+            units="xy",
+            offsets=inside,
+            offset_transform=axis.transData,
+            facecolors="0.96",
+            edgecolors="0.8",
+            linewidths=0.3,
         )
     )
     for least, colour, thick in ((chains.STRONG, STRONG_FORCE, 1.6), (chains.STRONGEST, STRONGEST_FORCE, 3.6)):

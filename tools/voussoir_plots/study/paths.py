@@ -8,6 +8,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from .. import paths, points, troughs
 from ..result import Missing, Result
@@ -76,7 +77,9 @@ def draw_main(study: Study, path: Path) -> None:
         colour, loss = paths.COLOURS[name], 100 * tunnel.loss
         draw_bands(column[0], loss, tunnel.over_loss(partial(ratio_at, name)), colour)
         curves: list[Callable[[Result], np.ndarray]] = [
-            partial(at_point, name, "volumetric_strain"), partial(strain_at, name, 0), partial(strain_at, name, 1)
+            partial(at_point, name, "volumetric_strain"),
+            partial(strain_at, name, 0),
+            partial(strain_at, name, 1),
         ]
         for (label, (shade, line)), curve in zip(STRAINS.items(), curves):
             draw_bands(column[1], loss, tunnel.over_loss(curve), shade, label, 100, line)
@@ -120,9 +123,7 @@ def draw_networks(study: Study, path: Path) -> None:
     figure, (left, right) = plt.subplots(1, 2, figsize=(13.0, 5.2), layout="constrained")
     for tunnel in tunnels:
         bands = tunnel.over_loss(partial(at_point, "Aa", "mechanical_coordination"))
-        draw_bands(
-            left, 100 * tunnel.loss, bands, colour_of_soil(tunnel), tunnel.label, line=line_of_soil(tunnel)
-        )
+        draw_bands(left, 100 * tunnel.loss, bands, colour_of_soil(tunnel), tunnel.label, line=line_of_soil(tunnel))
     over_the_loss(left, "mechanical coordination  $Z_m$  [-]")
     left.set_title("(a) whole network at Aa")
     left.legend()
@@ -139,9 +140,14 @@ def draw_networks(study: Study, path: Path) -> None:
     )
 
 
-def _grid(rows: int, names: list[str]) -> tuple[plt.Figure, np.ndarray]:
+def _grid(rows: int, names: list[str]) -> tuple[Figure, np.ndarray]:
     return plt.subplots(
-        rows, len(names), figsize=(4.9 * len(names) + 0.4, 3.5 * rows + 0.6), squeeze=False, sharex=True, sharey="row",
+        rows,
+        len(names),
+        figsize=(4.9 * len(names) + 0.4, 3.5 * rows + 0.6),
+        squeeze=False,
+        sharex=True,
+        sharey="row",
         layout="constrained",
     )
 

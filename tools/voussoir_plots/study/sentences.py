@@ -1,6 +1,7 @@
 """One sentence for each figure of the ground: our numbers over the members (mean ± half width of the 95 % band of the
 mean), and whether they show what the paper reports."""
 
+import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -14,17 +15,30 @@ from ..reaction import curve
 from ..resolution import percent
 from ..result import Increment, Missing, Result
 from ..trend_table import BAND
-from .bands import number
+from .bands import Number, all_hold, exceeds, number
 from .data import Study, Tunnel
 from .initial import ratio_curve
 from .settlements import SUBSURFACE, largest, normalised_trough, widths
 
 HIGH_STRESS, LOW_STRESS = 200e3, 20e3  # of K0 [Pa]
+RECOVERY = 0.02  # of the stress before the loss: a ground reaction that rises by less from its minimum does not recover
 
 
-def says(holds: bool | np.bool, paper: str, ours: str) -> str:
-    """`paper`: what the paper reports; `ours`: our numbers."""
-    return f"{'As' if holds else 'Other than'} in the paper ({paper}): {ours}."
+Claim = tuple[bool | np.bool | None, str]  # whether our results show it (None: the members do not decide), and what
+
+
+def says(ours: str, *claims: Claim) -> str:
+    """What the paper reports, by whether our results show it, and our numbers."""
+    parts = []
+    for wanted, begin in (
+        (True, "As in the paper: "),
+        (False, "Other than in the paper, not: "),
+        (None, "Open, as the members scatter: "),
+    ):
+        found = [text for holds, text in claims if (holds is None) == (wanted is None) and bool(holds) == bool(wanted)]
+        if found:
+            parts.append(begin + "; ".join(found))
+    return f"{'. '.join(parts)}. Here {ours}."
 
 
 def each(tunnels: Sequence[Tunnel], text: Callable[[Tunnel], str], by: str = "cover") -> str:
@@ -47,9 +61,8 @@ def initial(study: Study) -> str:
     tunnel = study.main()
     stress, bands = ratio_curve(tunnel)
 
-    def ratio(wanted: float) -> tuple[float, str]:
-        found = number([np.interp(wanted, stress, member) for member in bands.members])
-        return found.mean, f"{found} at {wanted / 1e3:g} kPa"
+    def ratio(wanted: float) -> Number:
+        return number([np.interp(wanted, stress, member) for member in bands.members])
 
     def deflection(member: Result) -> float:
         tensor = geostatic.after_gravity(member).field("gauss/stress")
@@ -60,11 +73,12 @@ def initial(study: Study) -> str:
         return float(np.degrees(np.abs(tensors.major_from_vertical(tensor[deep])).mean()))
 
     angle = tunnel.number(deflection)
-    (low, at_low), (high, at_high) = ratio(LOW_STRESS), ratio(HIGH_STRESS)
+    low, high = ratio(LOW_STRESS), ratio(HIGH_STRESS)
     return says(
-        high < low and angle.mean < 1,
-        "K0 falls with the stress, not linearly; axes turned by 0.5° at most",
-        f"K0 = {at_low} and {at_high}; from 50 kPa on the major axis is {angle.text('.2f')}° off the vertical on average",
+        f"K0 = {low} at {LOW_STRESS / 1e3:g} kPa and {high} at {HIGH_STRESS / 1e3:g} kPa; from 50 kPa on the major axis is "
+        f"{angle.text('.2f')}° off the vertical on average",
+        (exceeds(low, high), "K0 falls with the vertical stress"),
+        (angle.mean <= 0.5, "the principal axes are turned by 0.5° at most"),
     )
 
 
@@ -88,15 +102,22 @@ def active_zone(study: Study) -> str:
     tunnels = study.covers()
     last = end(tunnels)
     found = [t.number(lambda member: active_height(member, last)) for t in tunnels]
-    falls = all(a.mean > b.mean for a, b in zip(found, found[1:]))
     text = each(tunnels, lambda t: f"{found[tunnels.index(t)]} C")
-    holds = falls and (found[0].mean > 0.9 or tunnels[0].cover_ratio > 2.5)
+    claims: list[Claim] = [(_falling(found), "the active soil reaches less far at a larger cover")]
+    if tunnels[0].cover_ratio < 2.5:
+        claims.append((found[0].mean > 0.9, "the active soil of C/D = 2 reaches the surface"))
     return says(
-        holds,
-        "the active soil reaches the surface at C/D = 2 and stays near the crown at C/D = 4",
         f"soil on the axis that settles by half of the crown's settlement or more reaches, above the crown, at V_l = "
         f"{percent(last)} {text}",
+        *claims,
     )
+
+
+def _falling(found: Sequence[Number]) -> bool | None:
+    """Whether each number exceeds the next one."""
+    if len(found) < 2:
+        raise Missing("needs dense sand at two covers")
+    return all_hold(exceeds(a, b) for a, b in itertools.pairwise(found))
 
 
 def band_reach(member: Result, loss: float) -> float:
@@ -109,60 +130,86 @@ def band_reach(member: Result, loss: float) -> float:
     return max(trends.band_height(height, where[:, 0], strain, member.settings.aside * diameter, BAND))
 
 
-def _bands(tunnels: Sequence[Tunnel], by: str) -> tuple[list[float], str]:
+def _bands(tunnels: Sequence[Tunnel], by: str) -> tuple[dict[str, Number], str]:
+    """The reach of the bands by the names of the tunnels, and as text."""
     last = end(tunnels)
     found = {t.name: t.number(lambda member: band_reach(member, last)) for t in tunnels}
     text = each(tunnels, lambda t: f"{found[t.name]} C", by)
-    means = [found[t.name].mean for t in tunnels]
-    return means, f"soil with 5 % of shear strain and more reaches, above the crown, at V_l = {percent(last)} {text}"
+    return found, f"soil with 5 % of shear strain and more reaches, above the crown, at V_l = {percent(last)} {text}"
 
 
 def bands_by_cover(study: Study) -> str:
     tunnels = study.covers()
-    means, text = _bands(tunnels, "cover")
-    falls = all(a > b for a, b in zip(means, means[1:]))
-    holds = falls and (tunnels[0].cover_ratio > 2.5 or means[0] > 0.9)
-    return says(holds, "bands reach the surface at C/D = 2, an arch at C/D = 3, slow bands at C/D = 4", text)
+    found, text = _bands(tunnels, "cover")
+    claims: list[Claim] = []
+    for tunnel in tunnels:
+        reach = found[tunnel.name].mean
+        if tunnel.cover_ratio < 2.5:
+            claims.append((reach > 0.9, "shear bands reach the surface at C/D = 2"))
+        elif tunnel.cover_ratio < 3.5:
+            claims.append((0.1 < reach < 0.9, "shear bands close below the surface at C/D = 3"))
+        else:
+            claims.append((reach < 0.7, "shear bands stay low at C/D = 4"))
+    return says(text, *claims)
 
 
 def bands_by_soil(study: Study) -> str:
-    tunnels = study.soils()
-    means, text = _bands(tunnels, "soil")
-    found = dict(zip((t.soil for t in tunnels), means))
-    dense = found.get("dense sand", np.nan)
-    holds = not (found.get("medium dense sand", np.inf) < dense) and not (found.get("gravel", 0.0) > dense)
-    return says(holds, "bands go up farther in CPS_MD, less far in CPG_D", text)
+    dense, others = _beside_dense(study)
+    found, text = _bands(study.soils(), "soil")
+    claims: list[Claim] = []
+    if loose := others.get("medium dense sand"):
+        claims.append(
+            (exceeds(found[loose.name], found[dense.name]), "shear bands go up farther in CPS_MD than in CPS_D")
+        )
+    if gravel := others.get("gravel"):
+        claims.append(
+            (exceeds(found[dense.name], found[gravel.name]), "shear bands go up less far in CPG_D than in CPS_D")
+        )
+    return says(text, *claims)
+
+
+def _beside_dense(study: Study) -> tuple[Tunnel, dict[str, Tunnel]]:
+    """The tunnel in dense sand, and those in other soils by their names."""
+    others = {t.soil: t for t in study.soils() if t.soil != "dense sand"}
+    if not others:
+        raise Missing("needs dense sand and another soil at the same cover")
+    return study.soil("dense sand"), others
 
 
 def growth(study: Study) -> str:
     tunnels = study.covers()
     windows = ((0.0, 0.02), (0.08, 0.10), (0.175, 0.20))
 
-    def rates(tunnel: Tunnel) -> list[float]:
+    def rates(tunnel: Tunnel) -> list[Number]:
         (diameter,) = tunnel.members[0].need("diameter")
         return [
             tunnel.number(
                 lambda m, low=low, high=high: trends.slope(m.volume_loss, largest(m, 0.0), low, high) / diameter
-            ).mean
+            )
             for low, high in windows
         ]
 
     found = {t.name: rates(t) for t in tunnels}
-    slows = all(b < 0.9 * a for a, b, _ in found.values())
-    again = found[tunnels[0].name][2] > 1.25 * found[tunnels[0].name][1]
     last = end(tunnels)
-    share = {t.name: t.number(lambda m: at(m, largest(m, 0.0), last)) for t in tunnels}
+    settled = {t.name: t.number(lambda m: at(m, largest(m, 0.0), last)) for t in tunnels}
 
     def text(tunnel: Tunnel) -> str:
-        rate = ", ".join(f"{value:.3f}" for value in found[tunnel.name])
-        return f"{rate}, S = {share[tunnel.name].text('.0f', 1e3, 'mm')} at {percent(last)}"
+        rate = ", ".join(value.text(".3f") for value in found[tunnel.name])
+        return f"{rate}, S = {settled[tunnel.name].text('.0f', 1e3, 'mm')} at {percent(last)}"
 
+    claims: list[Claim] = [
+        (all_hold(exceeds(a, b) for a, b, _ in found.values()), "the settlement slows until V_l = 10 %")
+    ]
+    for tunnel in tunnels:
+        _, middle, late = found[tunnel.name]
+        if tunnel.cover_ratio < 2.5:
+            claims.append((exceeds(late, middle), "the surface of C/D = 2 accelerates again from 15 % on"))
+        else:
+            held = late.mean < 1.25 * middle.mean
+            claims.append((held, f"the surface of C/D = {tunnel.cover_ratio:.3g} does not accelerate again"))
     return says(
-        slows and again,
-        "growth slows up to V_l = 10 %; at C/D = 2 the surface accelerates again from 15 % on",
-        f"growth of the surface's settlement dS/dV_l / D at V_l = 0 to 2, 8 to 10 and 17.5 to 20 %: "
-        f"{each(tunnels, text)}" + ("" if slows and again else f"; it {'slows' if slows else 'does not slow'}, and at "
-        f"C/D = {tunnels[0].cover_ratio:.3g} {'accelerates' if again else 'does not accelerate'} again"),
+        f"the surface's settlement grows by dS/dV_l / D at V_l = 0 to 2, 8 to 10 and 17.5 to 20 %: {each(tunnels, text)}",
+        *claims,
     )
 
 
@@ -177,14 +224,17 @@ def trough_shapes(study: Study) -> str:
         }
         worst = max(worst, *(fit.misfit for fit in fits.values()))
         spread[tunnel.name] = [fits[0.0, v].inflection for v in (0.25 * last, last)]
-    narrows = all(b < a for a, b in spread.values())
-    widens = spread[tunnels[0].name][1] <= spread[tunnels[-1].name][1]
     text = each(tunnels, lambda t: " to ".join(f"{i:.2f}" for i in spread[t.name]) + " m")
+    claims: list[Claim] = [
+        (worst < 0.05, "the curve fits the troughs well"),
+        (all(b < a for a, b in spread.values()), "troughs narrow with V_l"),
+    ]
+    if len(tunnels) > 1:
+        claims.append((spread[tunnels[0].name][1] < spread[tunnels[1].name][1], "troughs widen with C/D"))
     return says(
-        worst < 0.05 and narrows and widens,
-        "the curve fits well; troughs widen with C/D and narrow with V_l",
-        f"largest rms misfit of the mean troughs at z/C = 0 and {SUBSURFACE:g} is {percent(worst)} of S_max; inflection at "
-        f"the surface from V_l = {percent(0.25 * last)} to {percent(last)}: {text}",
+        f"the largest rms misfit of the mean troughs at z/C = 0 and {SUBSURFACE:g} is {percent(worst)} of S_max; the "
+        f"inflection at the surface goes from V_l = {percent(0.25 * last)} to {percent(last)}: {text}",
+        *claims,
     )
 
 
@@ -206,40 +256,47 @@ def trough_widths(study: Study) -> str:
     inside = {t.name: t.number(share) for t in tunnels}
     width = {t.name: t.number(lambda m: at(m, widths(m, 0.0), last)) for t in tunnels}
     text = each(tunnels, lambda t: f"{inside[t.name].text('.0f', 100, '%')}, K_s = {width[t.name]} at {percent(last)}")
-    return says(
-        all(found.mean > 0.5 for found in inside.values()),
-        f"K_s lies mostly in Mair and Taylor's range, {low:g} to {high:g}",
-        f"states with K_s in this range: {text}",
-    )
+    gradient = {t.name: t.number(lambda m: at(m, widths(m, 0.75), last) - at(m, widths(m, 0.0), last)) for t in tunnels}
+    claims: list[Claim] = [
+        (all(found.mean > 0.5 for found in inside.values()), f"K_s lies mostly between {low:g} and {high:g}")
+    ]
+    if len(tunnels) > 1:
+        deep, shallow = gradient[tunnels[-1].name], gradient[tunnels[0].name]
+        claims.append((exceeds(deep, shallow), "K varies less with depth in shallow ground"))
+    rise = each(tunnels, lambda t: str(gradient[t.name]))
+    return says(f"states with K_s in this range: {text}; K at z/C = 0.75 less K_s: {rise}", *claims)
 
 
 def soils_settle(study: Study) -> str:
     tunnels = study.soils()
     last = end(tunnels)
+    dense, others = _beside_dense(study)
     found = {t.soil: t.number(lambda m: at(m, largest(m, 0.0), last)) for t in tunnels}
-    dense = found.get("dense sand")
-    if dense is None or len(found) < 2:
-        raise Missing("needs dense sand and another soil at the same cover")
-    loose = found.get("medium dense sand", dense)
     late = {
         t.soil: t.number(
-            lambda m: trends.slope(m.volume_loss, largest(m, 0.0), last / 2, last)
-            / trends.slope(m.volume_loss, of_one.on_axis(m, SUBSURFACE), last / 2, last)
+            lambda m: (
+                trends.slope(m.volume_loss, largest(m, 0.0), last / 2, last)
+                / trends.slope(m.volume_loss, of_one.on_axis(m, SUBSURFACE), last / 2, last)
+            )
         )
         for t in tunnels
     }
     text = each(
         tunnels,
-        lambda t: f"{found[t.soil].text('.0f', 1e3, 'mm')}, growth of the surface over that at z/C = {SUBSURFACE:g} in "
-        f"the second half {late[t.soil]}",
+        lambda t: (
+            f"{found[t.soil].text('.0f', 1e3, 'mm')}, its growth in the second half over that at z/C = "
+            f"{SUBSURFACE:g} {late[t.soil]}"
+        ),
         "soil",
     )
-    holds = loose.mean >= dense.mean and late.get("medium dense sand", late["dense sand"]).mean > 0.8
-    return says(
-        holds,
-        "CPS_MD settles more, at similar rates at all depths; CPG_D like CPS_D, but more locally",
-        f"settlement of the surface at V_l = {percent(last)}: {text}",
-    )
+    claims: list[Claim] = []
+    if "medium dense sand" in others:
+        claims.append((exceeds(found["medium dense sand"], found[dense.soil]), "CPS_MD settles more than CPS_D"))
+        similar = 0.8 < late["medium dense sand"].mean < 1.25
+        claims.append((similar, "the surface and the subsurface of CPS_MD settle at similar rates"))
+    if "gravel" in others:
+        claims.append((exceeds(late[dense.soil], late["gravel"]), "the settlement of CPG_D is more local than CPS_D's"))
+    return says(f"settlement of the surface at V_l = {percent(last)}: {text}", *claims)
 
 
 def reaction(study: Study) -> str:
@@ -247,18 +304,25 @@ def reaction(study: Study) -> str:
     least = {t.soil: t.number(lambda m: float(curve(m)[1].min())) for t in tunnels}
     when = {t.soil: t.number(lambda m: float(m.volume_loss[curve(m)[1].argmin()])) for t in tunnels}
     final = {t.soil: t.number(lambda m: float(curve(m)[1][-1])) for t in tunnels}
-    recovered = {soil: final[soil].mean - least[soil].mean for soil in least}
-    loose = "medium dense sand"
-    holds = all(r >= 0.02 for soil, r in recovered.items() if soil != loose) and recovered.get(loose, 0.0) < 0.02
+    recovery = {t.soil: t.number(lambda m: float(curve(m)[1][-1] - curve(m)[1].min())) for t in tunnels}
+    claims: list[Claim] = []
+    for tunnel in tunnels:
+        gain = recovery[tunnel.soil]
+        if tunnel.soil == "medium dense sand":
+            claims.append((gain.mean < RECOVERY, "CPS_MD falls monotonically to its end value"))
+        else:
+            claims.append((gain.mean >= RECOVERY, f"{tunnel.code} has a minimum and recovers"))
     if {"gravel", "dense sand"} <= set(least):
-        holds = holds and least["gravel"].mean < least["dense sand"].mean
+        claims.append((exceeds(least["dense sand"], least["gravel"]), "the minimum of CPG_D is lower"))
     text = each(
         tunnels,
-        lambda t: f"least {least[t.soil].text('.3f')} at V_l = {when[t.soil].text('.1f', 100, '%')}, "
-        f"{final[t.soil].text('.3f')} at the end",
+        lambda t: (
+            f"least {least[t.soil].text('.3f')} at V_l = {when[t.soil].text('.1f', 100, '%')}, "
+            f"{final[t.soil].text('.3f')} at the end"
+        ),
         "soil",
     )
-    return says(holds, "dense soils have a minimum and recover, CPG_D lower, CPS_MD falls monotonically", text)
+    return says(f"over the stress before the loss: {text}", *claims)
 
 
 Profile = Callable[[Result, Increment], tuple[np.ndarray, np.ndarray, np.ndarray]]
@@ -280,10 +344,12 @@ def stresses(study: Study) -> str:
     tunnel = study.main()
     above = [tunnel.number(lambda m, k=k: _change(m, profiles.above, 1.0, 0.05)[k]) for k in (0, 1)]
     beside = [tunnel.number(lambda m, k=k: _change(m, profiles.beside, 1.5, 0.02)[k]) for k in (0, 1)]
-    holds = above[0].mean > 1 > above[1].mean and beside[1].mean > 1 > beside[0].mean
+    one = Number(1.0, 0.0, 0)
     return says(
-        holds,
-        "above the crown the horizontal stress rises and the vertical one falls, beside the tunnel the opposite",
         f"over the values before the loss, horizontal and vertical stress are {above[0]} and {above[1]} in the first D "
         f"above the crown at V_l = 5 %, {beside[0]} and {beside[1]} in the first D beside the tunnel at 2 %",
+        (exceeds(above[0], one), "the horizontal stress rises above the crown"),
+        (exceeds(one, above[1]), "the vertical stress falls above the crown"),
+        (exceeds(one, beside[0]), "the horizontal stress falls beside the tunnel"),
+        (exceeds(beside[1], one), "the vertical stress rises beside the tunnel"),
     )

@@ -6,6 +6,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from .. import settlements, trough_fit, troughs
 from ..ensemble import Bands
@@ -36,10 +37,14 @@ def draw_by_cover(study: Study, path: Path) -> None:
     figure, axes = _row(len(tunnels) + 1)
     _by_depth(axes[:-1], tunnels)
     for tunnel in tunnels:
-        share = tunnel.over_loss(lambda member: np.divide(
-            largest(member, 0.0), of_crown(member), out=np.full(len(member.volume_loss), np.nan),
-            where=member.volume_loss > 0,
-        ))
+        share = tunnel.over_loss(
+            lambda member: np.divide(
+                largest(member, 0.0),
+                of_crown(member),
+                out=np.full(len(member.volume_loss), np.nan),
+                where=member.volume_loss > 0,
+            )
+        )
         draw_bands(
             axes[-1], 100 * tunnel.loss, share, colour_of_cover(tunnel), tunnel.label, line=line_of_cover(tunnel)
         )
@@ -59,7 +64,7 @@ def draw_by_soil(study: Study, path: Path) -> None:
     finish(figure, path, about_bands(tunnels))
 
 
-def _row(count: int) -> tuple[plt.Figure, np.ndarray]:
+def _row(count: int) -> tuple[Figure, np.ndarray]:
     figure, axes = plt.subplots(1, count, figsize=(5.0 * count, 4.8), squeeze=False, layout="constrained")
     return figure, axes[0]
 
@@ -85,7 +90,12 @@ def draw_troughs(study: Study, path: Path) -> None:
     covers = study.covers()
     tunnels = [covers[0], covers[-1]] if len(covers) > 1 else covers
     figure, axes = plt.subplots(
-        2, len(tunnels), figsize=(6.6 * len(tunnels), 8.6), squeeze=False, sharey="row", sharex=True,
+        2,
+        len(tunnels),
+        figsize=(6.6 * len(tunnels), 8.6),
+        squeeze=False,
+        sharey="row",
+        sharex=True,
         layout="constrained",
     )
     for column, tunnel in zip(axes.T, tunnels):
@@ -99,7 +109,8 @@ def draw_troughs(study: Study, path: Path) -> None:
         axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
     axes[0, 0].legend(title="$V_l$", loc="lower right")
     finish(
-        figure, path,
+        figure,
+        path,
         "Symbols: mean of the members, with the 95 % band of the mean as bars where there are members; lines: modified "
         "Gauss curve, eqs. (20), (21), fitted to the mean, dashed where its α lies at its bound (another shape).",
         about_singles(tunnels),
@@ -134,8 +145,16 @@ def _add_troughs(axis: Axes, tunnel: Tunnel, ratio: float) -> None:
         axis.plot(fine, curve(fine), "--" if curve.at_bound else "-", color=colour, linewidth=1.3)
         bars = bands.mean_half_width if tunnel.count > 1 else None
         axis.errorbar(
-            x, bands.mean, yerr=bars, fmt=marker, color=colour, markersize=4, markerfacecolor="none",
-            linewidth=0.8, capsize=1.5, label=percent(loss),
+            x,
+            bands.mean,
+            yerr=bars,
+            fmt=marker,
+            color=colour,
+            markersize=4,
+            markerfacecolor="none",
+            linewidth=0.8,
+            capsize=1.5,
+            label=percent(loss),
         )
     axis.set_xlim(0, 4 * tunnel.members[0].need("diameter")[0])
 
@@ -153,9 +172,7 @@ def draw_widths(study: Study, path: Path) -> None:
     low, high = study.settings.range_of_k
     for tunnel in tunnels:
         bands = tunnel.over_loss(lambda member: widths(member, 0.0))
-        draw_bands(
-            axes[0], 100 * tunnel.loss, bands, colour_of_cover(tunnel), tunnel.label, line=line_of_cover(tunnel)
-        )
+        draw_bands(axes[0], 100 * tunnel.loss, bands, colour_of_cover(tunnel), tunnel.label, line=line_of_cover(tunnel))
     axes[0].axhspan(low, high, color="0.88", zorder=0, label=f"Mair and Taylor, {low:g} to {high:g}")
     over_the_loss(axes[0], "width of the surface trough  $K_s$  [-]", zero=True)
     axes[0].legend()
@@ -171,20 +188,24 @@ def draw_widths(study: Study, path: Path) -> None:
     right = max(axis.get_xlim()[1] for axis in axes[1:])
     for axis in axes[1:]:
         axis.set_xlim(0, right)
-    figure.suptitle("Widths of the settlement troughs; grey: Mair and Taylor's range for cohesionless soils", fontsize=12)
+    figure.suptitle(
+        "Widths of the settlement troughs; grey: Mair and Taylor's range for cohesionless soils", fontsize=12
+    )
     finish(figure, path, about_bands(tunnels))
 
 
 def _add_depths(axis: Axes, tunnel: Tunnel, loss: float, marker: str) -> None:
     depths = np.array(tunnel.members[0].settings.depths)
     row = int(np.argmin(np.abs(tunnel.loss - loss)))
-    bands = of_members(
-        [[widths(member, z)[tunnel.rows(member)[row]] for z in depths] for member in tunnel.members]
-    )
+    bands = of_members([[widths(member, z)[tunnel.rows(member)[row]] for z in depths] for member in tunnel.members])
     colour = colour_of_cover(tunnel)
     if tunnel.count > 1:
         axis.fill_betweenx(
-            depths, bands.mean - bands.mean_half_width, bands.mean + bands.mean_half_width, color=colour, alpha=0.2,
+            depths,
+            bands.mean - bands.mean_half_width,
+            bands.mean + bands.mean_half_width,
+            color=colour,
+            alpha=0.2,
             linewidth=0,
         )
         for member in bands.members:

@@ -30,9 +30,7 @@ def draw_reaction(study: Study, path: Path) -> None:
     figure, axis = plt.subplots(figsize=(7.6, 5.2))
     for tunnel in tunnels:
         bands = tunnel.over_loss(lambda member: curve(member)[1])
-        draw_bands(
-            axis, 100 * tunnel.loss, bands, colour_of_soil(tunnel), tunnel.label, line=line_of_soil(tunnel)
-        )
+        draw_bands(axis, 100 * tunnel.loss, bands, colour_of_soil(tunnel), tunnel.label, line=line_of_soil(tunnel))
     over_the_loss(axis, r"vertical stress above the crown  $\sigma_v / \sigma_{v,0}$  [-]", zero=True)
     axis.set_title("Ground reaction curves by soil")
     axis.legend()
@@ -58,7 +56,12 @@ def draw_changes(study: Study, path: Path) -> None:
     result = tunnel.representative
     before = mean_stress(tunnel, 0.0)
     figure, axes = plt.subplots(
-        3, len(losses), figsize=(3.5 * len(losses) + 0.8, 12.4), squeeze=False, sharex=True, sharey=True,
+        3,
+        len(losses),
+        figsize=(3.5 * len(losses) + 0.8, 12.4),
+        squeeze=False,
+        sharex=True,
+        sharey=True,
         layout="constrained",
     )
     norm = TwoSlopeNorm(1.0, 0.0, 2.0)
@@ -66,14 +69,21 @@ def draw_changes(study: Study, path: Path) -> None:
         stress = mean_stress(tunnel, loss)
         for axis, component in zip(column[:2], (0, 1)):
             ratio = np.divide(
-                stress[..., component], before[..., component], out=np.ones(before.shape[:2]),
+                stress[..., component],
+                before[..., component],
+                out=np.ones(before.shape[:2]),
                 where=before[..., component] < 0,
             )
             drawn = _add_ratio(axis, result, ratio, norm)
         _add_axes(column[2], result, stress)
         column[0].set_title(f"$V_l$ = {percent(loss)}", fontsize=11)
     figure.colorbar(
-        drawn, ax=axes, label="stress over its value at $V_l$ = 0  [-]", extend="max", shrink=0.5, aspect=30,
+        drawn,
+        ax=axes,
+        label="stress over its value at $V_l$ = 0  [-]",
+        extend="max",
+        shrink=0.5,
+        aspect=30,
         ticks=[0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2],
     )
     names = (r"horizontal  $\sigma_{xx}$", r"vertical  $\sigma_{yy}$", "axes of major stress")
@@ -84,7 +94,9 @@ def draw_changes(study: Study, path: Path) -> None:
     figure.suptitle(f"Stresses around the tunnel, {tunnel.label}", fontsize=12)
     shown = f"Stress tensors are means of {tunnel.count} members." if tunnel.count > 1 else ""
     finish(
-        figure, path, shown,
+        figure,
+        path,
+        shown,
         "Drawn on the ground as it was before the loss. The length of an axis grows with the major principal stress "
         "less the minor one over their sum; orange: more than 45° from the vertical.",
         about_singles([tunnel]),
@@ -144,7 +156,12 @@ def draw_rotation(study: Study, path: Path) -> None:
     columns = min(2, len(losses))
     rows = -(-len(losses) // columns)
     figure, axes = plt.subplots(
-        rows, columns, figsize=(6.4 * columns, 3.9 * rows + 0.4), squeeze=False, sharex=True, sharey=True,
+        rows,
+        columns,
+        figsize=(6.4 * columns, 3.9 * rows + 0.4),
+        squeeze=False,
+        sharex=True,
+        sharey=True,
         layout="constrained",
     )
     for axis in axes.flat[len(losses) :]:
@@ -164,7 +181,9 @@ def draw_rotation(study: Study, path: Path) -> None:
         axis.set_xlabel("distance from the tunnel axis  $x/D$  [-]")
     axes[0, 0].legend(loc="lower right")
     line = study.settings.line
-    figure.suptitle(f"Along the line {line:g} $D$ above the crown, {tunnel.label}; counter-clockwise positive", fontsize=12)
+    figure.suptitle(
+        f"Along the line {line:g} $D$ above the crown, {tunnel.label}; counter-clockwise positive", fontsize=12
+    )
     many = f"Thick: mean axis of {tunnel.count} members; thin: the members." if tunnel.count > 1 else ""
     finish(figure, path, many, about_singles([tunnel]))
 
