@@ -110,7 +110,7 @@ def draw_displacement(study: Study, path: Path) -> None:
         aspect=40,
         pad=0.01,
     )
-    bar.set_ticks(np.linspace(0, 1, 6))
+    bar.set_ticks([0, 0.2, 0.4, 0.6, 0.8, 1])
     figure.suptitle("Displacement of the ground by cover; white line: half of the crown's", fontsize=12)
     finish(figure, path, about_members(tunnels))
 

@@ -24,17 +24,17 @@ TABLE_ROWS = 60  # stresses of the K0 curve
 
 def draw(study: Study, path: Path) -> None:
     tunnel = study.main()
-    figure, axes = plt.subplots(2, 3, figsize=(15.5, 10.0), layout="constrained")
+    figure = plt.figure(figsize=(16.0, 9.6), layout="constrained")
+    grid = figure.add_gridspec(2, 12)
     names = ((1, r"vertical  $\sigma_{yy}$"), (0, r"horizontal  $\sigma_{xx}$"), (2, r"shear  $\tau_{xy}$"))
-    for axis, (component, name) in zip(axes[0], names):
-        _add_field(axis, tunnel, component, f"{name}  [kPa]")
-    _add_path(axes[1, 0], tunnel)
-    _add_ratio(axes[1, 1], tunnel)
-    axes[1, 2].set_axis_off()
-    _add_rves(axes[1, 2], tunnel)
+    for k, (component, name) in enumerate(names):
+        _add_field(figure.add_subplot(grid[0, 4 * k : 4 * k + 4]), tunnel, component, f"{name}  [kPa]")
+    _add_path(figure.add_subplot(grid[1, 0:3]), tunnel)
+    _add_ratio(figure.add_subplot(grid[1, 3:6]), tunnel)
+    _add_rves([figure.add_subplot(grid[1, 6:9]), figure.add_subplot(grid[1, 9:12])], tunnel)
     figure.suptitle(f"Ground after gravity, {tunnel.label}", fontsize=12)
     shown = f"Fields: means of {tunnel.count} members." if tunnel.count > 1 else ""
-    finish(figure, path, shown, about_bands([tunnel]), f"RVE: {about_members([tunnel])}")
+    finish(figure, path, shown, about_bands([tunnel]), about_members([tunnel]) if tunnel.count > 1 else "")
 
 
 def geostatic(tunnel: Tunnel) -> np.ndarray:
@@ -108,23 +108,25 @@ def _add_ratio(axis: Axes, tunnel: Tunnel) -> None:
     axis.plot(mean[:, 1] / 1e3, mean[:, 0] / mean[:, 1], ".", color="0.6", markersize=2, zorder=0, label="Gauss points")
     axis.set_xscale("log")
     stresses.plain_ticks(axis, stress / 1e3)
+    axis.tick_params(axis="x", labelsize=9)
     axis.set_ylim(0.2, 1.1)
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
     axis.set_ylabel(r"$K_0 = \sigma_{xx} / \sigma_{yy}$  [-]")
     axis.legend()
 
 
-def _add_rves(axis: Axes, tunnel: Tunnel) -> None:
+def _add_rves(axes: list[Axes], tunnel: Tunnel) -> None:
     """The RVE at Aa at the first state that was written and after gravity."""
     result = tunnel.representative
     (diameter,) = result.need("diameter")
     name = nearest_snapshot(result, point(result, "Aa").position, NEAR * diameter)[1]
     states = [i for i in result.stage("gravity", "column") if name in i.snapshots]
     if name is None or len(states) < 2:
-        axis.text(0.5, 0.5, "No RVE near Aa was written\ngrain by grain (output.rves).", ha="center", va="center")
+        for axis in axes:
+            axis.set_axis_off()
+        axes[0].text(0.5, 0.5, "No RVE near Aa was written\ngrain by grain (output.rves).", ha="center", va="center")
         return
-    for k, (state, when) in enumerate(((states[0], "early in gravity"), (states[-1], "after gravity"))):
-        inset = axis.inset_axes((0.52 * k, 0.12, 0.48, 0.76))
-        chains.draw_rve(inset, state.snapshot(name))
-        inset.set_title(f"{when}\nload parameter {state['load_parameter']:.2g}", fontsize=10)
-    axis.text(0.5, 0.0, f"RVE at Aa; {chains.COLOURS_OF_FORCES}", ha="center", fontsize=9, transform=axis.transAxes)
+    for axis, state, when in zip(axes, (states[0], states[-1]), ("early in gravity", "after gravity")):
+        chains.draw_rve(axis, state.snapshot(name))
+        axis.set_title(f"RVE at Aa {when},\nload parameter {state['load_parameter']:.2g}", fontsize=10)
+        axis.set_xlabel(chains.COLOURS_OF_FORCES, fontsize=8)

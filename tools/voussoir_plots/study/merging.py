@@ -1,6 +1,5 @@
 """Texts with numbers that differ from member to member, put together into one text with means and bands."""
 
-import os
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -40,14 +39,23 @@ def _counted(words: Sequence[str]) -> str:
     counts = Counter(words)
     if len(counts) == 1:
         return words[0]
-    begin = _whole_words(os.path.commonprefix(list(counts)))
+    begin = _whole_words(_common(list(counts)))
     rest = [word[len(begin) :][::-1] for word in counts]
-    tail = _whole_words(os.path.commonprefix(rest))[::-1]
+    tail = _whole_words(_common(rest))[::-1]
     middle = [
         f"{word[len(begin) : len(word) - len(tail)].strip() or 'nothing'} ({count} of {len(words)})"
         for word, count in counts.most_common()
     ]
     return begin + " / ".join(middle) + tail
+
+
+def _common(words: Sequence[str]) -> str:
+    """What all of these texts begin with."""
+    shortest = min(words, key=len)
+    for k, letter in enumerate(shortest):
+        if any(word[k] != letter for word in words):
+            return shortest[:k]
+    return shortest
 
 
 def _whole_words(text: str) -> str:

@@ -34,7 +34,7 @@ def fabric(study: Study) -> str:
         turned[name] = (before, after, axes[1])
         parts.append(f"{name}: a from {before} to {after}, direction from {axes[0]:.0f}° to {axes[1]:.0f}°")
     return says(
-        f"the fabric before the loss and at V_l = {percent(float(tunnel.loss[-1]))}, with directions from the horizontal: "
+        f"the fabric before the loss and at V_l = {percent(float(tunnel.loss[-1]))}, directions from the horizontal: "
         + "; ".join(parts),
         (
             all_hold(exceeds(after, before) for before, after, _ in turned.values()),
@@ -159,16 +159,26 @@ def _known(ratio: np.ndarray) -> np.ndarray:
     return ratio
 
 
+def _most(member: Result, name: str) -> float:
+    """The largest q/p of a point [-]."""
+    return float(np.nanmax(_known(ratio_at(name, member))))
+
+
+def _final_volume(member: Result, name: str) -> float:
+    """The volumetric strain of a point at the end [-], contraction positive."""
+    return float(at_point(name, "volumetric_strain", member)[-1])
+
+
+def _mean_strong(member: Result, field: str) -> float:
+    """Z_m of a strong network at Aa, mean over the volume loss [-]."""
+    return float(np.nanmean(strong_at("Aa", field, member)))
+
+
 def paths_by_soil(study: Study) -> str:
     tunnels = study.soils()
     names = [p.name for p in followed(tunnels[0].representative)]
-    most = {
-        t.soil: {n: t.number(lambda m, n=n: float(np.nanmax(_known(ratio_at(n, m))))) for n in names} for t in tunnels
-    }
-    volume = {
-        t.soil: {n: t.number(lambda m, n=n: float(at_point(n, "volumetric_strain", m)[-1])) for n in names}
-        for t in tunnels
-    }
+    most = {t.soil: {n: t.number(partial(_most, name=n)) for n in names} for t in tunnels}
+    volume = {t.soil: {n: t.number(partial(_final_volume, name=n)) for n in names} for t in tunnels}
     claims: list[Claim] = []
     if "dense sand" in most and "medium dense sand" in most:
         pairs = [(most["dense sand"][n], most["medium dense sand"][n]) for n in names]
@@ -194,12 +204,7 @@ def paths_by_soil(study: Study) -> str:
 def connectivity(study: Study) -> str:
     tunnels = study.soils()
     first = {t.soil: t.number(lambda m: float(at_point("Aa", "mechanical_coordination", m)[0])) for t in tunnels}
-    strong = {
-        t.soil: [
-            t.number(lambda m, field=field: float(np.nanmean(strong_at("Aa", field, m)))) for field in STRONG.values()
-        ]
-        for t in tunnels
-    }
+    strong = {t.soil: [t.number(partial(_mean_strong, field=field)) for field in STRONG.values()] for t in tunnels}
     claims: list[Claim] = []
     if {"dense sand", "medium dense sand"} <= set(first):
         claims.append((exceeds(first["dense sand"], first["medium dense sand"]), "Z_m is lower in CPS_MD at first"))
@@ -210,8 +215,8 @@ def connectivity(study: Study) -> str:
         claims.append((all_hold(exceeds(*p) for p in pairs), "the strong network of CPG_D is better connected"))
     text = each(tunnels, lambda t: f"{first[t.soil]}; {', '.join(str(value) for value in strong[t.soil])}", "soil")
     return says(
-        "at Aa, Z_m at V_l = 0, and Z_m of the contacts with f_n of 1, 2 and 2.5 times the mean and more, on average over "
-        f"V_l, are {text}",
+        "at Aa, Z_m at V_l = 0, and Z_m of the contacts with f_n of 1, 2 and 2.5 times the mean and more, on average "
+        f"over V_l, are {text}",
         *claims,
     )
 

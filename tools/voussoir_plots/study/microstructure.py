@@ -179,7 +179,7 @@ def draw_strong(study: Study, path: Path) -> None:
             fontsize=10,
         )
     figure.suptitle(
-        "Strong contact networks at Aa; orange: $C_1$, from the mean normal force on, dark: $C_2$, from twice the mean on",
+        "Strong contact networks at Aa; orange: $C_1$, from the mean normal force on, dark: $C_2$, from twice on",
         fontsize=12,
     )
     finish(figure, path, about_members([tunnel for tunnel, _, _ in shown]))

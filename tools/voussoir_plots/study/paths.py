@@ -102,11 +102,11 @@ def draw_soils(study: Study, path: Path) -> None:
     figure, axes = _grid(2, names)
     for column, name in zip(axes.T, names):
         for tunnel in tunnels:
-            style = {"colour": colour_of_soil(tunnel), "label": tunnel.label, "line": line_of_soil(tunnel)}
-            loss = 100 * tunnel.loss
-            draw_bands(column[0], loss, tunnel.over_loss(partial(ratio_at, name)), **style)
+            colour, line, loss = colour_of_soil(tunnel), line_of_soil(tunnel), 100 * tunnel.loss
+            ratio = tunnel.over_loss(partial(ratio_at, name))
+            draw_bands(column[0], loss, ratio, colour, tunnel.label, line=line)
             volume = tunnel.over_loss(partial(at_point, name, "volumetric_strain"))
-            draw_bands(column[1], loss, volume, **style, scale=100)
+            draw_bands(column[1], loss, volume, colour, tunnel.label, 100, line)
         column[0].set_title(_where(tunnels[0], name))
     _label(axes[0], "stress ratio  $q/p$  [-]", (0, 1.05))
     _label(axes[1], r"$\varepsilon_v$, contraction positive  [%]")

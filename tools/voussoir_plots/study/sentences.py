@@ -3,6 +3,7 @@ mean), and whether they show what the paper reports."""
 
 import itertools
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -38,7 +39,7 @@ def says(ours: str, *claims: Claim) -> str:
         found = [text for holds, text in claims if (holds is None) == (wanted is None) and bool(holds) == bool(wanted)]
         if found:
             parts.append(begin + "; ".join(found))
-    return f"{'. '.join(parts)}. Here {ours}."
+    return ". ".join([*parts, f"Here {ours}."])
 
 
 def each(tunnels: Sequence[Tunnel], text: Callable[[Tunnel], str], by: str = "cover") -> str:
@@ -75,8 +76,8 @@ def initial(study: Study) -> str:
     angle = tunnel.number(deflection)
     low, high = ratio(LOW_STRESS), ratio(HIGH_STRESS)
     return says(
-        f"K0 = {low} at {LOW_STRESS / 1e3:g} kPa and {high} at {HIGH_STRESS / 1e3:g} kPa; from 50 kPa on the major axis is "
-        f"{angle.text('.2f')}° off the vertical on average",
+        f"K0 = {low} at {LOW_STRESS / 1e3:g} kPa and {high} at {HIGH_STRESS / 1e3:g} kPa; from 50 kPa on the major "
+        f"axis is {angle.text('.2f')}° off the vertical on average",
         (exceeds(low, high), "K0 falls with the vertical stress"),
         (angle.mean <= 0.5, "the principal axes are turned by 0.5° at most"),
     )
@@ -176,18 +177,18 @@ def _beside_dense(study: Study) -> tuple[Tunnel, dict[str, Tunnel]]:
     return study.soil("dense sand"), others
 
 
+def _growth(member: Result, window: tuple[float, float]) -> float:
+    """dS/dV_l / D of the surface between two V_l [-]."""
+    (diameter,) = member.need("diameter")
+    return float(trends.slope(member.volume_loss, largest(member, 0.0), *window) / diameter)
+
+
 def growth(study: Study) -> str:
     tunnels = study.covers()
     windows = ((0.0, 0.02), (0.08, 0.10), (0.175, 0.20))
 
     def rates(tunnel: Tunnel) -> list[Number]:
-        (diameter,) = tunnel.members[0].need("diameter")
-        return [
-            tunnel.number(
-                lambda m, low=low, high=high: trends.slope(m.volume_loss, largest(m, 0.0), low, high) / diameter
-            )
-            for low, high in windows
-        ]
+        return [tunnel.number(partial(_growth, window=window)) for window in windows]
 
     found = {t.name: rates(t) for t in tunnels}
     last = end(tunnels)
@@ -208,7 +209,8 @@ def growth(study: Study) -> str:
             held = late.mean < 1.25 * middle.mean
             claims.append((held, f"the surface of C/D = {tunnel.cover_ratio:.3g} does not accelerate again"))
     return says(
-        f"the surface's settlement grows by dS/dV_l / D at V_l = 0 to 2, 8 to 10 and 17.5 to 20 %: {each(tunnels, text)}",
+        "the surface's settlement grows by dS/dV_l / D at V_l = 0 to 2, 8 to 10 and 17.5 to 20 %: "
+        f"{each(tunnels, text)}",
         *claims,
     )
 
@@ -304,14 +306,15 @@ def reaction(study: Study) -> str:
     least = {t.soil: t.number(lambda m: float(curve(m)[1].min())) for t in tunnels}
     when = {t.soil: t.number(lambda m: float(m.volume_loss[curve(m)[1].argmin()])) for t in tunnels}
     final = {t.soil: t.number(lambda m: float(curve(m)[1][-1])) for t in tunnels}
+    threshold = Number(RECOVERY, 0.0, 0)
     recovery = {t.soil: t.number(lambda m: float(curve(m)[1][-1] - curve(m)[1].min())) for t in tunnels}
     claims: list[Claim] = []
     for tunnel in tunnels:
         gain = recovery[tunnel.soil]
         if tunnel.soil == "medium dense sand":
-            claims.append((gain.mean < RECOVERY, "CPS_MD falls monotonically to its end value"))
+            claims.append((exceeds(threshold, gain), "CPS_MD falls monotonically to its end value"))
         else:
-            claims.append((gain.mean >= RECOVERY, f"{tunnel.code} has a minimum and recovers"))
+            claims.append((exceeds(gain, threshold), f"{tunnel.code} has a minimum and recovers"))
     if {"gravel", "dense sand"} <= set(least):
         claims.append((exceeds(least["dense sand"], least["gravel"]), "the minimum of CPG_D is lower"))
     text = each(
@@ -328,22 +331,23 @@ def reaction(study: Study) -> str:
 Profile = Callable[[Result, Increment], tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 
-def _change(member: Result, profile: Profile, near: float, loss: float) -> tuple[float, float]:
-    """Means of both stresses within `near` D of the line's begin, over those before the loss."""
+def _change(member: Result, profile: Profile, near: float, loss: float, which: int) -> float:
+    """The mean of the horizontal (0) or vertical (1) stress where the place along the line is within `near` D, over the
+    one before the loss [-]."""
     (diameter,) = member.need("diameter")
     increment = member.loss_increments[int(np.argmin(np.abs(member.volume_loss - loss)))]
     means = []
     for state in (member.start, increment):
         place, xx, yy = profile(member, state)
         inside = place <= near * diameter
-        means.append((xx[inside].mean(), yy[inside].mean()))
-    return means[1][0] / means[0][0], means[1][1] / means[0][1]
+        means.append(float((xx, yy)[which][inside].mean()))
+    return means[1] / means[0]
 
 
 def stresses(study: Study) -> str:
     tunnel = study.main()
-    above = [tunnel.number(lambda m, k=k: _change(m, profiles.above, 1.0, 0.05)[k]) for k in (0, 1)]
-    beside = [tunnel.number(lambda m, k=k: _change(m, profiles.beside, 1.5, 0.02)[k]) for k in (0, 1)]
+    above = [tunnel.number(partial(_change, profile=profiles.above, near=1.0, loss=0.05, which=k)) for k in (0, 1)]
+    beside = [tunnel.number(partial(_change, profile=profiles.beside, near=1.5, loss=0.02, which=k)) for k in (0, 1)]
     one = Number(1.0, 0.0, 0)
     return says(
         f"over the values before the loss, horizontal and vertical stress are {above[0]} and {above[1]} in the first D "

@@ -1,6 +1,7 @@
 """Settlements beside one another: against V_l by depth (figs. 10, 13), troughs (fig. 11) and their widths (fig. 12)."""
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -35,7 +36,7 @@ def draw_by_cover(study: Study, path: Path) -> None:
     """Figure 10: the largest settlement at several depths by cover, and the surface of all covers."""
     tunnels = study.covers()
     figure, axes = _row(len(tunnels) + 1)
-    _by_depth(axes[:-1], tunnels)
+    _by_depth(list(axes[:-1]), tunnels)
     for tunnel in tunnels:
         share = tunnel.over_loss(
             lambda member: np.divide(
@@ -59,7 +60,7 @@ def draw_by_soil(study: Study, path: Path) -> None:
     """Figure 13: the same for several soils at one cover."""
     tunnels = study.soils()
     figure, axes = _row(len(tunnels))
-    _by_depth(axes, tunnels)
+    _by_depth(list(axes), tunnels)
     figure.suptitle("Largest settlement at the depth $z$ below the surface, by soil", fontsize=12)
     finish(figure, path, about_bands(tunnels))
 
@@ -74,7 +75,7 @@ def _by_depth(axes: Sequence[Axes], tunnels: Sequence[Tunnel]) -> None:
     for axis, tunnel in zip(axes, tunnels):
         depths = tunnel.members[0].settings.depths
         for ratio, colour in zip(depths, colours("cividis", len(depths))):
-            bands = tunnel.over_loss(lambda member, ratio=ratio: largest(member, ratio))
+            bands = tunnel.over_loss(partial(largest, ratio=ratio))
             label = f"{ratio:g}" + ("  (surface)" if ratio == 0 else "  (crown)" if ratio == 1 else "")
             draw_bands(axis, 100 * tunnel.loss, bands, colour, label, 1e3)
             highest = max(highest, float(1e3 * bands.members.max()))
@@ -112,7 +113,7 @@ def draw_troughs(study: Study, path: Path) -> None:
         figure,
         path,
         "Symbols: mean of the members, with the 95 % band of the mean as bars where there are members; lines: modified "
-        "Gauss curve, eqs. (20), (21), fitted to the mean, dashed where its α lies at its bound (another shape).",
+        "Gauss curve, eqs. (20), (21), fitted to the mean, dashed where its alpha lies at its bound (another shape).",
         about_singles(tunnels),
     )
 
