@@ -1,6 +1,7 @@
 """Force chains of RVEs that were written grain by grain (output.rves): normal forces as bars between grains."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -48,12 +49,15 @@ def rows(result: Result, increment: Increment) -> list[tuple[str, str]]:
     ]
 
 
-def draw(result: Result, path: Path) -> None:
+def draw(result: Result, path: Path, losses: Sequence[float] = (), followed: Sequence[str] = ()) -> None:
+    """`losses`: V_l of the columns [-], in place of those of the settings; `followed`: only the RVEs at these points."""
     chosen = [
         result.loss_increments[0],
-        *(result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]),
+        *(result.nearest(losses or result.settings.field_losses) or [result.loss_increments[-1]]),
     ]
-    found = rows(result, chosen[-1])
+    found = [row for row in rows(result, chosen[-1]) if not followed or row[0].split("\n")[0] in followed]
+    if not found:
+        raise Missing(f"no RVE near {', '.join(followed)} was written grain by grain (output.rves)")
     figure, axes = plt.subplots(
         len(found),
         len(chosen),

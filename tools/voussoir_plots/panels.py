@@ -1,5 +1,6 @@
 """Fields over the deformed mesh at several volume losses: which of them localise, and whether in the same places."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -38,8 +39,9 @@ def largest(values: np.ndarray) -> float:
     return float(np.max(np.abs(finite))) if finite.size else np.nan
 
 
-def draw(result: Result, path: Path) -> None:
-    chosen = result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]
+def draw(result: Result, path: Path, losses: Sequence[float] = ()) -> None:
+    """`losses`: V_l of the columns [-], in place of those of the settings."""
+    chosen = result.nearest(losses or result.settings.field_losses) or [result.loss_increments[-1]]
     fields = [entry for entry in FIELDS if entry[0] in chosen[0].names]
     if not fields:
         raise Missing("there is no field of the Gauss points")
