@@ -7,11 +7,13 @@ is that of the figure scripts (voussoir_plots/README.md).
 import argparse
 import sys
 import time
+import warnings
 from pathlib import Path
 
 try:
     from voussoir_plots import guard, settings
     from voussoir_plots.output import make_folder, say, write
+    from voussoir_plots.result import Missing
     from voussoir_plots.source import Source, open_source
 
     from voussoir_report import ensemble_page, run_page, sweep_page
@@ -26,29 +28,31 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("result", type=Path, metavar="DIR", help="folder of a run, an ensemble, a sweep or packings")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: report.html in the folder")
     parser.add_argument(
-        "--no-figures", action="store_true", help="without the figures of tools/figures.py: made sooner"
+        "--only", nargs="*", metavar="NAME", help="only these figures, named without .png; no name: none"
+    )
+    parser.add_argument(
+        "--points", action="store_true", help="of a sweep: also report.html in the folder of each point"
     )
     settings.add_options(parser)
     guard.add_option(parser)
     return parser
 
 
-def built(source: Source, arguments: argparse.Namespace) -> Builder:
-    with_figures = not arguments.no_figures
+def built(source: Source, folder: Path, only: list[str] | None) -> Builder:
     if source.what == "a sweep":
-        return sweep_page.make(source.data, arguments.result, with_figures)
+        return sweep_page.make(source.data, folder, only)
     if source.what == "an ensemble":
-        return ensemble_page.make(source.data, arguments.result, with_figures)
-    return run_page.make(source, arguments.result, with_figures)
+        return ensemble_page.make(source.data, folder, only)
+    return run_page.make(source, folder, only)
 
 
-def main() -> int:
-    arguments = options().parse_args()
+def report(path: Path, output: Path, arguments: argparse.Namespace) -> int:
+    """Makes one page, tells it in one line, and returns the exit status."""
     start = time.monotonic()
-    folder = arguments.result if arguments.result.is_dir() else arguments.result.parent
-    output = arguments.output or folder / "report.html"
-    source = open_source([arguments.result], settings.parse(arguments))
-    builder = built(source, arguments)
+    source = open_source([path], settings.parse(arguments))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of NumPy, about missing values; tools/figures.py tells them
+        builder = built(source, path, arguments.only)
     page = builder.page.written()
     make_folder(output.parent)
     write(output, page)
@@ -59,6 +63,26 @@ def main() -> int:
     for line in builder.faults:
         say(f"FAULT in {line}; this is a fault of the tool, not of the run", error=True)
     return guard.FAULT if builder.faults else guard.UNREADABLE if builder.unreadable else guard.DRAWN
+
+
+def reports_of_points(path: Path, arguments: argparse.Namespace) -> int:
+    """The pages of a sweep's points, to which its own page links; one that cannot be made loses no other one."""
+    source = open_source([path], settings.parse(arguments))
+    status = guard.DRAWN
+    for folder in sweep_page.points_of(source.data) if source.what == "a sweep" else []:
+        try:
+            status = status or report(folder, folder / sweep_page.REPORT, arguments)
+        except Missing as reason:
+            say(str(reason), error=True)
+            status = status or guard.UNREADABLE
+    return status
+
+
+def main() -> int:
+    arguments = options().parse_args()
+    folder = arguments.result if arguments.result.is_dir() else arguments.result.parent
+    status = reports_of_points(arguments.result, arguments) if arguments.points else guard.DRAWN
+    return report(arguments.result, arguments.output or folder / sweep_page.REPORT, arguments) or status
 
 
 if __name__ == "__main__":

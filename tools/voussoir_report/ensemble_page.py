@@ -15,7 +15,7 @@ from .parts import Builder, name_of
 SORTS = {"volume_loss": "a tunnel", "biaxial_bvp": "a biaxial specimen", "gravity": "a tunnel", "column": "a column"}
 
 
-def make(ensemble: Ensemble, folder: Path, with_figures: bool = True) -> Builder:
+def make(ensemble: Ensemble, folder: Path, only: list[str] | None = None) -> Builder:
     of = facts.read(folder, INDEX)
     page = Page(f"Ensemble: {name_of(folder)}", run_page.subtitle(ensemble.title(), of))
     builder = Builder(page)
@@ -29,13 +29,13 @@ def make(ensemble: Ensemble, folder: Path, with_figures: bool = True) -> Builder
             f"Clicked points and the study's further figures are of {name}, whose curves lie nearest to the mean."
         )
         _ground(builder, group, name, result)
-    drawn = pictures.draw_all(_figures(ensemble) if with_figures else {}, ensemble)
+    drawn = pictures.draw_all(pictures.chosen(_figures(ensemble), only), ensemble)
     if result is not None:
         of_a_run = SORTS.get(ground.stage_of(result)[0], "a tunnel")
-        further = pictures.draw_all(figures_of(of_a_run) if with_figures else {}, result, f"One member: {name}.")
+        further = pictures.draw_all(pictures.chosen(figures_of(of_a_run), only), result, f"One member: {name}.")
         drawn += further
         if of_a_run == "a tunnel":
-            builder.trends(result)
+            builder.trends(result, f" ({name})")
     paper_sentences.apply(drawn.pictures, paper_sentences.study_of(folder, ensemble.settings))
     builder.figures(drawn)
     _origin(builder, of, each)
@@ -83,10 +83,10 @@ def _ground(builder: Builder, group: Members, name: str, result: Result) -> None
     except Missing as reason:
         builder.note(reason)
         return
+    member.bits = 14  # three sets are three times the bytes
     packed = ground.shown(result, stage, loads, [mean, half, member])
     packed["tunnel"] = stage == "volume_loss"
-    for told, what in zip(packed["sets"], ("mean", "band", "followed")):
-        told[what] = True
+    packed["sets"][0]["mean"] = packed["sets"][2]["followed"] = True
     if stage == "volume_loss":
         beside = builder.charts(curves.of_ensemble(group, loads))
     else:

@@ -31,6 +31,7 @@ class States:
     points: dict[str, np.ndarray] = field(default_factory=dict)  # of the fields with data: (frame, point)
     bits: int = 16
     note: str = ""
+    band: bool = False  # half widths, which have no sign; those of |u| and q/p do not follow from the fields
 
 
 def stage_of(result: Result) -> tuple[str, list[Increment]]:
@@ -91,6 +92,8 @@ def shown(result: Result, stage: str, loads: np.ndarray, sets: Sequence[States])
 
 
 def _has(states: States, wanted: Field) -> bool:
+    if states.band and wanted.name in ("displacement", "stress_ratio"):
+        return False
     if wanted.name == "stress_ratio":
         return {"mean_stress", "deviatoric_stress"} <= states.points.keys()
     return wanted.name in COMPUTED or wanted.name in states.points
@@ -107,32 +110,34 @@ def _packed(result: Result, states: States, offered: Sequence[Field]) -> dict[st
         if wanted.name in states.points:
             blobs[wanted.name] = pack(states.points[wanted.name], min(bits, wanted.bits), wanted.scale)
         if _has(states, wanted):
-            limits[wanted.name] = colour_limits(_values(result, states, wanted), wanted)
-    return {"title": states.title, "note": states.note, "blobs": blobs, "limits": limits}
+            symmetric = wanted.symmetric and not states.band
+            limits[wanted.name] = colour_limits(_values(result, states, wanted), symmetric)
+    return {"title": states.title, "note": states.note, "band": states.band, "blobs": blobs, "limits": limits}
 
 
 def _values(result: Result, states: States, wanted: Field) -> np.ndarray:
     """The values that the colours show, in the unit of the field."""
     if wanted.name in states.points:
-        return wanted.factor * states.points[wanted.name]
+        factor = abs(wanted.factor) if states.band else wanted.factor
+        return factor * states.points[wanted.name]
     if wanted.name == "stress_ratio":
         p, q = states.points["mean_stress"], states.points["deviatoric_stress"]
         return np.divide(q, p, out=np.full_like(p, np.nan), where=p > LEAST_PRESSURE)
     u = np.einsum("gn,fenk->fegk", q8.shape(q8.GAUSS[:, 0], q8.GAUSS[:, 1]), states.nodes[:, result.connectivity])
     of: dict[str, Callable[[], np.ndarray]] = {
         "displacement": lambda: np.hypot(u[..., 0], u[..., 1]),
-        "settlement": lambda: -u[..., 1],
+        "settlement": lambda: u[..., 1] if states.band else -u[..., 1],
         "sideways": lambda: u[..., 0],
     }
     return of[wanted.name]()
 
 
-def colour_limits(values: np.ndarray, wanted: Field) -> list[float]:
+def colour_limits(values: np.ndarray, symmetric: bool) -> list[float]:
     """Limits of the colours over all frames, without the most extreme 0.1 %: one RVE must not dim the others."""
     finite = values[np.isfinite(values)]
     if finite.size == 0:
         return [0.0, 1.0]
-    if wanted.symmetric:
+    if symmetric:
         high = float(np.quantile(np.abs(finite), 0.999)) or 1e-12
         return [-high, high]
     low, high = (float(q) for q in np.quantile(finite, [0.001, 0.999]))

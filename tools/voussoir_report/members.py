@@ -73,10 +73,13 @@ def mean_and_half_width(members: Members, rows: np.ndarray, stage: str) -> tuple
     if stage == "volume_loss" and "grain_rotation" in mean:
         mean["grain_rotation"] = mean["grain_rotation"] - mean["grain_rotation"][:1]  # counted from V_l = 0
     share = f"{100 * members.ensemble.confidence:g} %"
-    note = "The band of the mean is the mean ± this half width. That of rotations counts from the packing."
+    note = (
+        "The band of the mean is the mean ± this half width. That of rotations counts from the "
+        "packing; those of |u| and q/p are not known."
+    )
     return (
-        States(f"mean of {members.ensemble.count} members", mean.pop("nodes"), mean, bits=14),
-        States(f"half width of the {share} band of the mean", half.pop("nodes"), half, bits=8, note=note),
+        States(f"mean of {members.ensemble.count} members", mean.pop("nodes"), mean, bits=12),
+        States(f"half width of the {share} band of the mean", half.pop("nodes"), half, bits=7, note=note, band=True),
     )
 
 

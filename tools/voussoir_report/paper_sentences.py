@@ -20,7 +20,7 @@ OF_RUNS = {
     "ensemble_trough": "11",
     "trough_widths": "12",
     "ensemble_trough_width": "12",
-    "ensemble_settlement": "13",
+    "ensemble_settlement": "10",
     "ground_reaction": "15b",
     "ensemble_ground_reaction": "15b",
     "stress_profiles": "16",

@@ -55,7 +55,7 @@ class Builder:
             content = "".join(f"<li>{markup.text(line)}</li>" for line in lines)
             self.page.add("What is missing, and why", f"<ul>{content}</ul>")
 
-    def trends(self, result: Result) -> None:
+    def trends(self, result: Result, of: str = "") -> None:
         """The study's trends, each seen or not."""
         rows, faults = trend_table.table(result)
         for error in faults:
@@ -63,7 +63,7 @@ class Builder:
                 raise error
             self.faults.append(f"trends: {type(error).__name__}: {error}")
         shown = [(row.statement, f"<b>{markup.text(row.verdict)}</b>", row.numbers) for row in rows]
-        self.page.add("The study's trends", markup.table(("trend", "verdict", "numbers"), shown))
+        self.page.add(f"The study's trends{of}", markup.table(("trend", "verdict", "numbers"), shown))
 
     def origin(self, of: facts.Facts) -> None:
         """Cost, input and provenance of one run."""

@@ -12,11 +12,12 @@ from typing import Any
 import matplotlib.pyplot as plt
 from PIL import Image
 from voussoir_plots import guard, style
+from voussoir_plots.catalogue import Figures
 from voussoir_plots.output import is_of_the_machine
 from voussoir_plots.result import Missing, Unreadable
 
-DOTS_PER_INCH = 110
-QUALITY = 82  # of WebP; a figure takes 20 to 90 kB
+DOTS_PER_INCH = 100
+QUALITY = 75  # of WebP; a figure takes 20 to 90 kB
 
 
 @dataclass
@@ -45,6 +46,11 @@ class Drawn:
             self.unreadable or other.unreadable,
             self.tables + other.tables,
         )
+
+
+def chosen(figures: Figures, only: list[str] | None) -> Figures:
+    """The figures with these names, without an ending; all of them where `only` is None."""
+    return {name: draw for name, draw in figures.items() if only is None or Path(name).stem in only}
 
 
 def draw_all(figures: Mapping[str, Callable[[Any, Path], None]], data: Any, note: str = "") -> Drawn:

@@ -20,7 +20,7 @@ HINT = (
 )
 
 
-def make(source: Source, folder: Path, with_figures: bool = True) -> Builder:
+def make(source: Source, folder: Path, only: list[str] | None = None) -> Builder:
     """The page of a run of any kind, or of packings."""
     of = facts.read(folder) if folder.is_dir() else facts.Facts(folder)
     title = str(getattr(source.data, "case", {}).get("title", "")) if hasattr(source.data, "case") else ""
@@ -36,8 +36,7 @@ def make(source: Source, folder: Path, with_figures: bool = True) -> Builder:
         _mesh_parts(builder, source.data, source.what)
     if source.what == "a tunnel":
         builder.trends(source.data)
-    wanted = figures_of(source.what) if with_figures else {}
-    drawn = pictures.draw_all(wanted, source.data, source.note)
+    drawn = pictures.draw_all(pictures.chosen(figures_of(source.what), only), source.data, source.note)
     study = paper_sentences.study_of(folder, source.data.settings) if source.what == "a tunnel" else None
     paper_sentences.apply(drawn.pictures, study)
     builder.figures(drawn)
@@ -74,7 +73,8 @@ def _mesh_parts(builder: Builder, result: Result, what: str) -> None:
     lacking = ground.missing_fields(states)
     if lacking and result.soil != "no grains":
         builder.missing.append(f"the run did not write these fields: {', '.join(lacking)} (output.fields)")
-    add_ground(builder, packed, first_point(result, what), charts_of(builder, result, what, stage, shown))
+    title = {"a column": "The column", "a biaxial specimen": "The specimen"}.get(what, "The ground")
+    add_ground(builder, packed, first_point(result, what), charts_of(builder, result, what, stage, shown), title)
 
 
 def charts_of(builder: Builder, result: Result, what: str, stage: str, shown: list[Any]) -> str:
@@ -97,10 +97,10 @@ def first_point(result: Result, what: str) -> int:
     return 0
 
 
-def add_ground(builder: Builder, packed: dict[str, Any], first: int, beside: str) -> None:
+def add_ground(builder: Builder, packed: dict[str, Any], first: int, beside: str, title: str = "The ground") -> None:
     """Takes the ground into the page."""
     page = builder.page
     page.data |= {"ground": packed, "colourMaps": colour_maps(), "first_point": first}
     views = f'<div class="views"><div id="ground"></div><div class="charts">{beside}</div></div>'
     sliding = '<div id="slider" class="controls sliding"></div>'
-    page.add("The ground", f'<p class="note">{markup.text(HINT)}</p>{sliding}{views}<div id="point"></div>')
+    page.add(title, f'<p class="note">{markup.text(HINT)}</p>{sliding}{views}<div id="point"></div>')

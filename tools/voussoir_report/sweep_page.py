@@ -21,7 +21,7 @@ STATES = ("unconverged increments", "cuts", "most RVEs at the step limit")
 REPORT = "report.html"  # of a point, to which the page links where it stands
 
 
-def make(sweep: Sweep, folder: Path, with_figures: bool = True) -> Builder:
+def make(sweep: Sweep, folder: Path, only: list[str] | None = None) -> Builder:
     table = SweepTable(sweep)
     builder = Builder(Page(f"Sweep: {name_of(folder)}", _subtitle(table.runs)))
     _alarms(builder, table)
@@ -39,7 +39,7 @@ def make(sweep: Sweep, folder: Path, with_figures: bool = True) -> Builder:
                 builder.note(fault)
     builder.page.data |= {"sweep": _data(table, points, curves, grounds), "colourMaps": colour_maps()}
     _compare(builder, points, members, grounds)
-    drawn = pictures.draw_all(figures_of("a sweep") if with_figures else {}, sweep)
+    drawn = pictures.draw_all(pictures.chosen(figures_of("a sweep"), only), sweep)
     study = paper_sentences.study_of(folder, sweep.settings)
     paper_sentences.apply(drawn.pictures, study)
     builder.figures(drawn)
@@ -52,6 +52,11 @@ def make(sweep: Sweep, folder: Path, with_figures: bool = True) -> Builder:
     if table.input:
         builder.page.add("Input", markup.folded("the sweep file", f"<pre>{markup.text(table.input)}</pre>"))
     return builder
+
+
+def points_of(sweep: Sweep) -> list[Path]:
+    """The folders of a sweep's points that exist."""
+    return [sweep.folder / name for name in SweepTable(sweep).points() if (sweep.folder / name).is_dir()]
 
 
 def _subtitle(runs: Sequence[Run]) -> str:

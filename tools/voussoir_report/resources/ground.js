@@ -81,7 +81,8 @@ class GroundView {
   // A field at a point in its own unit; NaN where it has no value.
   value(set, field, frame, point) {
     const data = set.data, stored = data[field.name];
-    if (stored) return field.factor * stored.at(frame, point);
+    if (stored) return (set.band ? Math.abs(field.factor) : field.factor) * stored.at(frame, point);
+    if (set.band && !(field.name in set.limits)) return NaN;
     if (field.name === "stress_ratio") {
       if (!data.mean_stress || !data.deviatoric_stress) return NaN;
       const p = data.mean_stress.at(frame, point);
@@ -89,7 +90,7 @@ class GroundView {
     }
     if (!["displacement", "settlement", "sideways"].includes(field.name)) return NaN;
     const [ux, uy] = this.moved(data, frame, point);
-    return field.name === "displacement" ? Math.hypot(ux, uy) : field.name === "settlement" ? -uy : ux;
+    return field.name === "displacement" ? Math.hypot(ux, uy) : field.name === "sideways" ? ux : set.band ? uy : -uy;
   }
 
   // Where the Gauss point stood before anything moved [m].
@@ -138,7 +139,7 @@ class GroundView {
     if (!finite.length) return [0, 1];
     const [low, high] = [0.002, 0.998].map((q) => finite[Math.round(q * (finite.length - 1))]);
     const size = Math.max(Math.abs(low), Math.abs(high)) || 1e-12;
-    return field.symmetric ? [-size, size] : [low, high > low ? high : low + 1e-9 * size];
+    return field.symmetric && !this.shown.band ? [-size, size] : [low, high > low ? high : low + 1e-9 * size];
   }
 
   pick(point) {

@@ -29,8 +29,13 @@ Object.assign(GroundView.prototype, {
     return [mx + (x - this.zoom.x) * this.zoom.scale, my - (y - this.zoom.y) * this.zoom.scale];
   },
 
+  // Half widths of bands have no sign, and so no colours of two signs.
+  map(field) {
+    return this.colourMaps[this.shown.band ? "viridis" : field.map];
+  },
+
   colour(value) {
-    const field = this.field, map = this.colourMaps[field.map];
+    const field = this.field, map = this.map(field);
     if (!Number.isFinite(value)) return "#bbbbbb";
     if (field.levels && !this.shown.band) return (field.levels[Math.round(value)] || { colour: "#bbbbbb" }).colour;
     const [low, high] = this.limits;
@@ -130,7 +135,7 @@ Object.assign(GroundView.prototype, {
       });
       return;
     }
-    const map = this.colourMaps[field.map], [low, high] = this.limits, rise = (bottom - top) / 256;
+    const map = this.map(field), [low, high] = this.limits, rise = (bottom - top) / 256;
     map.forEach((colour, k) => {
       pen.fillStyle = colour;
       pen.fillRect(left, bottom - (k + 1) * rise, 14, rise + 0.6);

@@ -30,7 +30,7 @@ class PointPanel {
     this.plots = [];
     const [x, y] = this.view.place(point);
     this.title.textContent = `Gauss point ${point} (element ${Math.floor(point / 4)}, point ${point % 4}), ` +
-      `at first at x = ${x.toFixed(2)} m, y = ${y.toFixed(2)} m`;
+      `at first at x = ${written(x, 3)} m, y = ${written(y)} m`;
     this.hint.textContent = this.mean ? `Lines: ${this.member.title}; dashed with its band: ${this.mean.title}.` : "";
     const { load } = this.view.ground, along = `${load.label}${load.unit === "-" ? " [-]" : ` [${load.unit}]`}`;
     this.path(point);
