@@ -111,7 +111,8 @@ class Search:
         """A parameter's value at the fit, or where there is none at the best set."""
         if self.fit is not None:
             return float(self.fit[name][0])
-        return float(self.sets[name][np.nanargmin(self.sets["misfit"])])
+        measured = misfit({one.name: self.sets[one.name] for one in self.observables}, self.run)
+        return float(self.sets[name][np.argmin(np.where(self.usable, measured, np.inf))])
 
     def plane(self, size: int = 81) -> dict[str, np.ndarray]:
         """Sets over the first two searched parameters, the others as in the fit: each array is flat, row by row."""

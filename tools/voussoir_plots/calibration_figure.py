@@ -66,6 +66,7 @@ def _draw_line(axis: Axes, search: Search, sets: Sets, values: np.ndarray | None
         axis.axhspan(one.factor * one.low, one.factor * one.high, color=CYCLE[2], alpha=0.2, zorder=0)
     axis.axvline(search.best(name), color="black", linestyle="--", linewidth=1)
     axis.set_xscale("log")
+    _plain_ticks(axis, search)
     axis.set_xlabel(PARAMETERS[name])
     axis.set_ylabel(_label(one))
 
@@ -125,14 +126,19 @@ def _write_verdicts(axis: Axes, search: Search) -> None:
     if search.fit is None:
         axis.text(0, 0.9, "no fit was tested", transform=axis.transAxes)
         return
-    lines = ["Fit (star), with standard deviations over the packings:"]
+    line = len(search.searched) == 1
+    tested = search.fit["usable"][0] > 0
+    lines = [f"Fit ({'dashed' if line else 'star'}), with standard deviations over the packings:"]
     lines += [f"{_symbol(name)} = {search.fit[name][0]:.4g}" for name in PARAMETERS]
-    for one in search.observables:
+    if not tested:
+        lines.append("The tests of the fit were not usable.")
+    for one in search.observables if tested else ():
         value, scatter = search.fit[one.name][0], search.fit[f"{one.name}_deviation"][0]
         lines.append(
             f"{one.symbol} = {one.factor * value:.1f} ± {one.factor * scatter:.1f} {one.unit}, accepted "
             f"{one.factor * one.low:.3g} to {one.factor * one.high:.3g}: {'met' if one.met(value) else 'missed'}"
         )
-    lines.append(f"misfit {search.fit['misfit'][0]:.3g}")
-    lines.append("Hatched in the pictures: what is accepted.")
+    if tested:
+        lines.append(f"misfit {search.fit['misfit'][0]:.3g}")
+    lines.append(f"{'Green' if line else 'Hatched'} in the pictures: what is accepted.")
     axis.text(0, 0.97, "\n\n".join(lines), transform=axis.transAxes, va="top", fontsize=11)

@@ -22,10 +22,12 @@ from . import (
     profiles,
     reaction,
     rotation,
+    rve_size_figures,
     settlements,
     specimen,
     strength_figures,
     stresses,
+    sweep_tests,
     table_two,
     trend_table,
     troughs,
@@ -68,6 +70,17 @@ BIAXIAL: Figures = {
     "table_2.md": table_two.write,
 }
 
+# Of what a sweep holds: a figure for which it has no runs is skipped.
+SWEEP: Figures = {
+    "biaxial_curves.png": sweep_tests.draw_curves,
+    "biaxial_strength.png": sweep_tests.draw_plane,
+    "biaxial_angles.png": sweep_tests.draw_angles,
+    "table_2.md": sweep_tests.write_table_two,
+    "rve_size_variation.png": rve_size_figures.draw_variation,
+    "rve_size_curves.png": rve_size_figures.draw_curves,
+    "rve_size.md": rve_size_figures.write_table,
+}
+
 OF: dict[str, Figures] = {
     "a tunnel": FIGURES,
     "a column": {"k0.png": earth_pressure.draw, "geostatic_stress.png": stresses.draw, **_OF_A_MESH},
@@ -77,7 +90,7 @@ OF: dict[str, Figures] = {
     "a calibration": {"calibration.png": calibration_figure.draw},
     "a probe": {"probe_responses.png": probe_figures.draw_responses, "probe_path.png": probe_figures.draw_path},
     "packings": {"grading.png": grading.draw, "packings.png": chains.draw_packings},
-    "a sweep": {},
+    "a sweep": SWEEP,
 }
 
 

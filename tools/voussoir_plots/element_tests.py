@@ -132,7 +132,7 @@ def labels(all_series: Sequence[Series]) -> list[str]:
 
 
 def read(folders: Iterable[Path]) -> tuple[list[Series], list[Missing]]:
-    """The series that can be read, in the order of the study's soils, and why others cannot."""
+    """The series that can be read, in the order of the study's soils and then of their sizes, and why others cannot."""
     found: list[Series] = []
     left_out: list[Missing] = []
     for folder in folders:
@@ -144,4 +144,5 @@ def read(folders: Iterable[Path]) -> tuple[list[Series], list[Missing]]:
         except Missing as reason:
             left_out.append(reason)
     order = list(NAMES)
-    return sorted(found, key=lambda series: order.index(series.soil) if series.soil in order else len(order)), left_out
+    place = {soil: k for k, soil in enumerate(order)}
+    return sorted(found, key=lambda series: (place.get(series.soil, len(order)), series.grains)), left_out

@@ -37,7 +37,8 @@ def draw(packings: Packings, path: Path) -> None:
     for k, group in enumerate(groups):
         diameter = 2 * np.concatenate([packing.radius for packing in group])
         colour = CYCLE[k % len(CYCLE)]
-        for power, line, width in ((BY_AREA, "-", 1.8), (BY_VOLUME, "--", 1.0)):
+        wide = max(1.2, 3.4 - 0.9 * k)  # so that equal gradings are seen below one another
+        for power, line, width in ((BY_AREA, "-", wide), (BY_VOLUME, "--", 0.55 * wide)):
             size, passing = percent_finer(1e3 * diameter, power)
             label = _label(group, diameter) if power == BY_AREA else None
             axis.step(np.r_[size[0], size], np.r_[0, passing], line, where="post", color=colour, lw=width, label=label)

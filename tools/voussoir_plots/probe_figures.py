@@ -10,10 +10,18 @@ from .probes import COMPONENTS, STRAINED, Probe
 from .result import Missing
 from .style import CYCLE, LINES, MARKERS, save
 
+SAID = {
+    "xx": "extension xx",
+    "yy": "extension yy",
+    "xy": r"shear $\gamma_{xy}$",
+    "-xx": "compression xx",
+    "-yy": "compression yy",
+}
+
 
 def draw_responses(probe: Probe, path: Path) -> None:
     """Change of stress over the size of the strain, in MPa: responses as symbols, tangents as bars."""
-    strain = probe.strain()
+    strain, found = probe.strain()
     seeds = probe.seeds()
     figure, axes = plt.subplots(len(seeds), 1, figsize=(9.5, 4.4 * len(seeds) + 0.8), squeeze=False)
     for axis, seed in zip(axes.flat, seeds):
@@ -22,7 +30,7 @@ def draw_responses(probe: Probe, path: Path) -> None:
         kinds = sorted({row.get("tangent", "") for row in rows} - {""})
         axis.set_title(f"packing of seed {seed}, tangent: {', '.join(kinds) or 'none'}")
     axes.flat[0].legend(loc="upper center", bbox_to_anchor=(0.5, 1.32), ncol=3)
-    axes.flat[-1].set_xlabel(f"probe (size of the strain {strain:.3g}, the one that fits the tangents best)")
+    axes.flat[-1].set_xlabel(f"probe (size of the strain {strain:.3g}: {found})")
     figure.tight_layout()
     save(figure, path)
 
@@ -42,7 +50,7 @@ def _draw_seed(axis: Axes, probe: Probe, rows: list[dict[str, str]], strain: flo
     for k, component in enumerate(COMPONENTS):
         axis.bar(0, 0, color=CYCLE[k], alpha=0.45, label=rf"by the tangent $\sigma_{{{component}}}$")
     axis.axhline(0, color="black", linewidth=0.8)
-    axis.set_xticks(range(len(names)), [name if name == "rotation" else rf"$\varepsilon$ {name}" for name in names])
+    axis.set_xticks(range(len(names)), [SAID.get(name, name) for name in names])
     axis.set_ylabel("change of stress over strain,\ntension positive  [MPa]")
     axis.grid(axis="x", visible=False)
 

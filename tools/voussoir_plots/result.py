@@ -308,7 +308,7 @@ def _increment_files(folder: Path) -> list[Path]:
     return sorted(found, key=lambda p: int(p.stem))
 
 
-def remembered(result: Result, what: str, make: Callable[[], T]) -> T:
+def remembered(result: object, what: str, make: Callable[[], T]) -> T:
     """A value that several figures need: it is computed once and kept with the result under the name `what`."""
     kept = result.__dict__.setdefault("_remembered", {})
     if what not in kept:

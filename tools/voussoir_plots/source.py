@@ -44,13 +44,14 @@ def open_source(paths: Sequence[Path], settings: Settings) -> Source:
     if ensemble.is_ensemble(path):
         return Source("an ensemble", ensemble.Ensemble(path, settings))
     if is_probe(path):
-        return Source("a probe", Probe(path))
+        probe = Probe(path)
+        return Source("a probe", probe, probe.left_out)
     return _run(path, settings)
 
 
 def _run(path: Path, settings: Settings) -> Source:
     index = RunIndex(path)
-    what = SORTS.get(index.kind)
+    what = SORTS.get(index.kind, "a tunnel" if index.has_mesh else None)
     if what is None:
         raise Unreadable(f"{path} has results of the kind {index.kind}, which these tools do not know")
     if what == "biaxial tests":

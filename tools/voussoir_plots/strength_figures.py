@@ -7,6 +7,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.typing import ColorType
 
 from .element_tests import Series, Test, labels
 from .result import Missing
@@ -16,7 +17,16 @@ from .table_two import ANGLES, LABORATORY, STUDY
 MOST_LINES = 12  # of packings that are drawn one by one
 
 
+def valid_ones(all_series: Sequence[Series]) -> list[Series]:
+    """The runs that have a valid test."""
+    found = [series for series in all_series if series.valid]
+    if not found:
+        raise Missing(f"{all_series[0].run.folder} has no valid test")
+    return found
+
+
 def draw_curves(all_series: Sequence[Series], path: Path) -> None:
+    all_series = valid_ones(all_series)
     rows = (
         ("q", 1e-3, "deviatoric stress  $q$  [kPa]"),
         ("q_over_p", 1.0, "stress ratio  $q/p$  [-]"),
@@ -32,11 +42,11 @@ def draw_curves(all_series: Sequence[Series], path: Path) -> None:
                 draw_mean(axis, series, series.of_pressure(pressure), name, factor, CYCLE[k], f"{pressure / 1e3:g} kPa")
             axis.set_ylabel(text)
             axis.set_xlim(left=0)
-        column[0].set_ylim(bottom=0)
+        column[0].set_ylim(0, 1.3 * column[0].get_ylim()[1])  # room for the legend
         column[1].set_ylim(bottom=0)
         column[2].axhline(0, color="0.4", linewidth=0.8)
         column[2].set_xlabel(r"axial strain  $\varepsilon_a$  [%]")
-        column[0].legend(title="lateral stress", loc="upper right")
+        column[0].legend(title="lateral stress", loc="upper right", ncol=3)
     _same_limits(axes)
     figure.suptitle(
         "Drained biaxial tests: mean over the packings (thick),\n± one standard deviation (band), packings (thin)",
@@ -61,7 +71,14 @@ def _same_limits(axes: np.ndarray) -> None:
 
 
 def draw_mean(
-    axis: Axes, series: Series, tests: Sequence[Test], name: str, factor: float, colour: str, label: str
+    axis: Axes,
+    series: Series,
+    tests: Sequence[Test],
+    name: str,
+    factor: float,
+    colour: ColorType,
+    label: str,
+    lines: bool = True,
 ) -> None:
     """Mean of tests over the axial strain, with their standard deviation and, of few packings, all of them."""
     if not tests:
@@ -74,17 +91,16 @@ def draw_mean(
     if len(tests) > 1:
         spread = values.std(axis=0, ddof=1)
         axis.fill_between(strain, mean - spread, mean + spread, color=colour, alpha=0.2, linewidth=0)
-    if 1 < len(tests) <= MOST_LINES:
+    if lines and 1 < len(tests) <= MOST_LINES:
         axis.plot(strain, values.T, color=colour, linewidth=0.5, alpha=0.45)
     axis.plot(strain, mean, color=colour, linewidth=2.0, label=label)
 
 
 def draw_plane(all_series: Sequence[Series], path: Path) -> None:
     """Stress paths in the p-q plane, the tests' peaks and critical states, and the lines through them."""
+    all_series = valid_ones(all_series)
     figure, axes = plt.subplots(1, len(all_series), figsize=(5.6 * len(all_series), 5.2), squeeze=False)
     for axis, series, label in zip(axes[0], all_series, labels(all_series)):
-        if not series.valid:
-            raise Missing(f"{series.run.folder} has no valid test")
         _draw_plane(axis, series)
         axis.set_title(label)
     figure.tight_layout()
@@ -128,6 +144,7 @@ def degrees(angle: float, error: float) -> str:
 def draw_angles(all_series: Sequence[Series], path: Path) -> None:
     """Peak, critical and dilatancy angle of each run with its standard error, the study's value, and the sands of the
     laboratory that the study quotes."""
+    all_series = valid_ones(all_series)
     columns = len(all_series) + len(LABORATORY)
     figure, axis = plt.subplots(figsize=(1.5 * columns + 1.6, 5.0))
     for k, (name, text) in enumerate(ANGLES.items()):

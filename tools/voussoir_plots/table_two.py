@@ -82,5 +82,6 @@ def _verdict(series: Series, label: str) -> str:
             said.append(f"{short} is off by {angle - wanted:+.1f}°, of one packing")
         else:
             met = "met" if abs(angle - wanted) <= MET * error else "not met"
-            said.append(f"{short} is {met}, off by {angle - wanted:+.1f}° = {(angle - wanted) / error:+.1f} errors")
+            errors = f" = {(angle - wanted) / error:+.1f} errors" if error > 1e-9 else ""
+            said.append(f"{short} is {met}, off by {angle - wanted:+.1f}°{errors}")
     return f"{label}, within {MET:g} standard errors: " + "; ".join(said) + ".\n"
