@@ -13,8 +13,8 @@ from pathlib import Path
 try:
     from voussoir_plots import guard, settings
     from voussoir_plots.output import make_folder, say, write
-    from voussoir_plots.result import Missing
-    from voussoir_plots.source import Source, open_source
+    from voussoir_plots.result import Missing, Unreadable
+    from voussoir_plots.source import open_source
 
     from voussoir_report import ensemble_page, run_page, sweep_page
     from voussoir_report.parts import Builder
@@ -38,7 +38,14 @@ def options() -> argparse.ArgumentParser:
     return parser
 
 
-def built(source: Source, folder: Path, only: list[str] | None) -> Builder:
+def built(folder: Path, arguments: argparse.Namespace) -> Builder:
+    only = arguments.only
+    try:
+        source = open_source([folder], settings.parse(arguments))
+    except Unreadable:
+        raise
+    except Missing as reason:  # as of a run whose first increment is still computed: it has a case and a provenance
+        return run_page.of_a_beginning(folder, reason)
     if source.what == "a sweep":
         return sweep_page.make(source.data, folder, only)
     if source.what == "an ensemble":
@@ -49,10 +56,9 @@ def built(source: Source, folder: Path, only: list[str] | None) -> Builder:
 def report(path: Path, output: Path, arguments: argparse.Namespace) -> int:
     """Makes one page, tells it in one line, and returns the exit status."""
     start = time.monotonic()
-    source = open_source([path], settings.parse(arguments))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of NumPy, about missing values; tools/figures.py tells them
-        builder = built(source, path, arguments.only)
+        builder = built(path, arguments)
     page = builder.page.written()
     make_folder(output.parent)
     write(output, page)

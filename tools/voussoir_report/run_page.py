@@ -44,6 +44,17 @@ def make(source: Source, folder: Path, only: list[str] | None = None) -> Builder
     return builder
 
 
+def of_a_beginning(folder: Path, reason: Missing) -> Builder:
+    """The page of a run that has nothing to draw yet: the reason, its case, where it comes from."""
+    of = facts.read(folder)
+    if not of.input:
+        raise reason
+    builder = Builder(Page(f"A run: {name_of(folder)}", subtitle("", of), [str(reason), *facts.warnings(of)]))
+    builder.unreadable = True
+    builder.origin(of)
+    return builder
+
+
 def subtitle(title: str, of: facts.Facts) -> str:
     told = [title, f"kind {of.kind}" if of.kind else "", str(of.provenance.get("date", ""))]
     version = of.provenance.get("version")
