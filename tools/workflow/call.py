@@ -20,7 +20,7 @@ INTERRUPTED, MACHINE_FAILURE = 130, 4  # exit statuses of the program (host/proc
 def arguments(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     parser = argparse.ArgumentParser(
         prog="tools/workflow/run",
-        description="Runs a sweep by Snakemake; the same call goes on after a stop or a kill. Other options are Snakemake's.",
+        description="Runs a sweep by Snakemake; the same call goes on after a stop. Other options are Snakemake's.",
         epilog="Exit status: that of `voussoir sweep`.",
         allow_abbrev=False,
     )
@@ -30,8 +30,12 @@ def arguments(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     where.add_argument("--cores", type=int, help="cores of this machine that runs may use at a time (default: all)")
     where.add_argument("--slurm", action="store_true", help="each run is a job of Slurm")
     parser.add_argument("--threads", type=int, default=1, help="most threads of a run that takes hours (default: 1)")
-    parser.add_argument("--safety", type=float, default=2, help="factor on the estimates of memory and time (default: 2)")
-    parser.add_argument("--take-over", action="store_true", help="take folders over that a lost machine has not given back")
+    parser.add_argument(
+        "--safety", type=float, default=2, help="factor on the estimates of memory and time (default: 2)"
+    )
+    parser.add_argument(
+        "--take-over", action="store_true", help="take folders over that a lost machine has not given back"
+    )
     parser.add_argument("--program", help="the program (default: $VOUSSOIR, else that of build/openmp, else of PATH)")
     return parser.parse_known_args(words)
 
@@ -51,6 +55,7 @@ def snakemake(given: argparse.Namespace, program: str, folder: Path, further: li
         "program": program,
         "sweep": given.sweep.resolve(),
         "folder": folder,
+        "start": Path.cwd(),
         "list": folder / OWN_FOLDER / "list.json",
         "threads": given.threads,
         "safety": given.safety,
@@ -72,7 +77,8 @@ def snakemake(given: argparse.Namespace, program: str, folder: Path, further: li
 
 def call(words: list[str]) -> tuple[int, bool]:
     """Exit status of Snakemake, and whether this process was asked to stop. Snakemake and its jobs are a group of
-    processes of their own, which gets each request once as SIGINT: on SIGTERM alone Snakemake would wait for the runs."""
+    processes of their own, which gets each request once, as SIGINT: on SIGTERM Snakemake would wait for the runs.
+    """
     process = subprocess.Popen(words, process_group=0)
     asked = False
 
@@ -108,7 +114,9 @@ def report(given: argparse.Namespace, program: str, folder: Path, names: list[st
     for name in left if not asked else []:
         print(f"tools/workflow/run: {name}: {last_line(own / 'log' / f'{flat(name)}.log')}", file=sys.stderr)
     if left:
-        print(f"tools/workflow/run: {len(left)} of {len(names)} runs are not done; the same call goes on", file=sys.stderr)
+        print(
+            f"tools/workflow/run: {len(left)} of {len(names)} runs are not done; the same call goes on", file=sys.stderr
+        )
     if asked:
         return INTERRUPTED
     end = own / "gather.end"

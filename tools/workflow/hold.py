@@ -1,7 +1,7 @@
 """One Snakemake at a time works in a folder: a lock of the kernel, which needs no unlocking after a kill.
 
-Snakemake's own lock is a file that a killed Snakemake leaves behind, and nobody can tell it from that of a living one. So
-tools/workflow/run switches it off (`--nolock`) and the Snakefile takes this one.
+Snakemake's own lock is a file that a killed Snakemake leaves behind, and nobody can tell it from that of a living
+one. So tools/workflow/run switches it off (`--nolock`) and the Snakefile takes this one.
 """
 
 import fcntl

@@ -1,5 +1,5 @@
-"""The jobs of Slurm that a killed call has left in the queue: the next call waits until they are gone, since each of them
-is a run that would have two jobs."""
+"""The jobs of Slurm that a killed call has left in the queue: the next call waits until they are gone, since each of
+them is a run that would have two jobs."""
 
 import hashlib
 import subprocess
@@ -18,7 +18,9 @@ def prefix(folder: Path) -> str:
 def jobs_of(folder: Path) -> list[str]:
     """Numbers of the jobs in the queue; none where there is no squeue."""
     try:
-        done = subprocess.run(["squeue", "--me", "--noheader", "--format=%A %j"], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            ["squeue", "--me", "--noheader", "--format=%A %j"], capture_output=True, text=True, check=False
+        )
     except OSError:
         return []
     rows = [line.split(maxsplit=1) for line in done.stdout.splitlines()]
@@ -31,8 +33,8 @@ def wait(folder: Path, sleep: Callable[[float], None]) -> None:
     while jobs := jobs_of(folder):
         if not said:
             print(
-                f"tools/workflow/run: waits for {len(jobs)} jobs of an earlier call; `scancel {' '.join(jobs)}` ends them, "
-                "and their checkpoints stay",
+                f"tools/workflow/run: waits for {len(jobs)} jobs of an earlier call; `scancel {' '.join(jobs)}` ends "
+                "them, and their checkpoints stay",
                 file=sys.stderr,
             )
             said = True
