@@ -47,6 +47,7 @@ wait_for(lambda: any(process_of(lock) for lock in locks), first, "run")
 kill(first, swept, all_jobs=False)
 survivor = next(process_of(lock) for lock in locks if process_of(lock))
 os.kill(survivor, signal.SIGSTOP)
+lock_text = next(lock.read_text() for lock in locks if process_of(lock))
 check(len(outcomes(swept)) < 3, f"killed too late: {outcomes(swept)}")
 second = start(by_workflow(SWEEP, swept, "--cores", "2"), "second.log")
 wait_for(lambda: "waits: " in Path("second.log").read_text(), second, "run that waits")
@@ -63,6 +64,13 @@ check_same_sweeps(own, swept)
 # A call after the end has nothing to run, and says again what failed.
 said = end(start(by_workflow(SWEEP, swept), "third.log"), 3, "third.log")
 check(FAILED in said.splitlines()[-1] and ": finished" not in said, f"a finished sweep has run again: {said}")
+
+# A lock of another machine: the job fails, the line says what to do, and --take-over does it.
+(swept / ".workflow/done/tunnels__near").unlink()
+(swept / "tunnels/near/run.lock").write_text(lock_text.replace(f"host {os.uname().nodename}\n", "host elsewhere\n"))
+said = end(start(by_workflow(SWEEP, swept), "elsewhere.log"), 2, "elsewhere.log")
+check("1 of 3 runs are not done" in said and "add --take-over" in said, f"the lock is not named: {said[-800:]}")
+end(start(by_workflow(SWEEP, swept, "--take-over"), "taken.log"), 3, "taken.log")
 
 # One Snakemake at a time.
 with (swept / ".workflow/lock").open("a") as lock:

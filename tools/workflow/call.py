@@ -27,9 +27,9 @@ def arguments(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     parser.add_argument("sweep", type=Path, help="sweep file")
     parser.add_argument("-o", "--output", type=Path, help="folder of the results (default: out/STEM of the sweep file)")
     where = parser.add_mutually_exclusive_group()
-    where.add_argument("--cores", type=int, help="cores of this machine that runs may use at a time (default: all)")
+    where.add_argument("--cores", type=positive, help="cores that runs may use at a time (default: all)")
     where.add_argument("--slurm", action="store_true", help="each run is a job of Slurm")
-    parser.add_argument("--threads", type=int, default=1, help="most threads of a run that takes hours (default: 1)")
+    parser.add_argument("--threads", type=positive, default=1, help="most threads of a long run (default: 1)")
     parser.add_argument(
         "--safety", type=float, default=2, help="factor on the estimates of memory and time (default: 2)"
     )
@@ -38,6 +38,12 @@ def arguments(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     )
     parser.add_argument("--program", help="the program (default: $VOUSSOIR, else that of build/openmp, else of PATH)")
     return parser.parse_known_args(words)
+
+
+def positive(text: str) -> int:
+    if int(text) < 1:
+        raise ValueError
+    return int(text)
 
 
 def program_of(given: str | None) -> str:
@@ -107,7 +113,7 @@ def last_line(file: Path) -> str:
     return next((line for line in reversed(lines) if line.strip()), "it was not begun")
 
 
-def report(given: argparse.Namespace, program: str, folder: Path, names: list[str], asked: bool) -> int:
+def report(program: str, sweep: Path, folder: Path, names: list[str], asked: bool) -> int:
     """Says what is not done, gathers what there is, and returns the exit status of it all."""
     own = folder / OWN_FOLDER
     left = [name for name in names if not (own / marker(name)).exists()]
@@ -123,8 +129,8 @@ def report(given: argparse.Namespace, program: str, folder: Path, names: list[st
     if end.exists():
         sys.stderr.write((own / "log/gather.log").read_text(encoding="utf-8"))
         return int(end.read_text(encoding="utf-8"))
-    done = subprocess.run([program, "sweep", str(given.sweep), "-o", str(folder), "--gather"], check=False)
-    return done.returncode or MACHINE_FAILURE
+    done = subprocess.run([program, "sweep", str(sweep), "-o", str(folder), "--gather"], check=False)
+    return done.returncode
 
 
 def main() -> int:
@@ -151,7 +157,8 @@ def main() -> int:
     code, asked = call(words)
     if code == 2:
         return code  # wrong options, or another Snakemake holds the folder
-    return report(given, program, folder, names, asked)
+    end = report(program, given.sweep, folder, names, asked)
+    return end or (MACHINE_FAILURE if code else 0)
 
 
 if __name__ == "__main__":
