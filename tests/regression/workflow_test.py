@@ -37,6 +37,9 @@ refused("nowhere.toml", "nowhere.toml", "refused")
 refused("there is no program no_such_program", SWEEP, "refused", "--program", "no_such_program")
 refused("is of another version", SWEEP, "refused", "--program", "true")
 check(not Path("refused").exists(), "a refused call left a folder")
+Path("file").touch()
+done = run(by_workflow(SWEEP, "file"), code=4)
+check("file/.workflow: Not a directory" in done.stderr and done.stderr.count("\n") == 1, f"not one line: {done.stderr}")
 
 # Snakemake is killed, a run survives, and the next call waits for it. The run is halted after the kill, because a
 # kill wakes those that are halted.

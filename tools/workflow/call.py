@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 from workflow import slurm_queue
 from workflow.sweep_list import OWN_FOLDER, ListFault, flat, marker, outcome_file, read_list
@@ -133,21 +134,28 @@ def report(program: str, sweep: Path, folder: Path, names: list[str], asked: boo
     return done.returncode
 
 
-def main() -> int:
-    given, further = arguments(sys.argv[1:])
-    folder = (given.output or Path("out") / given.sweep.stem).resolve()
-    try:
-        program = program_of(given.program)
-        listed = read_list(program, str(given.sweep), str(folder))
-    except ListFault as fault:
-        print(fault if str(fault).startswith("voussoir") else f"tools/workflow/run: {fault}", file=sys.stderr)
-        return fault.code
-    names = [run["name"] for run in listed["runs"]]
+def prepare(folder: Path, listed: dict[str, Any]) -> list[str]:
+    """Makes the workflow's own folder and puts the list there; returns the names of the runs."""
     own = folder / OWN_FOLDER
     own.mkdir(parents=True, exist_ok=True)
     new = own / "list.json.new"
     new.write_text(json.dumps(listed), encoding="utf-8")
     new.replace(own / "list.json")
+    return [run["name"] for run in listed["runs"]]
+
+
+def main() -> int:
+    given, further = arguments(sys.argv[1:])
+    folder = (given.output or Path("out") / given.sweep.stem).resolve()
+    try:
+        program = program_of(given.program)
+        names = prepare(folder, read_list(program, str(given.sweep), str(folder)))
+    except ListFault as fault:
+        print(fault if str(fault).startswith("voussoir") else f"tools/workflow/run: {fault}", file=sys.stderr)
+        return fault.code
+    except OSError as fault:
+        print(f"tools/workflow/run: {fault.filename}: {fault.strerror}", file=sys.stderr)
+        return MACHINE_FAILURE
     words = snakemake(given, program, folder, further)
     if {"-n", "--dry-run", "--dryrun"} & set(further):
         return call(words)[0]
