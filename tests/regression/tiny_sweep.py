@@ -64,7 +64,7 @@ def start(words, log, **environment):
         return subprocess.Popen(words, stdout=out, stderr=subprocess.STDOUT, env={**os.environ, **environment})
 
 
-def end(process, code, log, timeout=250):
+def end(process, code, log, timeout=900):
     """Waits for the end of a workflow and returns its output."""
     process.wait(timeout=timeout)
     said = Path(log).read_text()
