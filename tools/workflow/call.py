@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from workflow import slurm_queue
+from workflow.hold import holder_of, refusal
 from workflow.sweep_list import OWN_FOLDER, ListFault, flat, marker, outcome_file, read_list
 
 HERE = Path(__file__).resolve().parent
-INTERRUPTED, MACHINE_FAILURE = 130, 4  # exit statuses of the program (host/process/exit_code.hpp)
+WRONG_INPUT, MACHINE_FAILURE, INTERRUPTED = 2, 4, 130  # exit statuses of the program (host/process/exit_code.hpp)
 
 
 def arguments(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
@@ -147,6 +148,9 @@ def prepare(folder: Path, listed: dict[str, Any]) -> list[str]:
 def main() -> int:
     given, further = arguments(sys.argv[1:])
     folder = (given.output or Path("out") / given.sweep.stem).resolve()
+    if holder := holder_of(folder / OWN_FOLDER / "lock"):
+        print(refusal(folder, holder), file=sys.stderr)
+        return WRONG_INPUT
     try:
         program = program_of(given.program)
         names = prepare(folder, read_list(program, str(given.sweep), str(folder)))
@@ -159,12 +163,15 @@ def main() -> int:
     words = snakemake(given, program, folder, further)
     if {"-n", "--dry-run", "--dryrun"} & set(further):
         return call(words)[0]
-    if given.slurm:
-        slurm_queue.wait(folder, time.sleep)
+    try:
+        if given.slurm:
+            slurm_queue.wait(folder, time.sleep)
+    except KeyboardInterrupt:
+        return INTERRUPTED
     forget_lost(folder, names)
     code, asked = call(words)
-    if code == 2:
-        return code  # wrong options, or another Snakemake holds the folder
+    if code == WRONG_INPUT:
+        return code  # wrong options, or another Snakemake has just begun
     end = report(program, given.sweep, folder, names, asked)
     return end or (MACHINE_FAILURE if code else 0)
 
