@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 try:
-    from voussoir_plots import comparison, guard, settings
+    from voussoir_plots import comparison, guard, settings, style
     from voussoir_plots.output import make_folder, say
     from voussoir_plots.result import Missing, Result
     from voussoir_plots.style import use_style
@@ -21,6 +21,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", type=Path, nargs="+", metavar="RUN", help="folders of runs")
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder for comparison.png and comparison.md")
+    style.add_option(parser)
     settings.add_options(parser)
     guard.add_option(parser)
     arguments = parser.parse_args()
@@ -41,7 +42,8 @@ def main():
         raise Missing("there is no tunnel with a volume loss to compare")
     make_folder(arguments.output)
     for name, draw in {"comparison.png": comparison.draw, "comparison.md": comparison.write}.items():
-        figures.make(name, arguments.output / name, partial(draw, results))
+        file = style.file_name(name, arguments.format)
+        figures.make(file, arguments.output / file, partial(draw, results))
     return figures.status
 
 

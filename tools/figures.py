@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Draws the figures of a run or an ensemble: tools/figures.py DIR [-o DIR] [--only NAME ...] [more options: --help].
+"""Draws the figures of a run of any kind, of packings, of an ensemble or of a sweep: tools/figures.py DIR [-o DIR]
+[--only NAME ...] [more options: --help].
 
-A figure whose data are missing is skipped, and a line says why. io/FORMAT.md describes the data sets,
-voussoir_plots/README.md the figures and the exit status.
+Several files of packings are drawn together, and several runs of kind biaxial. A figure whose data are missing is
+skipped, and a line says why. io/FORMAT.md describes the data sets, voussoir_plots/README.md the figures and the exit
+status.
 """
 
 import argparse
@@ -11,57 +13,78 @@ from functools import partial
 from pathlib import Path
 
 try:
-    from voussoir_plots import ensemble, guard, settings, trend_table
-    from voussoir_plots.catalogue import FIGURES
+    from voussoir_plots import guard, settings, style
+    from voussoir_plots.catalogue import TRENDS, figures_of, stems
     from voussoir_plots.output import make_folder, say
-    from voussoir_plots.result import Missing, Result
+    from voussoir_plots.result import Missing
+    from voussoir_plots.source import open_source
     from voussoir_plots.style import set_note, use_style
 except ModuleNotFoundError as missing:
     print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
     sys.exit(2)
 
-TRENDS = {"trends.md": trend_table.write}
 
-
-def chosen(arguments, of_an_ensemble):
+def chosen(arguments, what):
     """The functions that write the wanted files, by the names of the files."""
     if arguments.trends:
-        if of_an_ensemble:
-            raise Missing("the study's trends are judged for single runs, such as the members of this ensemble")
+        if what != "a tunnel":
+            raise Missing(f"the study's trends are judged for single runs of tunnels, and this is {what}")
         return TRENDS
-    everything = ensemble.FIGURES if of_an_ensemble else {**FIGURES, **TRENDS}
+    everything = figures_of(what)
     for name in sorted(set(arguments.only or ()) - {Path(known).stem for known in everything}):
-        say(f"skipped {name}: it is no figure of {'an ensemble' if of_an_ensemble else 'a single run'}")
+        say(f"skipped {name}: it is no figure of {what}")
     return {name: draw for name, draw in everything.items() if not arguments.only or Path(name).stem in arguments.only}
 
 
-def main():
+def output_folder(arguments, parser):
+    """Where the figures go: beside what they are drawn of, unless an option says otherwise."""
+    if arguments.output:
+        return arguments.output
+    if len(arguments.results) > 1:
+        parser.error("name a folder for figures of several files or runs by -o")
+    (path,) = arguments.results
+    return path.parent if path.is_file() else path
+
+
+def options():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("result", type=Path, help="folder of a run or of an ensemble")
+    parser.add_argument(
+        "results",
+        type=Path,
+        nargs="+",
+        metavar="DIR",
+        help="folder of a run, an ensemble, a sweep or packings; files of packings; several runs of kind biaxial",
+    )
     parser.add_argument("-o", "--output", type=Path, help="folder for the figures; default: the run's own")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="draw only these figures, named without .png")
     parser.add_argument(
         "--trends", action="store_true", help="write only trends.md: the study's trends, each seen or not"
     )
+    style.add_option(parser)
     settings.add_options(parser)
     guard.add_option(parser)
+    return parser
+
+
+def main():
+    parser = options()
     arguments = parser.parse_args()
-    output = arguments.output or arguments.result
-    unknown = set(arguments.only or ()) - {Path(name).stem for name in (*FIGURES, *TRENDS, *ensemble.FIGURES)}
+    output = output_folder(arguments, parser)
+    unknown = set(arguments.only or ()) - stems()
     if unknown:
         parser.error(f"there is no figure {', '.join(sorted(unknown))}")
     use_style()
     figures = guard.Guard(arguments.traceback)
-    of_an_ensemble = ensemble.is_ensemble(arguments.result)
-    result = (ensemble.Ensemble if of_an_ensemble else Result)(arguments.result, settings.parse(arguments))
-    for reason in result.left_out:
+    source = open_source(arguments.results, settings.parse(arguments))
+    for reason in source.left_out:
         say(f"left out: {reason}", error=True)
         figures.unreadable()
-    wanted = chosen(arguments, of_an_ensemble)
+    wanted = chosen(arguments, source.what)
     make_folder(output)
-    set_note(result.draw_note() if isinstance(result, Result) else "")
+    set_note(source.note)
     for name, draw in wanted.items():
-        figures.make(name, output / name, partial(draw, result))
+        file = style.file_name(name, arguments.format)
+        figures.make(file, output / file, partial(draw, source.data))
     return figures.status
 
 

@@ -1,21 +1,43 @@
-"""All figures of a run, by the name of their file."""
+"""All figures and tables, by the name of their file, for each sort of source that `source.py` tells apart.
+
+A function that finds no data for its figure raises Missing, and the figure is skipped with a line. A new figure needs
+one line here. Names end in .png; `--format` replaces this.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 from . import (
+    calibration_figure,
     chains,
     convergence,
+    earth_pressure,
+    ensemble,
     fields,
+    grading,
     panels,
     paths,
+    probe_figures,
     profiles,
     reaction,
     rotation,
+    rve_size_figures,
     settlements,
+    specimen,
+    strength_figures,
     stresses,
+    sweep_tests,
+    table_two,
+    trend_table,
     troughs,
     widths,
 )
 
-FIGURES = {
+Figures = dict[str, Callable[[Any, Path], None]]
+
+# Of a tunnel; a column and a specimen have some of them.
+FIGURES: Figures = {
     "settlement_troughs.png": troughs.draw,
     "trough_widths.png": widths.draw,
     "settlement_growth.png": settlements.draw,
@@ -31,5 +53,52 @@ FIGURES = {
     "rve_network.png": paths.draw_network,
     "force_chains.png": chains.draw,
     "geostatic_stress.png": stresses.draw,
+    "k0.png": earth_pressure.draw,
     "convergence.png": convergence.draw,
 }
+TRENDS: Figures = {"trends.md": trend_table.write}
+
+_OF_A_MESH: Figures = {
+    name: FIGURES[name]
+    for name in ("displacement.png", "deviatoric_strain.png", "void_ratio.png", "grain_rotation.png", "convergence.png")
+}
+
+BIAXIAL: Figures = {
+    "biaxial_curves.png": strength_figures.draw_curves,
+    "biaxial_strength.png": strength_figures.draw_plane,
+    "biaxial_angles.png": strength_figures.draw_angles,
+    "table_2.md": table_two.write,
+}
+
+# Of what a sweep holds: a figure for which it has no runs is skipped.
+SWEEP: Figures = {
+    "biaxial_curves.png": sweep_tests.draw_curves,
+    "biaxial_strength.png": sweep_tests.draw_plane,
+    "biaxial_angles.png": sweep_tests.draw_angles,
+    "table_2.md": sweep_tests.write_table_two,
+    "rve_size_variation.png": rve_size_figures.draw_variation,
+    "rve_size_curves.png": rve_size_figures.draw_curves,
+    "rve_size.md": rve_size_figures.write_table,
+}
+
+OF: dict[str, Figures] = {
+    "a tunnel": FIGURES,
+    "a column": {"k0.png": earth_pressure.draw, "geostatic_stress.png": stresses.draw, **_OF_A_MESH},
+    "a biaxial specimen": {"specimen.png": specimen.draw, **_OF_A_MESH},
+    "an ensemble": ensemble.FIGURES,
+    "biaxial tests": BIAXIAL,
+    "a calibration": {"calibration.png": calibration_figure.draw},
+    "a probe": {"probe_responses.png": probe_figures.draw_responses, "probe_path.png": probe_figures.draw_path},
+    "packings": {"grading.png": grading.draw, "packings.png": chains.draw_packings},
+    "a sweep": SWEEP,
+}
+
+
+def figures_of(what: str) -> Figures:
+    """The figures of one sort of source, with the trends where these are judged."""
+    return {**OF[what], **TRENDS} if what == "a tunnel" else OF[what]
+
+
+def stems() -> set[str]:
+    """All names that `--only` may have."""
+    return {Path(name).stem for what in OF for name in figures_of(what)}

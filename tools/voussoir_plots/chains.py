@@ -1,6 +1,7 @@
 """Force chains of RVEs that were written grain by grain (output.rves): normal forces as bars between grains."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -9,12 +10,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 
 from . import points
+from .packings import Packing, Packings
 from .resolution import percent
 from .result import Increment, Missing, Result, Snapshot
-from .style import save
+from .style import STRONG_FORCE, STRONGEST_FORCE, WEAK_FORCE, save
 
 STRONG = 1.0  # a contact with at least this multiple of the mean normal force is strong (C1 of the study's pictures)
 STRONGEST = 2.0  # the same for the strongest contacts (C2)
+COLOURS_OF_FORCES = "orange from the RVE's mean on, dark from twice the mean on"
+MOST_PACKINGS = 6  # that are all drawn
 
 
 def normal_forces(snapshot: Snapshot) -> np.ndarray:
@@ -45,12 +49,15 @@ def rows(result: Result, increment: Increment) -> list[tuple[str, str]]:
     ]
 
 
-def draw(result: Result, path: Path) -> None:
+def draw(result: Result, path: Path, losses: Sequence[float] = (), followed: Sequence[str] = ()) -> None:
+    """`losses`: V_l of the columns [-], in place of those of the settings; `followed`: only the RVEs at these points."""
     chosen = [
         result.loss_increments[0],
-        *(result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]),
+        *(result.nearest(losses or result.settings.field_losses) or [result.loss_increments[-1]]),
     ]
-    found = rows(result, chosen[-1])
+    found = [row for row in rows(result, chosen[-1]) if not followed or row[0].split("\n")[0] in followed]
+    if not found:
+        raise Missing(f"no RVE near {', '.join(followed)} was written grain by grain (output.rves)")
     figure, axes = plt.subplots(
         len(found),
         len(chosen),
@@ -60,17 +67,45 @@ def draw(result: Result, path: Path) -> None:
     )
     for row, (label, name) in zip(axes, found):
         for axis, increment in zip(row, chosen):
-            _draw_rve(axis, increment.snapshot(name))
+            draw_rve(axis, increment.snapshot(name))
             axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])}", fontsize=10)
         row[0].set_ylabel(label, fontsize=11)
     figure.suptitle(
-        "Force chains: width of a bar by normal force;\nred from the RVE's mean on, dark red from twice the mean on",
+        f"Force chains: width of a bar by normal force;\n{COLOURS_OF_FORCES}",
         fontsize=12,
     )
     save(figure, path)
 
 
-def _draw_rve(axis: Axes, snapshot: Snapshot) -> None:
+def draw_packings(packings: Packings, path: Path) -> None:
+    """Each packing with the normal forces of its overlaps; of many packings the first of each recipe."""
+    chosen = packings.all
+    if len(chosen) > MOST_PACKINGS:
+        chosen = [group[0] for group in packings.groups()][:MOST_PACKINGS]
+    columns = min(3, len(chosen))
+    rows_needed = -(-len(chosen) // columns)
+    figure, axes = plt.subplots(
+        rows_needed, columns, figsize=(4.6 * columns, 4.9 * rows_needed), squeeze=False, layout="constrained"
+    )
+    for axis in axes.flat[len(chosen) :]:
+        axis.set_axis_off()
+    for axis, packing in zip(axes.flat, chosen):
+        draw_rve(axis, packing.snapshot())
+        axis.set_title(_title(packing), fontsize=10)
+    shown = "" if len(chosen) == len(packings.all) else f"{len(chosen)} of {len(packings.all)} packings, one a recipe. "
+    figure.suptitle(f"{shown}Width of a bar by normal force;\n{COLOURS_OF_FORCES}", fontsize=11)
+    save(figure, path)
+
+
+def _title(packing: Packing) -> str:
+    width = float(np.linalg.norm(packing.cell[:, 0]))
+    return (
+        f"{packing.soil}, {len(packing.radius)} grains, seed {packing.seed}\n"
+        f"$e$ = {packing.void_ratio:.3f}, $p$ = {packing.pressure() / 1e3:.3g} kPa, cell {1e3 * width:.3g} mm wide"
+    )
+
+
+def draw_rve(axis: Axes, snapshot: Snapshot) -> None:
     cell, position = snapshot["cell"], np.column_stack([snapshot["x"], snapshot["y"]])
     # The grains are moved into the cell, because positions are stored without regard to it.
     inside = position - (cell @ np.floor(np.linalg.solve(cell, position.T))).T
@@ -94,7 +129,7 @@ def _draw_rve(axis: Axes, snapshot: Snapshot) -> None:
         start = inside[snapshot["contact_i"]]
         bars = np.stack([start, start + snapshot["branch"]], axis=1)
         order = np.argsort(share)
-        colour = np.where(share >= STRONGEST, "darkred", np.where(share >= STRONG, "red", "steelblue"))
+        colour = np.where(share >= STRONGEST, STRONGEST_FORCE, np.where(share >= STRONG, STRONG_FORCE, WEAK_FORCE))
         axis.add_collection(
             LineCollection(list(bars[order]), linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order])
         )

@@ -255,11 +255,11 @@ def write(results: Sequence[Result], path: Path) -> None:
         try:
             row = judge(results)
         except Missing as reason:
-            row = trends.Trend(_statement(judge), trends.NO_DATA, str(reason))
+            row = trends.Trend(statement(judge), trends.NO_DATA, str(reason))
         except Exception as error:
             if output.is_of_the_machine(error):
                 raise
-            row = trends.fault(_statement(judge), error)
+            row = trends.fault(statement(judge), error)
             faults.append(error)
         lines.append(f"| {row.statement} | **{row.verdict}** | {row.numbers} |")
     output.write(path, "\n".join(lines) + "\n")
@@ -267,5 +267,5 @@ def write(results: Sequence[Result], path: Path) -> None:
         raise faults[0]  # the table is written, and the fault is told
 
 
-def _statement(judge: Callable[[Sequence[Result]], trends.Trend]) -> str:
+def statement(judge: Callable[[Sequence[Result]], trends.Trend]) -> str:
     return (judge.__doc__ or "").split(":")[0].rstrip(".")

@@ -12,7 +12,7 @@ from matplotlib.tri import Triangulation
 from . import q8
 from .resolution import percent
 from .result import Increment, Missing, Result
-from .style import save
+from .style import DIVERGING, STRAIN, save
 
 
 def last_increment(result: Result) -> Increment:
@@ -66,7 +66,8 @@ def canvas(result: Result, increment: Increment) -> tuple[Figure, Axes, np.ndarr
     margin = 0.03 * np.max(high - low)
     axis.set_xlim(low[0] - margin, high[0] + margin)
     axis.set_ylim(low[1] - margin, high[1] + margin)
-    axis.set_xlabel("distance from the tunnel axis  $x$  [m]")
+    tunnel = "diameter" in result.geometry
+    axis.set_xlabel("distance from the tunnel axis  $x$  [m]" if tunnel else "$x$  [m]")
     axis.set_ylabel("height above the base  $y$  [m]")
     note = "" if factor == 1 else f"deformation × {factor:g}"
     return figure, axis, deformed, note
@@ -154,7 +155,7 @@ def draw_deviatoric_strain(result: Result, path: Path) -> None:
         "gauss/deviatoric_strain",
         r"deviatoric strain  $\varepsilon_q$  [%]",
         "Deviatoric strain",
-        "magma_r",
+        STRAIN,
         factor=100,
     )
 
@@ -170,7 +171,7 @@ def draw_grain_rotation(result: Result, path: Path) -> None:
         "gauss/grain_rotation",
         "mean grain rotation, counter-clockwise positive  [deg]",
         "Grain rotation",
-        "coolwarm",
+        DIVERGING,
         symmetric=True,
         factor=180 / np.pi,
     )

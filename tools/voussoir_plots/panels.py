@@ -1,5 +1,6 @@
 """Fields over the deformed mesh at several volume losses: which of them localise, and whether in the same places."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -10,12 +11,12 @@ from . import q8
 from .fields import since_start
 from .resolution import percent
 from .result import Missing, Result
-from .style import save
+from .style import DIVERGING, STRAIN, save
 
 # Field, factor, label, colour map, symmetric about the value at V_l = 0.
 FIELDS = [
-    ("gauss/deviatoric_strain", 100, r"deviatoric strain  $\varepsilon_q$  [%]", "magma_r", False),
-    ("gauss/grain_rotation", 180 / np.pi, "mean grain rotation, counter-\nclockwise positive  [deg]", "coolwarm", True),
+    ("gauss/deviatoric_strain", 100, r"deviatoric strain  $\varepsilon_q$  [%]", STRAIN, False),
+    ("gauss/grain_rotation", 180 / np.pi, "mean grain rotation, counter-\nclockwise positive  [deg]", DIVERGING, True),
     ("gauss/void_ratio", 1, "void ratio  $e$  [-]", "viridis", False),
 ]
 
@@ -38,8 +39,9 @@ def largest(values: np.ndarray) -> float:
     return float(np.max(np.abs(finite))) if finite.size else np.nan
 
 
-def draw(result: Result, path: Path) -> None:
-    chosen = result.nearest(result.settings.field_losses) or [result.loss_increments[-1]]
+def draw(result: Result, path: Path, losses: Sequence[float] = ()) -> None:
+    """`losses`: V_l of the columns [-], in place of those of the settings."""
+    chosen = result.nearest(losses or result.settings.field_losses) or [result.loss_increments[-1]]
     fields = [entry for entry in FIELDS if entry[0] in chosen[0].names]
     if not fields:
         raise Missing("there is no field of the Gauss points")

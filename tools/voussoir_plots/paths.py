@@ -10,7 +10,7 @@ from . import points
 from .result import Missing, Result
 from .style import save
 
-COLOURS = {"Aa": "C3", "Ab": "C1", "Ac": "C0", "B": "C2"}
+COLOURS = {"Aa": "C3", "Ab": "C6", "Ac": "C0", "B": "C2"}
 
 # Field, label, factor; those of the contact network are written only where output.microstructure asks for them.
 NETWORK = [

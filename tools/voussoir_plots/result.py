@@ -4,7 +4,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,12 +13,16 @@ import h5py
 import numpy as np
 
 from .settings import Settings
+from .units import quantity
 
 FORMAT_VERSION = 1  # of io/FORMAT.md
-KINDS = "figures are drawn of runs of the kinds column, tunnel and biaxial_bvp"
+KINDS = (
+    "figures are drawn of runs of the kinds tunnel, column, biaxial_bvp, biaxial, calibrate and probe, of packings "
+    "(files or their folder), ensembles and sweeps"
+)
 
 LENGTHS = ("surface_y", "diameter", "axis_depth", "width", "height")  # of the geometry, which must be positive
-MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1e3, "km": 1e6}
+GRAVEL_FROM = 10e-3  # [m]: a soil with larger grains is gravel
 
 Snapshot = dict[str, np.ndarray]  # arrays of one RVE, by the names of io/FORMAT.md
 T = TypeVar("T")
@@ -96,43 +100,84 @@ class Increment:
             return {key: data[()] for key, data in file[f"snapshots/{name}"].items()}
 
 
-class Result:
-    """Mesh and increments of a run; `settings` hold the places and volume losses that figures show."""
+class RunIndex:
+    """What `run.h5` of a run of any kind holds: its kind, its case and its tables."""
 
-    def __init__(self, folder: Path | str, settings: Settings | None = None) -> None:
+    def __init__(self, folder: Path | str) -> None:
         self.folder = Path(folder)
-        self.settings = settings or Settings()
-        self.increments: list[Increment] = []
-        self.left_out: list[Missing] = []  # why an increment's file is not among them
+        self.left_out: list[Missing] = []  # why a file of the run could not be read
         index = self.folder / "run.h5"
         _check_folder(self.folder, index)
         with reading(index) as file:
             check_format(file, index, "voussoir run")
             self.case = tomllib.loads(plain(file["input"][()])) if "input" in file else {}
             self.has_mesh = "mesh" in file
-            if self.has_mesh:
-                mesh = file["mesh"]
-                self.coordinates = mesh["coordinates"][()]
-                self.connectivity = mesh["connectivity"][()]
-                self.boundaries = {name: nodes[()] for name, nodes in mesh["boundaries"].items()}
-                self.geometry = {name: float(value) for name, value in mesh["geometry"].attrs.items()}
+            provenance = file["provenance"].attrs if "provenance" in file else {}
+            self.kind = plain(provenance.get("case_kind", self.case.get("kind", "tunnel")))
             self.tables = {
                 name: {column: values[()] for column, values in table.items()}
                 for name, table in file.get("tables", {}).items()
             }
+            self._read_further(file)
+
+    def _read_further(self, file: h5py.File) -> None:
+        """For what only some kinds have."""
+
+    def table(self, name: str, *columns: str) -> dict[str, np.ndarray]:
+        """A table, which must have these columns."""
+        index = self.folder / "run.h5"
+        if name not in self.tables:
+            raise Missing(f"{index} has no table {name}")
+        for column in columns:
+            if column not in self.tables[name]:
+                raise Missing(f"{index}: the table {name} has no column {column}")
+        return self.tables[name]
+
+    def draw_note(self) -> str:
+        """What a single run leaves open, for the foot of its figures; empty where nothing was measured."""
+        return ""
+
+    @property
+    def soil(self) -> str:
+        """ "gravel", "medium dense sand", "dense sand", or "no grains" (an elastic solid), as the case describes it;
+        the study's trends differ."""
+        if self.case.get("material", "grains") != "grains":
+            return "no grains"
+        soil, packing = self.case.get("soil", {}), self.case.get("packing", {})
+        if any(largest > GRAVEL_FROM for largest in _lengths(soil.get("sizes", []))):
+            return "gravel"
+        loose = packing.get("void_ratio", 0) > 0.22 or packing.get("consolidation_friction", 0) > 0.1
+        return "medium dense sand" if loose else "dense sand"
+
+
+class Result(RunIndex):
+    """Mesh and increments of a run; `settings` hold the places and volume losses that figures show."""
+
+    def __init__(self, folder: Path | str, settings: Settings | None = None) -> None:
+        self.settings = settings or Settings()
+        self.increments: list[Increment] = []
+        super().__init__(folder)
         for path in _increment_files(self.folder / "increments"):
             try:
                 self.increments.append(Increment(path))
             except Missing as reason:
                 self.left_out.append(reason)
         if not self.has_mesh:
-            raise Missing(f"{self.folder}: the run has no mesh: {KINDS}")
+            raise Missing(f"{self.folder}: the run has no mesh")
         if not self.increments:
             column = self.folder / "column"
             further = f"; its column is a run of its own, {column}" if (column / "run.h5").exists() else ""
             first = f" ({self.left_out[0]})" if self.left_out else ""
             raise Missing(f"{self.folder}: the run has no increments that can be drawn{first}{further}")
         self._histories: dict[str, np.ndarray] = {}
+
+    def _read_further(self, file: h5py.File) -> None:
+        if self.has_mesh:
+            mesh = file["mesh"]
+            self.coordinates = mesh["coordinates"][()]
+            self.connectivity = mesh["connectivity"][()]
+            self.boundaries = {name: nodes[()] for name, nodes in mesh["boundaries"].items()}
+            self.geometry = {name: float(value) for name, value in mesh["geometry"].attrs.items()}
 
     def draw_note(self) -> str:
         """What a single run leaves open, for the foot of its figures; empty where nothing was measured."""
@@ -230,18 +275,12 @@ class Result:
         nodes = self.boundaries["tunnel"]
         return nodes[np.argmax(self.coordinates[nodes, 1])]
 
-    @property
-    def soil(self) -> str:
-        """ "gravel", "medium dense sand", "dense sand", or "no grains" (an elastic solid), as the case describes it;
-        the study's trends differ."""
-        if self.case.get("material", "grains") != "grains":
-            return "no grains"
-        soil, packing = self.case.get("soil", {}), self.case.get("packing", {})
-        sizes = [re.fullmatch(r"\s*(\S+?)\s*(mm|cm|m|km)\s*", str(size)) for size in soil.get("sizes", [])]
-        if any(float(size[1]) * MILLIMETRES[size[2]] > 10 for size in sizes if size):
-            return "gravel"
-        loose = packing.get("void_ratio", 0) > 0.22 or packing.get("consolidation_friction", 0) > 0.1
-        return "medium dense sand" if loose else "dense sand"
+
+def _lengths(written: Iterable[Any]) -> Iterator[float]:
+    """The lengths among what a case file lists [m]."""
+    for one in written:
+        with suppress(ValueError):
+            yield quantity(one)
 
 
 def _check_folder(folder: Path, index: Path) -> None:
@@ -269,7 +308,7 @@ def _increment_files(folder: Path) -> list[Path]:
     return sorted(found, key=lambda p: int(p.stem))
 
 
-def remembered(result: Result, what: str, make: Callable[[], T]) -> T:
+def remembered(result: object, what: str, make: Callable[[], T]) -> T:
     """A value that several figures need: it is computed once and kept with the result under the name `what`."""
     kept = result.__dict__.setdefault("_remembered", {})
     if what not in kept:

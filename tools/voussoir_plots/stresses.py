@@ -39,6 +39,9 @@ def draw(result: Result, path: Path) -> None:
     _draw_rows(axes[1, 0], result, unit_weight, surcharge)
     _draw_deflection(axes[1, 1], stress[..., 1], tensors.major_from_vertical(tensor), far)
     worst = np.max(np.abs(stress[..., 1] - weight)[far] / (0.05 * weight[far] + 1))
+    if not far.all():
+        for axis in axes[:, 1]:
+            axis.set_title("away from the opening")
     figure.suptitle(
         f"After gravity: $\\gamma$ = {unit_weight / 1e3:g} kN/m³, surcharge {surcharge / 1e3:g} kPa; "
         f"single points depart by up to {worst:.2f} times 5 % + 1 kPa",
@@ -76,7 +79,6 @@ def _draw_ratio(axis: Axes, stress: np.ndarray, far: np.ndarray) -> None:
     axis.set_ylim(min(0.2, low), max(1.1, high))
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
     axis.set_ylabel(r"$K_0 = \sigma_{xx} / \sigma_{yy}$  [-]")
-    axis.set_title("away from the opening")
 
 
 def plain_ticks(axis: Axes, values: np.ndarray) -> None:
@@ -101,12 +103,13 @@ def _draw_fit(axis: Axes, result: Result) -> None:
 
 def _draw_rows(axis: Axes, result: Result, unit_weight: float, surcharge: float) -> None:
     """Mean errors of level rows with their standard deviation, as the program found them."""
+    if "geostatic_rows" not in result.tables:
+        axis.text(0.5, 0.5, "run.h5 has no table geostatic_rows", transform=axis.transAxes, ha="center")
+        axis.set_axis_off()
+        return
     axis.set_xlabel(r"$\sigma_{yy} - (\gamma z +$ surcharge$)$  [kPa]")
     axis.set_ylabel("depth  $z$  [m]")
     axis.set_title("level rows: mean and standard deviation")
-    if "geostatic_rows" not in result.tables:
-        axis.text(0.5, 0.5, "run.h5 has no table geostatic_rows", transform=axis.transAxes, ha="center")
-        return
     rows = result.tables["geostatic_rows"]
     allowed = (0.02 * (unit_weight * rows["depth"] + surcharge) + 0.5e3) / 1e3
     axis.fill_betweenx(rows["depth"], -allowed, allowed, color="0.85", label="± (2 % + 0.5 kPa), of the mean")
@@ -140,5 +143,4 @@ def _draw_deflection(axis: Axes, vertical: np.ndarray, angle: np.ndarray, far: n
     plain_ticks(axis, vertical[good])
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
     axis.set_ylabel("principal axis from the vertical  [deg]")
-    axis.set_title("away from the opening")
     axis.legend()

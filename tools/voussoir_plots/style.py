@@ -1,17 +1,37 @@
 """One look for all figures."""
 
+import argparse
 import io
 import textwrap
 from pathlib import Path
 
 import matplotlib
 import numpy as np
+from cycler import cycler
 from matplotlib.figure import Figure
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 from .output import write
+
+# Okabe and Ito's colours, which readers with any colour vision tell apart; "C0", "C1", ... are these in this order.
+CYCLE = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#000000", "#8C6D1F")
+LINES, MARKERS = ("-", "--", "-.", ":"), "osv^DPX*"  # so that curves differ in print without colours as well
+SEQUENTIAL = "viridis"
+STRAIN = "magma_r"  # sequential from white: nothing has happened where a field of strain is white
+DIVERGING = "RdBu_r"  # red against blue with white between them, of fields with a sign
+WEAK_FORCE, STRONG_FORCE, STRONGEST_FORCE = "#56B4E9", "#D55E00", "#6B1A00"  # they also differ in lightness
+FORMATS = ("png", "svg", "pdf")
+
+
+def add_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--format", choices=FORMATS, default="png", help="of the figures; svg and pdf are vectors")
+
+
+def file_name(name: str, form: str) -> str:
+    """The name of a figure in another format; tables keep theirs."""
+    return str(Path(name).with_suffix(f".{form}")) if name.endswith(".png") else name
 
 
 def use_style() -> None:
@@ -28,7 +48,10 @@ def use_style() -> None:
             "grid.alpha": 0.3,
             "axes.axisbelow": True,
             "lines.linewidth": 1.6,
-            "image.cmap": "viridis",
+            "image.cmap": SEQUENTIAL,
+            "axes.prop_cycle": cycler(color=CYCLE),
+            "pdf.fonttype": 42,  # letters stay letters
+            "svg.hashsalt": "voussoir",  # so that equal figures are equal files
             "legend.framealpha": 0.9,
         }
     )
@@ -41,6 +64,7 @@ def colours(name: str, count: int) -> np.ndarray:
 
 LETTERS_AN_INCH = 15  # of the note, which is set in 8 points
 
+_WITHOUT_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 _notes: list[str] = []
 
 
@@ -50,6 +74,7 @@ def set_note(text: str) -> None:
 
 
 def save(figure: Figure, path: Path) -> None:
+    """Writes a figure in the format that the name of the file ends in, and closes it."""
     for note in _notes:
         figure.draw_without_rendering()  # a layout that is computed moves the axes only then
         width, height = figure.get_size_inches()
@@ -57,6 +82,7 @@ def save(figure: Figure, path: Path) -> None:
         below = figure.get_tightbbox().y0 / height - 0.1 / height  # under all that is drawn, legends too
         figure.text(0.5, below, lines, ha="center", va="top", fontsize=8, color="0.35")
     picture = io.BytesIO()  # so that a full disk is met by `write` alone
-    figure.savefig(picture, format="png")
+    form = path.suffix.removeprefix(".")
+    figure.savefig(picture, format=form, metadata=_WITHOUT_DATE[form])
     plt.close(figure)
     write(path, picture.getvalue())

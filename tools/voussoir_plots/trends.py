@@ -354,15 +354,19 @@ def ranks(values: np.ndarray) -> np.ndarray:
     return np.argsort(np.argsort(values)).astype(float)
 
 
+def overlaps(
+    strain: np.ndarray, rotation: np.ndarray, dilation: np.ndarray, share: float = 0.05
+) -> tuple[float, float]:
+    """How many of the most sheared points are among the most turned, and among the most dilated [-]."""
+    count = max(1, int(share * len(strain)))
+    sheared, turned, dilated = (set(np.argsort(-values)[:count]) for values in (strain, np.abs(rotation), dilation))
+    return len(sheared & turned) / count, len(sheared & dilated) / count
+
+
 def localise_together(strain: np.ndarray, rotation: np.ndarray, dilation: np.ndarray, share: float = 0.05) -> Trend:
     """Rank correlation of eps_q with |grain rotation| and with the change of void ratio, and how many of the most
     sheared points are also among the most turned and dilated."""
-    count = max(1, int(share * len(strain)))
-    most = {
-        name: set(np.argsort(-values)[:count])
-        for name, values in (("strain", strain), ("rotation", np.abs(rotation)), ("dilation", dilation))
-    }
-    overlap = [len(most["strain"] & most[name]) / count for name in ("rotation", "dilation")]
+    overlap = overlaps(strain, rotation, dilation, share)
     correlation = [np.corrcoef(ranks(strain), ranks(values))[0, 1] for values in (np.abs(rotation), dilation)]
     return Trend(
         "Deviatoric strain, grain rotation and void ratio localise together",

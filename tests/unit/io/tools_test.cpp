@@ -191,7 +191,7 @@ TEST_F(Tools, VtkReadsEveryTimeAndField) {
 
 TEST_F(Tools, FiguresAreDrawn) {
   EXPECT_EQ(run("figures.py"), 0) << log();
-  EXPECT_EQ(skipped(), 3) << log();  // what only grains have: paths, networks and chains of RVEs
+  EXPECT_EQ(skipped(), 4) << log();  // what only grains have: paths, networks and chains of RVEs, K0
   for (const char* name : {"settlement_troughs", "displacement", "deviatoric_strain", "void_ratio", "grain_rotation",
                            "ground_reaction", "geostatic_stress", "convergence"}) {
     EXPECT_GT(fs::file_size(folder_ / (std::string(name) + ".png")), 10000U) << name;

@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Draws the paper's comparisons of tunnels: tools/study.py SWEEP or RUN_OR_ENSEMBLE ... [-o DIR] [--only NAME ...].
+
+A sweep's tunnels, or runs and ensembles of tunnels named one by one, with the bands of the members; study.md says which
+of the paper's figures has which file, and how our results compare. voussoir_plots/README.md describes it.
+"""
+
+import argparse
+import sys
+from functools import partial
+from pathlib import Path
+
+try:
+    from voussoir_plots import guard, settings
+    from voussoir_plots.output import make_folder, say
+    from voussoir_plots.result import Unreadable
+    from voussoir_plots.study.catalogue import STUDY_FIGURES, write
+    from voussoir_plots.study.data import open_study
+    from voussoir_plots.style import add_option, file_name, use_style
+except ModuleNotFoundError as missing:
+    print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
+    sys.exit(2)
+
+FILES = {**STUDY_FIGURES, "study.md": write}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "folders", type=Path, nargs="+", metavar="DIR", help="a sweep, or runs and ensembles of tunnels"
+    )
+    parser.add_argument("-o", "--output", type=Path, help="folder for the figures; default: the sweep's own")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="write only these files, named without their ending")
+    add_option(parser)
+    settings.add_options(parser)
+    guard.add_option(parser)
+    arguments = parser.parse_args()
+    if len(arguments.folders) > 1 and not arguments.output:
+        parser.error("name a folder for the figures of several runs by -o")
+    unknown = set(arguments.only or ()) - {Path(name).stem for name in FILES}
+    if unknown:
+        parser.error(f"there is no figure {', '.join(sorted(unknown))}")
+    use_style()
+    figures = guard.Guard(arguments.traceback)
+    study = open_study(arguments.folders, settings.parse(arguments))
+    for reason in study.left_out:
+        say(f"left out: {reason}", error=True)
+        if isinstance(reason, Unreadable):
+            figures.unreadable()
+    output = arguments.output or arguments.folders[0]
+    make_folder(output)
+    for name, draw in FILES.items():
+        if not arguments.only or Path(name).stem in arguments.only:
+            written = file_name(name, arguments.format)
+            figures.make(written, output / written, partial(draw, study))
+    return figures.status
+
+
+if __name__ == "__main__":
+    sys.exit(guard.run(main))

@@ -1,0 +1,157 @@
+"""Packing files (io/FORMAT.md, "Packings"): grains, contacts, and the normal forces that the linear law makes of the
+overlaps (kernels/contact/linear_law.hpp)."""
+
+import re
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from .result import GRAVEL_FROM, Missing, Snapshot, Unreadable, check_format, plain, reading
+from .units import quantity
+
+
+def branches(positions: np.ndarray, cell: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Vectors from grain i to the nearest image of grain j (contact, 2) [m]. A cell holds two of the largest diameters,
+    so that the image which touches is the nearest one."""
+    apart = np.linalg.solve(cell, (positions[j] - positions[i]).T)
+    return (cell @ (apart - np.round(apart))).T
+
+
+class Packing:
+    """One packing; lengths in m, grains as discs of the thickness."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        with reading(path) as file:
+            check_format(file, path, "voussoir packing")
+            self.radius, self.x, self.y = (file[name][()] for name in ("radius", "x", "y"))
+            self.cell = file["cell"][()]
+            self.contact_i, self.contact_j = file["contact_i"][()], file["contact_j"][()]
+            self.thickness = float(file.attrs["thickness"])
+            self.numbers = {name: float(value) for name, value in file["numbers"].attrs.items()}
+            self.labels = {name: str(plain(value)) for name, value in file["labels"].attrs.items()}
+        grains = len(self.radius)
+        whole = (
+            grains and len(self.x) == len(self.y) == grains and np.all(self.radius > 0) and self.cell.shape == (2, 2)
+        )
+        if not whole or not np.linalg.det(self.cell) > 0:
+            raise Unreadable(f"{path} cannot be read: its grains or its cell are impossible")
+        contacts = np.concatenate([self.contact_i, self.contact_j])
+        if len(contacts) and (contacts.min() < 0 or contacts.max() >= grains):
+            raise Unreadable(f"{path} cannot be read: a contact has a grain that does not exist")
+
+    @property
+    def recipe(self) -> str:
+        """What packings that differ by their seed alone have in common."""
+        return re.sub(r"\bseed \d+ ?", "", self.labels.get("recipe", ""))
+
+    @property
+    def seed(self) -> int:
+        return int(self.numbers.get("seed", 0))
+
+    @property
+    def void_ratio(self) -> float:
+        """Area of voids over area of grains [-], as the study's 2D void ratio; overlaps are not subtracted."""
+        return float(self.numbers.get("void_ratio", np.linalg.det(self.cell) / np.sum(np.pi * self.radius**2) - 1))
+
+    @property
+    def soil(self) -> str:
+        """ "gravel", "medium dense sand" or "dense sand", as for a run."""
+        if 2 * self.radius.max() > GRAVEL_FROM:
+            return "gravel"
+        loose = self.void_ratio > 0.22 or self.numbers.get("consolidation_friction", 0) > 0.1
+        return "medium dense sand" if loose else "dense sand"
+
+    @cached_property
+    def moduli(self) -> np.ndarray:
+        """Contact modulus of each grain [Pa], by its class where the soil has classes."""
+        sizes: list[float] = []
+        moduli: list[float] = []
+        while f"soil.class[{len(sizes)}].size_to" in self.labels:
+            table = f"soil.class[{len(sizes)}]"
+            moduli.append(self._label(f"{table}.modulus"))
+            sizes.append(self._label(f"{table}.size_to"))
+        if not sizes:
+            return np.full(len(self.radius), self._label("soil.modulus"))
+        # A grain belongs to the first class whose upper size it does not exceed, as in host/packing/packed_rve.cpp.
+        return np.array(moduli)[np.minimum(np.searchsorted(sizes, 2 * self.radius), len(sizes) - 1)]
+
+    def _label(self, name: str) -> float:
+        if name not in self.labels:
+            raise Missing(f"{self.path} does not tell its soil: it has no label {name}")
+        try:
+            return quantity(self.labels[name])
+        except ValueError as error:
+            raise Missing(f"{self.path}: label {name}: {error}") from None
+
+    def normal_forces(self) -> tuple[np.ndarray, np.ndarray]:
+        """Branch (contact, 2) [m] and normal force (contact) [N] of each contact: f_n = k_n times the overlap, where
+        k_n is the harmonic mean of both grains' E r."""
+        branch = branches(np.column_stack([self.x, self.y]), self.cell, self.contact_i, self.contact_j)
+        overlap = self.radius[self.contact_i] + self.radius[self.contact_j] - np.linalg.norm(branch, axis=1)
+        spring = self.moduli * self.radius
+        first, second = spring[self.contact_i], spring[self.contact_j]
+        return branch, 2 * first * second / (first + second) * np.maximum(overlap, 0)
+
+    def pressure(self) -> float:
+        """Mean stress of the normal forces [Pa]: half the trace of eq. (3), to which tangential forces add nothing."""
+        branch, force = self.normal_forces()
+        area = np.linalg.det(self.cell)
+        return float(np.sum(force * np.linalg.norm(branch, axis=1)) / (2 * area * self.thickness))
+
+    def snapshot(self) -> Snapshot:
+        """The packing as a snapshot of an RVE, with its normal forces alone."""
+        branch, force = self.normal_forces()
+        touching = force > 0
+        unit = branch / np.linalg.norm(branch, axis=1, keepdims=True)
+        return {
+            "cell": self.cell,
+            "x": self.x,
+            "y": self.y,
+            "radius": self.radius,
+            "contact_i": self.contact_i[touching],
+            "contact_j": self.contact_j[touching],
+            "branch": branch[touching],
+            "force": (-force[:, None] * unit)[touching],
+        }
+
+
+class Packings:
+    """Several packings, in groups of those that differ by their seed alone."""
+
+    def __init__(self, files: Sequence[Path]) -> None:
+        self.left_out: list[Missing] = []
+        self.all: list[Packing] = []
+        for path in files:
+            try:
+                self.all.append(Packing(path))
+            except Missing as reason:
+                self.left_out.append(reason)
+        if not self.all:
+            raise self.left_out[0] if self.left_out else Unreadable("there is no packing to draw")
+
+    def groups(self) -> list[list[Packing]]:
+        """Packings of one recipe together, by their seeds; a packing without a recipe is a group of its own."""
+        found: dict[str, list[Packing]] = {}
+        for packing in self.all:
+            found.setdefault(packing.recipe or str(packing.path), []).append(packing)
+        return [sorted(group, key=lambda packing: packing.seed) for group in found.values()]
+
+
+def packing_files(path: Path) -> list[Path]:
+    """The packing files that a path names: the file itself, or those in a folder of packings."""
+    if not path.is_dir():
+        return [path]
+    return sorted(path.glob("packing_*.h5")) or [path]
+
+
+def is_packing(path: Path) -> bool:
+    """True for a file in HDF5 by its name, and for a folder of packings that is no run."""
+    try:
+        if path.is_dir():
+            return not (path / "run.h5").exists() and any(path.glob("packing_*.h5"))
+        return path.suffix == ".h5" and path.exists()
+    except OSError as error:
+        raise Unreadable(f"{path} cannot be read: {error.strerror}") from error

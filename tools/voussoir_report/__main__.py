@@ -1,0 +1,95 @@
+"""Makes one HTML page of a run, an ensemble or a sweep: tools/report DIR [-o FILE.html].
+
+The page needs no server and no network. What a run lacks, the page and one line on the terminal tell; the exit status
+is that of the figure scripts (voussoir_plots/README.md).
+"""
+
+import argparse
+import sys
+import time
+import warnings
+from pathlib import Path
+
+try:
+    from voussoir_plots import guard, settings
+    from voussoir_plots.output import make_folder, say, write
+    from voussoir_plots.result import Missing, Unreadable
+    from voussoir_plots.source import open_source
+
+    from voussoir_report import ensemble_page, run_page, sweep_page
+    from voussoir_report.parts import Builder
+except ModuleNotFoundError as missing:
+    print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
+    sys.exit(2)
+
+
+def options() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="tools/report", description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("result", type=Path, metavar="DIR", help="folder of a run, an ensemble, a sweep or packings")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: report.html in the folder")
+    parser.add_argument(
+        "--only", nargs="*", metavar="NAME", help="only these figures, named without .png; no name: none"
+    )
+    parser.add_argument(
+        "--points", action="store_true", help="of a sweep: also report.html in the folder of each point"
+    )
+    settings.add_options(parser)
+    guard.add_option(parser)
+    return parser
+
+
+def built(folder: Path, arguments: argparse.Namespace) -> Builder:
+    only = arguments.only
+    try:
+        source = open_source([folder], settings.parse(arguments))
+    except Unreadable:
+        raise
+    except Missing as reason:  # as of a run whose first increment is still computed: it has a case and a provenance
+        return run_page.of_a_beginning(folder, reason)
+    if source.what == "a sweep":
+        return sweep_page.make(source.data, folder, only)
+    if source.what == "an ensemble":
+        return ensemble_page.make(source.data, folder, only)
+    return run_page.make(source, folder, only)
+
+
+def report(path: Path, output: Path, arguments: argparse.Namespace) -> int:
+    """Makes one page, tells it in one line, and returns the exit status."""
+    start = time.monotonic()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of NumPy, about missing values; tools/figures.py tells them
+        builder = built(path, arguments)
+    page = builder.page.written()
+    make_folder(output.parent)
+    write(output, page)
+    told = f"{len(page.encode()) / 1e6:.1f} MB, {time.monotonic() - start:.1f} s"
+    lacking = f"; {len(builder.missing)} parts are missing, the page says which" if builder.missing else ""
+    alarms = f"; {len(builder.page.warnings)} warnings at its top" if builder.page.warnings else ""
+    say(f"wrote {output} ({told}{lacking}{alarms})")
+    for line in builder.faults:
+        say(f"FAULT in {line}; this is a fault of the tool, not of the run", error=True)
+    return guard.FAULT if builder.faults else guard.UNREADABLE if builder.unreadable else guard.DRAWN
+
+
+def reports_of_points(path: Path, arguments: argparse.Namespace) -> int:
+    """The pages of a sweep's points, to which its own page links; one that cannot be made loses no other one."""
+    source = open_source([path], settings.parse(arguments))
+    status = guard.DRAWN
+    for folder in sweep_page.points_of(source.data) if source.what == "a sweep" else []:
+        try:
+            status = status or report(folder, folder / sweep_page.REPORT, arguments)
+        except Missing as reason:
+            say(str(reason), error=True)
+            status = status or guard.UNREADABLE
+    return status
+
+
+def main() -> int:
+    arguments = options().parse_args()
+    folder = arguments.result if arguments.result.is_dir() else arguments.result.parent
+    status = reports_of_points(arguments.result, arguments) if arguments.points else guard.DRAWN
+    return report(arguments.result, arguments.output or folder / sweep_page.REPORT, arguments) or status
+
+
+if __name__ == "__main__":
+    sys.exit(guard.run(main))

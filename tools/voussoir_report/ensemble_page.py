@@ -1,0 +1,106 @@
+"""The page of an ensemble: its mean and bands, and the member that represents it for the clicked points."""
+
+from pathlib import Path
+
+import numpy as np
+from voussoir_plots.catalogue import Figures, figures_of
+from voussoir_plots.ensemble import INDEX, Ensemble
+from voussoir_plots.result import Missing, Result
+
+from . import curves, element_curves, facts, ground, markup, members, paper_sentences, pictures, run_page
+from .markup import Page
+from .members import Members
+from .parts import Builder, name_of
+
+SORTS = {"volume_loss": "a tunnel", "biaxial_bvp": "a biaxial specimen", "gravity": "a tunnel", "column": "a column"}
+
+
+def make(ensemble: Ensemble, folder: Path, only: list[str] | None = None) -> Builder:
+    of = facts.read(folder, INDEX)
+    page = Page(f"Ensemble: {name_of(folder)}", run_page.subtitle(ensemble.title(), of))
+    builder = Builder(page)
+    group = Members(ensemble)
+    each, failed = facts.readable([folder / name for name in group.names])
+    page.warnings += _warnings(folder, each) + [f"Left out: {reason}." for reason in (*group.lost, *failed)]
+    builder.unreadable = bool(group.lost or failed)
+    name, result = _representative(builder, group)
+    if result is not None:
+        page.notes.append(
+            f"Clicked points and the study's further figures are of {name}, whose curves lie nearest to the mean."
+        )
+        _ground(builder, group, name, result)
+    drawn = pictures.draw_all(pictures.chosen(_figures(ensemble), only), ensemble)
+    if result is not None:
+        of_a_run = SORTS.get(ground.stage_of(result)[0], "a tunnel")
+        further = pictures.draw_all(pictures.chosen(figures_of(of_a_run), only), result, f"One member: {name}.")
+        drawn += further
+        if of_a_run == "a tunnel":
+            builder.trends(result, f" ({name})")
+    paper_sentences.apply(drawn.pictures, paper_sentences.study_of(folder, ensemble.settings))
+    builder.figures(drawn)
+    _origin(builder, of, each)
+    return builder
+
+
+def _figures(ensemble: Ensemble) -> Figures:
+    """The ensemble's figures, without those of other kinds of runs."""
+    other = {"ensemble_specimen.png"} if "surface_settlement" in ensemble.curves else set()
+    return {name: draw for name, draw in figures_of("an ensemble").items() if name not in other}
+
+
+def _warnings(folder: Path, each: list[facts.Facts]) -> list[str]:
+    """The members' warnings, each with the member's name, and members that are not reduced."""
+    found = [f"{of.folder.name}: {line}" for of in each for line in facts.warnings(of)]
+    lines = (folder / "members.csv").read_text().splitlines() if (folder / "members.csv").is_file() else []
+    head = lines[0].split(",") if lines else []
+    if {"name", "status", "reduced"} <= set(head):
+        for row in (line.split(",") for line in lines[1:]):
+            told = dict(zip(head, row))
+            if told["reduced"] != "1":
+                found.insert(0, f"{told['name']} is not in the means: {told['status']}.")
+    return found
+
+
+def _representative(builder: Builder, group: Members) -> tuple[str, Result | None]:
+    try:
+        return group.representative()
+    except Missing as reason:
+        builder.note(reason)
+        return "", None
+
+
+def _ground(builder: Builder, group: Members, name: str, result: Result) -> None:
+    """The mean field, its band and the representative member on one slider."""
+    ensemble = group.ensemble
+    try:
+        stage, _ = ground.stage_of(result)
+        rows = np.flatnonzero(ensemble.stage == stage)
+        rows = rows[ground.thinned(len(rows), 3 * 4 * len(result.connectivity) // 2)]
+        loads = ensemble.load[rows]
+        shown = members.increments_at(result, stage, loads)
+        mean, half = members.mean_and_half_width(group, rows, stage)
+        member = ground.states_of_run(shown, f"representative member ({name})")
+    except Missing as reason:
+        builder.note(reason)
+        return
+    member.bits = 14  # three sets are three times the bytes
+    packed = ground.shown(result, stage, loads, [mean, half, member])
+    packed["tunnel"] = stage == "volume_loss"
+    packed["sets"][0]["mean"] = packed["sets"][2]["followed"] = True
+    if stage == "volume_loss":
+        beside = builder.charts(curves.of_ensemble(group, loads))
+    else:
+        beside = builder.charts(element_curves.of_specimens(ensemble) if stage == "biaxial_bvp" else [])
+    run_page.add_ground(builder, packed, run_page.first_point(result, "an ensemble"), beside)
+
+
+def _origin(builder: Builder, of: facts.Facts, each: list[facts.Facts]) -> None:
+    """The cost of every member in one table, then input and provenance."""
+    costs = [dict(facts.cost(one)) for one in each]
+    names = list(dict.fromkeys(name for told in costs for name in told))
+    head = ("", *(one.folder.name for one in each))
+    builder.page.add(
+        "Cost",
+        markup.table(head, [(name, *(told.get(name, "–") for told in costs)) for name in names]) if names else "",
+    )
+    builder.origin(of)

@@ -1,0 +1,143 @@
+"""The points of a sweep for its page: means of results with bands, and curves that can lie over one another."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from voussoir_plots import reaction, settlements, troughs
+from voussoir_plots.element_tests import Series
+from voussoir_plots.ensemble import Bands
+from voussoir_plots.result import Missing, Result, RunIndex
+from voussoir_plots.settings import Settings
+from voussoir_plots.study.bands import number, of_members
+from voussoir_plots.study.data import Tunnel
+from voussoir_plots.sweep_table import Run, SweepTable
+
+from .pack import numbers
+
+LOSSES = (0.02, 0.05, 0.1, 0.15, 0.2)  # V_l of the troughs that the page offers [-]
+STRAINS = 81  # places of a biaxial test's curve
+Curves = dict[str, list[dict[str, Any]]]  # by the chart's key: x, y, band, and a note where a point has several
+
+CHARTS = {  # key: title, label of x, label of y, further settings for charts.js
+    "settlement": (
+        "Settlement of the surface above the crown",
+        "volume loss V_l [%]",
+        "settlement S [mm]",
+        {"zero": True},
+    ),
+    "reaction": ("Ground reaction", "volume loss V_l [%]", "σ_v / σ_v,0 above the crown [-]", {"zero": True}),
+    **{
+        f"trough {100 * loss:g}": (
+            f"Surface trough at V_l = {100 * loss:g} %",
+            "distance from the tunnel's axis x [m]",
+            "settlement S [mm]",
+            {"zero": True, "down": True},
+        )
+        for loss in LOSSES
+    },
+    "ratio": ("Stress ratio", "axial strain [%]", "q/p [-]", {"zero": True, "xzero": True}),
+    "volume": ("Volumetric strain", "axial strain [%]", "ε_v, contraction positive [%]", {"xzero": True}),
+}
+
+
+class Point:
+    """One point of a sweep: the members of an ensemble, or a single run."""
+
+    def __init__(self, table: SweepTable, name: str, runs: list[Run], settings: Settings) -> None:
+        self.name, self.runs, self.settings = name, runs, settings
+        self.root: Path = table.folder
+        self.folder = table.folder / name
+        self.kind, self.grid = runs[0].kind, runs[0].grid
+        self.faults: list[Missing] = []
+
+    def axes(self) -> dict[str, str]:
+        """The axes of the point: those whose value all of its members share."""
+        first = self.runs[0].axes
+        return {name: value for name, value in first.items() if all(r.axes.get(name) == value for r in self.runs)}
+
+    def results(self) -> dict[str, list[float | None]]:
+        """[mean, half width of the 95 % band of the mean, members] of each result, over the runs that ended well."""
+        good = [run for run in self.runs if not run.failed]
+        told = {}
+        for name in dict.fromkeys(name for run in good for name in run.results):
+            found = number([run.results.get(name, np.nan) for run in good])
+            if found.count:
+                told[name] = numbers(np.array([found.mean, found.half_width, found.count]))
+        return told
+
+    def members(self) -> list[Result]:
+        """The results of the point's runs on a mesh that have come to their volume loss; the faults keep the reasons
+        of the others."""
+        found = []
+        for run in self.runs:
+            try:
+                result = Result(self.root / run.name, self.settings)
+                if self.kind == "tunnel":
+                    _ = result.loss_increments  # raises where there is no volume loss
+                found.append(result)
+            except Missing as reason:
+                self.faults.append(reason)
+        return found
+
+    def curves(self, members: list[Result]) -> Curves:
+        """All curves that the point's data allow."""
+        found: Curves = {}
+        try:
+            if self.kind == "tunnel" and members:
+                _of_tunnel(found, Tunnel(self.name, members))
+            elif self.kind == "biaxial":
+                for run in self.runs:
+                    _of_tests(found, Series(RunIndex(self.root / run.name)))
+            elif self.kind == "biaxial_bvp" and members:
+                _of_specimens(found, members)
+        except Missing as reason:
+            self.faults.append(reason)
+        return found
+
+
+def _curve(x: np.ndarray, bands: Bands, factor: float = 1.0, note: str = "") -> dict[str, Any]:
+    told: dict[str, Any] = {"x": numbers(x, 4), "y": numbers(factor * bands.mean, 4), "note": note}
+    if np.isfinite(bands.mean_half_width).any():
+        told["band"] = numbers(factor * bands.mean_half_width, 3)
+    return told
+
+
+def _of_tunnel(found: Curves, tunnel: Tunnel) -> None:
+    loss = tunnel.loss
+    found["settlement"] = [_curve(100 * loss, tunnel.over_loss(lambda r: settlements.on_axis(r, 0.0)), 1e3)]
+    found["reaction"] = [_curve(100 * loss, tunnel.over_loss(lambda r: reaction.curve(r)[1]))]
+    for wanted in LOSSES:
+        if loss[-1] < wanted - 1e-9:
+            continue
+        at = tunnel.nearest(wanted)
+        lines = [troughs.line_at(member, 0.0) for member in tunnel.members]
+        rows = [int(np.argmin(np.abs(member.volume_loss - at))) for member in tunnel.members]
+        values = [
+            line.settlement(member.loss_increments[row]) for line, member, row in zip(lines, tunnel.members, rows)
+        ]
+        if len({len(value) for value in values}) > 1:
+            raise Missing(f"the members of {tunnel.name} have different meshes")
+        found[f"trough {100 * wanted:g}"] = [_curve(lines[0].x, of_members(values), 1e3)]
+
+
+def _of_tests(found: Curves, series: Series) -> None:
+    """Means over the packings of a run, a curve for each pressure."""
+    strain = np.linspace(0, series.strain_grid()[-1], STRAINS)
+    for pressure in series.pressures:
+        tests = series.of_pressure(pressure)
+        if not tests:
+            continue
+        note = f"{pressure / 1e3:g} kPa"
+        for key, name, factor in (("ratio", "q_over_p", 1.0), ("volume", "volumetric_strain", 100.0)):
+            bands = of_members([test.at(strain, name) for test in tests])
+            found.setdefault(key, []).append(_curve(100 * strain, bands, factor, note))
+
+
+def _of_specimens(found: Curves, members: list[Result]) -> None:
+    for key, name, factor in (("ratio", "q_over_p", 1.0), ("volume", "volumetric_strain", 100.0)):
+        each = [result.stage("biaxial_bvp") for result in members]
+        count = min(len(increments) for increments in each)
+        axial = np.array([i["axial_strain"] for i in each[0][:count]], dtype=float)
+        values = [[float(i[name]) for i in increments[:count]] for increments in each]
+        found[key] = [_curve(100 * axial, of_members(values), factor)]
