@@ -57,8 +57,8 @@ def _cell(text: str) -> str:
 
 def _tunnels(study: Study) -> list[str]:
     lines = [
-        "Numbers are means over the members ± half width of the 95 % band of the mean; a number without ± is of a single "
-        "run, or the members do not differ in it.",
+        "Numbers are means over the members ± half width of the 95 % band of the mean. A number without ± is of a",
+        "single run, or the members do not differ in it.",
         "",
         "| tunnel | soil | C/D | members | V_l to | member of the fields |",
         "|---|---|---|---|---|---|",
