@@ -8,6 +8,7 @@ from voussoir_plots.study.data import Tunnel
 
 from . import ground
 from .fields import FIELDS
+from .run_page import first_point
 
 KEPT = ("deviatoric_strain", "void_ratio", "grain_rotation", "rve_status")  # besides the displacements
 BITS = 10
@@ -38,6 +39,7 @@ def small(members: list[Result], frames: int) -> dict[str, Any]:
     states.bits = BITS
     packed = ground.shown(result, stage, np.array([i["load_parameter"] for i in shown]), [states])
     packed["tunnel"] = stage == "volume_loss"
+    packed["first"] = first_point(result, "a tunnel" if packed["tunnel"] else "")
     return packed
 
 
