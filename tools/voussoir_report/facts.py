@@ -40,8 +40,8 @@ class Facts:
         return len(self.table.get("stage", ()))
 
     def column(self, name: str) -> np.ndarray:
-        """A numeric column; zeros where the run did not write it."""
-        return np.asarray(self.table.get(name, np.zeros(self.increments)), dtype=float)
+        """A numeric column; zeros where the run did not write it, as in rows that hold the start of a stage."""
+        return np.nan_to_num(np.asarray(self.table.get(name, np.zeros(self.increments)), dtype=float))
 
 
 def read(folder: Path, index: str = "run.h5") -> Facts:

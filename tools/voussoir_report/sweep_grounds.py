@@ -10,7 +10,15 @@ from . import ground
 from .fields import FIELDS
 from .run_page import first_point
 
-KEPT = ("deviatoric_strain", "void_ratio", "grain_rotation", "rve_status")  # besides the displacements
+KEPT = (  # besides the displacements
+    "deviatoric_strain",
+    "volumetric_strain",
+    "void_ratio",
+    "grain_rotation",
+    "mean_stress",
+    "deviatoric_stress",
+    "rve_status",
+)
 BITS = 10
 MOST_FRAMES = 11
 ALL_VALUES = 1_200_000  # frames × points of all views together: about 5 MB
