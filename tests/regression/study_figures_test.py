@@ -119,7 +119,10 @@ class Fabric(unittest.TestCase):
 
 def study(*words):
     done = subprocess.run(
-        [sys.executable, str(ROOT / "tools/study.py"), *map(str, words)], check=False, capture_output=True, text=True
+        [sys.executable, str(ROOT / "tools/compare_tunnels.py"), *map(str, words)],
+        check=False,
+        capture_output=True,
+        text=True,
     )
     return done.returncode, done.stdout, done.stderr
 

@@ -1,5 +1,6 @@
 """sweep.h5 (io/FORMAT.md): one row a run, with how it ended, its values of the axes, its cost and its results."""
 
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,6 @@ from .result import Unreadable, check_format, plain, reading
 from .sweep import INDEX, Sweep
 
 COST = {"wall_s": "s", "particle_steps": "-", "iterations": "-"}
-DONE = ("finished", "complete", "done")  # statuses of runs without a fault, besides the exit code 0
 
 
 @dataclass
@@ -93,13 +93,19 @@ def _row(k: int, columns: dict[str, list], axes: dict[str, list[str]], results: 
 
 
 def _of_folders(sweep: Sweep) -> list[Run]:
-    return [
-        Run(
-            member.name,
-            "unknown",
-            kind=member.kind,
-            grid=member.name.rpartition("/")[0].split("/")[0],
-            axes=member.axes,
-        )
-        for member in sweep.members
-    ]
+    """The runs in the folders, and those that ended without one, as DIR/outcomes tells."""
+    runs = {m.name: Run(m.name, "not ended", kind=m.kind, grid=_grid(m.name), axes=m.axes) for m in sweep.members}
+    for path in sorted((sweep.folder / "outcomes").glob("*.json")):
+        name = path.stem.replace("__", "/")
+        try:
+            told = json.loads(path.read_text())
+            status, code, reason = str(told["status"]), int(told["exit_code"]), str(told.get("reason", ""))
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            continue  # half written by a killed run, whose folder is there all the same
+        run = runs.setdefault(name, Run(name, status, grid=_grid(name)))
+        run.status, run.exit_code, run.reason = status, code, reason
+    return list(runs.values())
+
+
+def _grid(name: str) -> str:
+    return name.split("/", maxsplit=1)[0] if "/" in name else ""

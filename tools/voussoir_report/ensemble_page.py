@@ -6,6 +6,7 @@ import numpy as np
 from voussoir_plots.catalogue import Figures, figures_of
 from voussoir_plots.ensemble import INDEX, Ensemble
 from voussoir_plots.result import Missing, Result
+from voussoir_plots.study import judging
 
 from . import curves, element_curves, facts, ground, markup, members, paper_sentences, pictures, run_page
 from .markup import Page
@@ -29,14 +30,16 @@ def make(ensemble: Ensemble, folder: Path, only: list[str] | None = None) -> Bui
             f"Clicked points and the study's further figures are of {name}, whose curves lie nearest to the mean."
         )
         _ground(builder, group, name, result)
+    study = paper_sentences.study_of(folder, ensemble.settings)
     drawn = pictures.draw_all(pictures.chosen(_figures(ensemble), only), ensemble)
     if result is not None:
         of_a_run = SORTS.get(ground.stage_of(result)[0], "a tunnel")
         further = pictures.draw_all(pictures.chosen(figures_of(of_a_run), only), result, f"One member: {name}.")
         drawn += further
         if of_a_run == "a tunnel":
-            builder.trends(result, f" ({name})")
-    paper_sentences.apply(drawn.pictures, paper_sentences.study_of(folder, ensemble.settings))
+            for tunnel in study.tunnels if study else []:
+                builder.judged("The study's trends, judged over the members", judging.of_tunnel(tunnel))
+    paper_sentences.apply(drawn.pictures, study)
     builder.figures(drawn)
     _origin(builder, of, each)
     return builder

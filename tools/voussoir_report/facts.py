@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from voussoir_plots.result import Missing, check_format, plain, reading
 
-MOST_NAMED = 12  # increments that a warning names one by one
+MOST_NAMED = 12  # unconverged increments that a warning names one by one; of other warnings FEW
+FEW = 4
 SUMS = {  # columns of the table whose sums tell the cost: label, factor, unit
     "wall_s": ("wall time without output", 1.0, "s"),
     "time_grains": ("of it: grains", 1.0, "s"),
@@ -39,8 +40,8 @@ class Facts:
         return len(self.table.get("stage", ()))
 
     def column(self, name: str) -> np.ndarray:
-        """A numeric column; zeros where the run did not write it."""
-        return np.asarray(self.table.get(name, np.zeros(self.increments)), dtype=float)
+        """A numeric column; zeros where the run did not write it, as in rows that hold the start of a stage."""
+        return np.nan_to_num(np.asarray(self.table.get(name, np.zeros(self.increments)), dtype=float))
 
 
 def read(folder: Path, index: str = "run.h5") -> Facts:
@@ -103,7 +104,7 @@ def warnings(facts: Facts) -> list[str]:
     unconverged = facts.column("converged") == 0 if "converged" in facts.table else np.zeros(facts.increments, bool)
     if unconverged.any():
         told = f"NOT CONVERGED: {counted(unconverged.sum(), 'increment')} of {facts.increments}"
-        found.append(f"{told}: {named(facts, unconverged, 'residual', 'residual {:.2g}')}.")
+        found.append(f"{told}: {named(facts, unconverged, 'residual', 'residual {:.2g}', MOST_NAMED)}.")
     for name, what, unit in (
         ("cuts", "cut (halved)", "cut"),
         ("step_limit_points", "left with RVEs at the step limit, which are not at rest", "RVE"),
@@ -123,11 +124,11 @@ def counted(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"
 
 
-def named(facts: Facts, where: np.ndarray, column: str, form: str) -> str:
+def named(facts: Facts, where: np.ndarray, column: str, form: str, most: int = FEW) -> str:
     """The increments of a mask by stage and load, e.g. "volume_loss 2.5 % (3 RVEs)"; the worst where they are many."""
     rows = np.flatnonzero(where)
     values = facts.column(column)
-    few = sorted(rows[np.argsort(-values[rows], kind="stable")][:MOST_NAMED])
+    few = sorted(rows[np.argsort(-values[rows], kind="stable")][:most])
     parts = [f"{_place(facts, k)} ({form.format(values[k])})" for k in few]
     rest = f" and {len(rows) - len(few)} others" if len(rows) > len(few) else ""
     return ("the worst are " if rest else "") + ", ".join(parts) + rest

@@ -71,7 +71,7 @@ def all_figures(drawn: Iterable[Picture], study: Study | None) -> list[tuple[str
                 if study is not None
                 else "No data: the sweep has no tunnel that can be read."
             )
-        rows.append((number(figure), figure.what, text))
+        rows.append((number(figure).replace(" ", "\u00a0"), figure.what, text))
     return rows
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from voussoir_plots import trend_table
 from voussoir_plots.output import is_of_the_machine
 from voussoir_plots.result import Missing, Result, Unreadable
+from voussoir_plots.study import judging
 
 from . import facts, markup
 from .markup import Page
@@ -55,7 +56,13 @@ class Builder:
             content = "".join(f"<li>{markup.text(line)}</li>" for line in lines)
             self.page.add("What is missing, and why", f"<ul>{content}</ul>")
 
-    def trends(self, result: Result, of: str = "") -> None:
+    def judged(self, title: str, rows: Sequence[judging.Judged]) -> None:
+        """Trends that are judged over several members or tunnels."""
+        self.faults += [f"{row.statement}: {error}" for row in rows for error in row.faults]
+        shown = [(row.statement, f"<b>{markup.text(row.verdict)}</b>", row.numbers) for row in rows]
+        self.page.add(title, markup.table(("trend", "verdict", "numbers"), shown))
+
+    def trends(self, result: Result) -> None:
         """The study's trends, each seen or not."""
         rows, faults = trend_table.table(result)
         for error in faults:
@@ -63,7 +70,7 @@ class Builder:
                 raise error
             self.faults.append(f"trends: {type(error).__name__}: {error}")
         shown = [(row.statement, f"<b>{markup.text(row.verdict)}</b>", row.numbers) for row in rows]
-        self.page.add(f"The study's trends{of}", markup.table(("trend", "verdict", "numbers"), shown))
+        self.page.add("The study's trends", markup.table(("trend", "verdict", "numbers"), shown))
 
     def origin(self, of: facts.Facts) -> None:
         """Cost, input and provenance of one run."""

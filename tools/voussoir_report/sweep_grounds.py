@@ -8,8 +8,17 @@ from voussoir_plots.study.data import Tunnel
 
 from . import ground
 from .fields import FIELDS
+from .run_page import first_point
 
-KEPT = ("deviatoric_strain", "void_ratio", "grain_rotation", "rve_status")  # besides the displacements
+KEPT = (  # besides the displacements
+    "deviatoric_strain",
+    "volumetric_strain",
+    "void_ratio",
+    "grain_rotation",
+    "mean_stress",
+    "deviatoric_stress",
+    "rve_status",
+)
 BITS = 10
 MOST_FRAMES = 11
 ALL_VALUES = 1_200_000  # frames × points of all views together: about 5 MB
@@ -38,6 +47,7 @@ def small(members: list[Result], frames: int) -> dict[str, Any]:
     states.bits = BITS
     packed = ground.shown(result, stage, np.array([i["load_parameter"] for i in shown]), [states])
     packed["tunnel"] = stage == "volume_loss"
+    packed["first"] = first_point(result, "a tunnel" if packed["tunnel"] else "")
     return packed
 
 

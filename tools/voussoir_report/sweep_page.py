@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 from voussoir_plots.catalogue import figures_of
-from voussoir_plots.result import Missing, Result
+from voussoir_plots.result import Missing
+from voussoir_plots.study import judging
+from voussoir_plots.study.catalogue import STUDY_FIGURES
 from voussoir_plots.style import CYCLE
 from voussoir_plots.sweep import Sweep
 from voussoir_plots.sweep_table import COST, Run, SweepTable
@@ -38,12 +40,15 @@ def make(sweep: Sweep, folder: Path, only: list[str] | None = None) -> Builder:
             for fault in point.faults:
                 builder.note(fault)
     builder.page.data |= {"sweep": _data(table, points, curves, grounds), "colourMaps": colour_maps()}
-    _compare(builder, points, members, grounds)
+    _compare(builder, points, curves, grounds)
     drawn = pictures.draw_all(pictures.chosen(figures_of("a sweep"), only), sweep)
     study = paper_sentences.study_of(folder, sweep.settings)
+    if study is not None:
+        drawn += pictures.draw_all(pictures.chosen(STUDY_FIGURES, only), study)
     paper_sentences.apply(drawn.pictures, study)
     builder.figures(drawn)
     if study is not None:
+        builder.judged("Trends between the tunnels", judging.between(study))
         rows = paper_sentences.all_figures(drawn.pictures, study)
         builder.page.add(
             "The paper's figures and tables", markup.table(("", "what it shows", "how ours compares"), rows)
@@ -113,13 +118,11 @@ def _group(point: Point) -> str:
     return f"{point.grid} ({point.kind})" if point.grid else point.kind
 
 
-def _compare(
-    builder: Builder, points: Sequence[Point], members: dict[str, list[Result]], grounds: dict[str, Any]
-) -> None:
+def _compare(builder: Builder, points: Sequence[Point], curves: dict[str, Curves], grounds: dict[str, Any]) -> None:
     """A place for each group of points that can be compared, and one for the small views of the ground."""
     for group in dict.fromkeys(_group(point) for point in points):
         inside = [point for point in points if _group(point) == group]
-        if any(point.results() for point in inside) or any(members[point.name] for point in inside):
+        if any(point.results() for point in inside) or any(curves[point.name] for point in inside):
             builder.page.add(f"Comparison: {group}", f'<div data-group="{markup.text(group)}"></div>')
     if grounds:
         builder.page.add("The ground of a point", '<div id="small"></div>')

@@ -152,5 +152,6 @@ class SweepView {
     const { view, panel } = await startGround(host, sliding, kept, this.colourMaps, [], pointHost);
     this.report.views[0] = view;
     this.report.panels[0] = panel;
+    view.pick(kept.first);
   }
 }
