@@ -2,8 +2,8 @@
 """Draws the paper's comparisons of tunnels: tools/compare_tunnels.py RUN ENSEMBLE ... [-o DIR] [--only NAME ...].
 
 Runs and ensembles of tunnels that are named one by one, with the bands of members; study.md says which of the paper's
-figures has which file, and how our results compare. Of a sweep tools/figures.py draws the same. voussoir_plots/README.md
-describes it.
+figures has which file, and how our results compare. Of a sweep tools/figures.py draws the same.
+voussoir_plots/README.md describes it.
 """
 
 import argparse

@@ -7,6 +7,7 @@ from typing import Any
 
 from .. import output, paper
 from ..resolution import percent
+from ..result import Missing
 from . import fields, initial, judging, microstructure, paths, settlements, stresses
 from .data import Study, Tunnel, open_study
 
@@ -93,6 +94,8 @@ def _figures(study: Study) -> list[str]:
 def _of_sweep(name: str, sweep: Any, path: Path) -> None:
     """The same for a sweep that is opened already (`..sweep`): its study is opened once and kept with it."""
     kept = sweep.__dict__
+    if not any(member.kind == "tunnel" for member in sweep.members):
+        raise Missing("the sweep has no tunnel")
     if "_study" not in kept:
         kept["_study"] = open_study([sweep.folder], sweep.settings)
     {**STUDY_FIGURES, "study.md": write}[name](kept["_study"], path)

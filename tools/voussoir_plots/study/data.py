@@ -154,17 +154,25 @@ def open_study(folders: Sequence[Path], settings: Settings | None = None) -> Stu
     tunnels: list[Tunnel] = []
     left_out: list[Missing] = []
     for folder in folders:
-        for place in _points(folder):
-            members = []
-            for run in _members(place, left_out):
-                try:
-                    members.append(_tunnel(Result(run, settings)))
-                except Missing as reason:
-                    left_out.append(_naming(run, reason))
-            members = _equally_far(members, left_out)
-            if members:
-                tunnels.append(Tunnel(place.resolve().name, members))
+        try:
+            places = _points(folder)
+        except Missing as reason:
+            left_out.append(reason)
+            continue
+        tunnels += [tunnel for place in places if (tunnel := _read(place, settings, left_out))]
     return Study(tunnels, left_out)
+
+
+def _read(place: Path, settings: Settings | None, left_out: list[Missing]) -> Tunnel | None:
+    """The tunnel of one run or ensemble; nothing where none of its members can be read."""
+    members = []
+    for run in _members(place, left_out):
+        try:
+            members.append(_tunnel(Result(run, settings)))
+        except Missing as reason:
+            left_out.append(_naming(run, reason))
+    members = _equally_far(members, left_out)
+    return Tunnel(place.resolve().name, members) if members else None
 
 
 def _naming(folder: Path, reason: Missing) -> Missing:
