@@ -170,6 +170,8 @@ def main() -> int:
         return INTERRUPTED
     forget_lost(folder, names)
     code, asked = call(words)
+    if asked and given.slurm:
+        slurm_queue.cancel(folder)
     if code == WRONG_INPUT:
         return code  # wrong options, or another Snakemake has just begun
     end = report(program, given.sweep, folder, names, asked)

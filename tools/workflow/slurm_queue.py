@@ -27,6 +27,13 @@ def jobs_of(folder: Path) -> list[str]:
     return [row[0] for row in rows if len(row) == 2 and row[1].startswith(prefix(folder))]
 
 
+def cancel(folder: Path) -> None:
+    """Cancels the jobs of this folder. Snakemake does so when it is stopped, but not for jobs whose state it is just
+    asking for."""
+    if jobs := jobs_of(folder):
+        subprocess.run(["scancel", *jobs], check=False)
+
+
 def wait(folder: Path, sleep: Callable[[float], None]) -> None:
     """Returns when the queue holds no job of this folder."""
     said = False
