@@ -1,6 +1,9 @@
 // How the ground view draws itself, and what the reader's hand does to it.
 "use strict";
 
+// Each quarter is drawn larger by this on all sides [px], so that no seams show between them; lines would be slower.
+const AIR = 0.4;
+
 Object.assign(GroundView.prototype, {
   // Scale and middle of the view: the whole ground unless the reader has moved it.
   fit() {
@@ -34,12 +37,12 @@ Object.assign(GroundView.prototype, {
     return this.colourMaps[this.shown.band ? "viridis" : field.map];
   },
 
-  colour(value) {
-    const field = this.field, map = this.map(field);
-    if (!Number.isFinite(value)) return "#bbbbbb";
-    if (field.levels && !this.shown.band) return (field.levels[Math.round(value)] || { colour: "#bbbbbb" }).colour;
-    const [low, high] = this.limits;
-    return map[Math.min(255, Math.max(0, Math.floor(256 * (value - low) / (high - low))))];
+  // The function that gives a value its colour; what does not depend on the value is looked up once.
+  palette() {
+    const field = this.field, map = this.map(field), [low, high] = this.limits, none = "#bbbbbb";
+    if (field.levels && !this.shown.band) return (value) => field.levels[Math.round(value)]?.colour || none;
+    const slope = 256 / (high - low);
+    return (value) => (Number.isFinite(value) ? map[Math.min(255, Math.max(0, Math.floor(slope * (value - low))))] : none);
   },
 
   draw() {
@@ -66,26 +69,27 @@ Object.assign(GroundView.prototype, {
 
   path(pen, point) {
     const c = this.corners, { scale, x, y } = this.zoom, [mx, my] = this.center;
-    const at = (k) => [mx + (c[8 * point + k] - x) * scale, my - (c[8 * point + k + 1] - y) * scale];
-    pen.moveTo(...at(0));
-    for (let k = 2; k < 8; k += 2) pen.lineTo(...at(k));
+    const first = 8 * point, px = (k) => mx + (c[first + k] - x) * scale, py = (k) => my - (c[first + k + 1] - y) * scale;
+    const cx = (px(0) + px(2) + px(4) + px(6)) / 4, cy = (py(0) + py(2) + py(4) + py(6)) / 4;
+    for (let k = 0; k < 8; k += 2) {
+      const qx = px(k) + (px(k) > cx ? AIR : -AIR), qy = py(k) + (py(k) > cy ? AIR : -AIR);
+      if (k === 0) pen.moveTo(qx, qy); else pen.lineTo(qx, qy);
+    }
     pen.closePath();
   },
 
-  // Points of one colour are drawn together; the line of the same colour closes the seams between them.
+  // Points of one colour are drawn together.
   drawPoints(pen) {
-    const groups = new Map();
+    const groups = new Map(), colourOf = this.palette();
     this.values.forEach((value, p) => {
-      const colour = this.colour(value);
+      const colour = colourOf(value);
       if (groups.has(colour)) groups.get(colour).push(p); else groups.set(colour, [p]);
     });
-    pen.lineWidth = 0.7;
     for (const [colour, members] of groups) {
       pen.beginPath();
       for (const p of members) this.path(pen, p);
-      pen.fillStyle = pen.strokeStyle = colour;
+      pen.fillStyle = colour;
       pen.fill();
-      pen.stroke();
     }
     if (this.point === null) return;
     for (const [colour, line] of [["white", 5], ["black", 2]]) {
