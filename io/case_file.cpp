@@ -193,6 +193,7 @@ CaseNode* Table::find(std::string_view key) const {
 }
 
 std::string Table::full_key(std::string_view key) const {
+  if (key.empty()) return node_->key;
   return node_->key.empty() ? std::string(key) : fmt::format("{}.{}", node_->key, key);
 }
 

@@ -93,7 +93,8 @@ class Table {
 
   /// "sweep.toml:12", where the key stands; the table's own place where the file does not hold the key.
   [[nodiscard]] std::string place(std::string_view key) const;
-  /// An error at this key's place in the file, for checks that need more than one value.
+  /// An error at this key's place in the file, for checks that need more than one value; with an empty key one of the
+  /// table itself.
   [[nodiscard]] InputError error(std::string_view key, const std::string& sentence) const;
 
  private:

@@ -1,6 +1,10 @@
 #!/usr/bin/env python3
-"""Draws several tunnels beside one another and states the study's trends between them: tools/compare_tunnels.py RUN RUN
-... -o DIR."""
+"""Draws the paper's comparisons of tunnels: tools/compare_tunnels.py RUN ENSEMBLE ... [-o DIR] [--only NAME ...].
+
+Runs and ensembles of tunnels that are named one by one, with the bands of members; study.md says which of the paper's
+figures has which file, and how our results compare. Of a sweep tools/figures.py draws the same. voussoir_plots/README.md
+describes it.
+"""
 
 import argparse
 import sys
@@ -8,42 +12,54 @@ from functools import partial
 from pathlib import Path
 
 try:
-    from voussoir_plots import comparison, guard, settings, style
+    from voussoir_plots import comparison, guard, settings
     from voussoir_plots.output import make_folder, say
-    from voussoir_plots.result import Missing, Result
-    from voussoir_plots.style import use_style
+    from voussoir_plots.result import Unreadable
+    from voussoir_plots.study.catalogue import STUDY_FIGURES, write
+    from voussoir_plots.study.data import open_study
+    from voussoir_plots.style import add_option, file_name, use_style
 except ModuleNotFoundError as missing:
     print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
     sys.exit(2)
 
 
+def draw_overview(study, path):
+    """Curves of all tunnels in one picture, each by the member that stands for it."""
+    comparison.draw([tunnel.representative for tunnel in study.tunnels], path)
+
+
+FILES = {"comparison.png": draw_overview, **STUDY_FIGURES, "study.md": write}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("results", type=Path, nargs="+", metavar="RUN", help="folders of runs")
-    parser.add_argument("-o", "--output", type=Path, required=True, help="folder for comparison.png and comparison.md")
-    style.add_option(parser)
+    parser.add_argument(
+        "folders", type=Path, nargs="+", metavar="DIR", help="a sweep, or runs and ensembles of tunnels"
+    )
+    parser.add_argument("-o", "--output", type=Path, help="folder for the figures; default: the sweep's own")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="write only these files, named without their ending")
+    add_option(parser)
     settings.add_options(parser)
     guard.add_option(parser)
     arguments = parser.parse_args()
+    if len(arguments.folders) > 1 and not arguments.output:
+        parser.error("name a folder for the figures of several runs by -o")
+    unknown = set(arguments.only or ()) - {Path(name).stem for name in FILES}
+    if unknown:
+        parser.error(f"there is no figure {', '.join(sorted(unknown))}")
     use_style()
     figures = guard.Guard(arguments.traceback)
-    results = []
-    for folder in arguments.results:
-        try:
-            results.append(comparison.tunnel(Result(folder, settings.parse(arguments))))
-        except Missing as reason:
-            say(f"left out: {reason if str(folder) in str(reason) else f'{folder}: {reason}'}", error=True)
+    study = open_study(arguments.folders, settings.parse(arguments))
+    for reason in study.left_out:
+        say(f"left out: {reason}", error=True)
+        if isinstance(reason, Unreadable):
             figures.unreadable()
-            continue
-        for lost in results[-1].left_out:
-            say(f"left out: {lost}", error=True)
-            figures.unreadable()
-    if not results:
-        raise Missing("there is no tunnel with a volume loss to compare")
-    make_folder(arguments.output)
-    for name, draw in {"comparison.png": comparison.draw, "comparison.md": comparison.write}.items():
-        file = style.file_name(name, arguments.format)
-        figures.make(file, arguments.output / file, partial(draw, results))
+    output = arguments.output or arguments.folders[0]
+    make_folder(output)
+    for name, draw in FILES.items():
+        if not arguments.only or Path(name).stem in arguments.only:
+            written = file_name(name, arguments.format)
+            figures.make(written, output / written, partial(draw, study))
     return figures.status
 
 

@@ -155,8 +155,8 @@ std::size_t wanted_tests(const PackingCase& recipe, const BiaxialCase& test) {
 Outcome outcome_of_tests(std::size_t valid, std::size_t wanted) {
   if (valid >= wanted) return Outcome::done;
   std::fprintf(stderr,
-               "biaxial: %zu of %zu tests are not valid: they ended early, or did not hold sigma_xx, or passed the "
-               "contact law's range (column `valid` of the table `strength`)\n",
+               "biaxial: %zu of %zu tests are not valid: they ended early, or did not hold sigma_xx, passed the "
+               "contact law's range, or have no packing at rest (column `valid` of the table `strength`)\n",
                wanted - valid, wanted);
   return Outcome::no_equilibrium;
 }

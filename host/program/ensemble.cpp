@@ -70,8 +70,8 @@ Ensemble prepare(const fs::path& case_file, const EnsembleOptions& given) {
 std::size_t run_members(Ensemble& ensemble, std::size_t up_to) {
   EnsembleMembers& members = ensemble.members;
   const std::size_t before = members.runs.size();
-  while (members.runs.size() < up_to)
-    members.runs.push_back(member_run(members, ensemble.case_file, ensemble.options.overrides, members.runs.size()));
+  for (std::size_t k = before; k < up_to; ++k)
+    add_member(members, member_run(members, ensemble.case_file, ensemble.options.overrides, k), k);
   run_processes(std::span(members.runs).subspan(before), ensemble.options.runs);
   write_summary(members.runs, members.folder / "summary.csv");  // before anything can fail
   return collect(members, before);

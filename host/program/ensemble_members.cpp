@@ -32,9 +32,16 @@ std::vector<io::EnsembleMember> members_of(const EnsembleMembers& ensemble) {
   std::vector<io::EnsembleMember> members;
   for (std::size_t k = 0; k < ensemble.runs.size(); ++k) {
     const ProcessRun& run = ensemble.runs[k];
-    members.push_back({run.name, seed_of(ensemble.input, k), name_of(run.end), run.end.code, ensemble.reduced[k]});
+    members.push_back(
+        {run.name, seed_of(ensemble.input, ensemble.numbers[k]), name_of(run.end), run.end.code, ensemble.reduced[k]});
   }
   return members;
+}
+
+/// One line on standard error, which names the point where there are several ensembles.
+void complain(const EnsembleMembers& ensemble, const std::string& sentence) {
+  std::fprintf(stderr, "voussoir: %s%s%s\n", ensemble.point.c_str(), ensemble.point.empty() ? "" : ": ",
+               sentence.c_str());
 }
 
 /// Names the members that did not end well: those with results up to the end, and those without.
@@ -51,8 +58,8 @@ void name_failed(const EnsembleMembers& ensemble, bool reduced) {
                                                  one ? "has" : "have", one ? "is" : "are")
                                    : fmt::format("{} no results up to the end and {} no part of", one ? "has" : "have",
                                                  one ? "is" : "are");
-  std::fprintf(stderr, "voussoir: %zu of %zu members %s the means and bands: %s\n", names.size(), ensemble.runs.size(),
-               what.c_str(), fmt::format("{}", fmt::join(names, ", ")).c_str());
+  complain(ensemble, fmt::format("{} of {} members {} the means and bands: {}", names.size(), ensemble.runs.size(),
+                                 what, fmt::join(names, ", ")));
 }
 
 /// Says whether the folder still belongs to this process, as a run does before each write.
@@ -87,8 +94,8 @@ bool reduce(const EnsembleMembers& ensemble, std::optional<double> error, const 
       ensemble.finished.begin(), ensemble.finished.end(),
       [](const MemberResults& a, const MemberResults& b) { return a.increments.size() < b.increments.size(); });
   if (most->increments.size() > data.increments.size()) {
-    std::fprintf(stderr, "voussoir: %zu increments of %s are left out, because another member lacks them\n",
-                 most->increments.size() - data.increments.size(), most->folder.c_str());
+    complain(ensemble, fmt::format("{} increments of {} are left out, because another member lacks them",
+                                   most->increments.size() - data.increments.size(), most->folder.string()));
   }
   fs::create_directories(folder / "fields");
   const bool whole = reduce_fields(ensemble.finished, rule, data.increments, folder, [&lock] {
@@ -113,6 +120,11 @@ ProcessRun member_run(const EnsembleMembers& ensemble, const fs::path& case_file
   return run;
 }
 
+void add_member(EnsembleMembers& ensemble, ProcessRun run, std::size_t member) {
+  ensemble.runs.push_back(std::move(run));
+  ensemble.numbers.push_back(member);
+}
+
 std::size_t collect(EnsembleMembers& ensemble, std::size_t from) {
   const std::size_t before = ensemble.finished.size();
   for (std::size_t k = from; k < ensemble.runs.size(); ++k) {
@@ -134,8 +146,8 @@ Outcome reduce_members(const EnsembleMembers& ensemble, std::optional<double> er
   remove_earlier_reduction(ensemble.folder);
   if (ensemble.finished.size() < 2) {
     io::write_text(ensemble.folder / "members.csv", members_csv(members_of(ensemble), ensemble.finished));
-    std::fprintf(stderr, "voussoir: means and bands need two members with results up to the end, and there %s\n",
-                 ensemble.finished.empty() ? "is none" : "is one");
+    complain(ensemble, fmt::format("means and bands need two members with results up to the end, and there {}",
+                                   ensemble.finished.empty() ? "is none" : "is one"));
     return outcome;
   }
   return reduce(ensemble, error, lock) ? outcome : Outcome::interrupted;

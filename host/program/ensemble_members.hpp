@@ -20,8 +20,10 @@ struct EnsembleMembers {
   Case input;                     ///< the case with the seed of the first member
   std::filesystem::path folder;   ///< of the ensemble
   std::string command;            ///< command line, which the provenance repeats
+  std::string point = {};         ///< its point of a sweep, which sentences on standard error begin with
   std::optional<Goal> goal = {};  ///< of --until
   std::vector<ProcessRun> runs = {};
+  std::vector<std::size_t> numbers = {};     ///< (run) which member it is; members that were not run are left out
   std::vector<bool> reduced = {};            ///< (run) its results are among `finished`
   std::vector<MemberResults> finished = {};  ///< in the order of the runs
 };
@@ -29,6 +31,9 @@ struct EnsembleMembers {
 /// The run of a member, with its own seed, in its folder.
 [[nodiscard]] ProcessRun member_run(const EnsembleMembers& ensemble, const std::filesystem::path& case_file,
                                     const std::vector<std::string>& overrides, std::size_t member);
+
+/// Adds the run of a member.
+void add_member(EnsembleMembers& ensemble, ProcessRun run, std::size_t member);
 
 /// Reads the results of the runs from number `from` on that came to their end. Returns how many of them did.
 std::size_t collect(EnsembleMembers& ensemble, std::size_t from);

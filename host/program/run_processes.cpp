@@ -128,13 +128,15 @@ void run_processes(std::span<ProcessRun> runs, const ProcessOptions& options) {
       if (interrupted()) break;
       running.emplace(start(run, options), &run);
     }
-  } catch (...) {  // for example no process is left: the runs that have begun are stopped and waited for
+    while (!running.empty()) wait_for_one(running, passed_on, options);
+  } catch (...) {  // no process is left, or on_end fails: the runs that have begun are stopped and waited for
     for (const auto& [child, run] : running) kill(child, SIGUSR1);
     passed_on = true;
-    while (!running.empty()) wait_for_one(running, passed_on, options);
+    ProcessOptions last = options;
+    last.on_end = {};  // it may fail again
+    while (!running.empty()) wait_for_one(running, passed_on, last);
     throw;
   }
-  while (!running.empty()) wait_for_one(running, passed_on, options);
 }
 
 int threads_of_a_run(const ProcessOptions& options) {

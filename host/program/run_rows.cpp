@@ -8,19 +8,27 @@
 
 namespace voussoir::host {
 
-io::SweepRow row_of(const ProcessRun& run) {
-  io::SweepRow row{.name = run.name, .status = name_of(run.end), .exit_code = run.end.code, .reason = run.reason};
+io::SweepRow row_of(ProcessRun& run) {
+  io::SweepRow row;
   try {
-    add_results(row, run.folder);
+    if (run.end.outcome != Outcome::wrong_input) add_results(row, run.folder);
   } catch (const std::exception& damage) {
     std::fprintf(stderr, "voussoir: the summary has no values of %s: %s\n", run.name.c_str(), damage.what());
+    if (run.end.outcome == Outcome::done || run.end.outcome == Outcome::no_equilibrium) {
+      run.end = end_of_code(exit_code(Outcome::machine_failure));
+      run.reason = damage.what();
+    }
   }
+  row.name = run.name;
+  row.status = name_of(run.end);
+  row.exit_code = run.end.code;
+  row.reason = run.reason;
   return row;
 }
 
-void write_summary(std::span<const ProcessRun> runs, const std::filesystem::path& file) {
+void write_summary(std::span<ProcessRun> runs, const std::filesystem::path& file) {
   std::vector<io::SweepRow> rows;
-  for (const ProcessRun& run : runs) rows.push_back(row_of(run));
+  for (ProcessRun& run : runs) rows.push_back(row_of(run));
   io::write_text(file, io::summary_csv(rows));
 }
 

@@ -1,15 +1,12 @@
 // The command `voussoir sweep`. Each run is a process of its own, so that it behaves as it does without a sweep.
 #include "host/sweep/sweep_file.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "host/process/interrupt.hpp"
 #include "host/process/standard_streams.hpp"
-#include "host/program/accept_case.hpp"
 #include "host/program/commands.hpp"
 #include "host/program/run_processes.hpp"
 #include "host/program/sweep_gather.hpp"
@@ -41,16 +38,18 @@ void run_and_keep(std::span<ProcessRun> runs, const fs::path& folder, ProcessOpt
   run_processes(runs, options);
 }
 
-/// Looks at the case and the folder of a run, before anything is written. A fault in the case is told with the run's
-/// place in the sweep.
+/// Refuses a folder that is none, is that of a run, or is held by another sweep: its runs would refuse to start, and
+/// how they ended before would be lost.
+void expect_folder_of_sweeps(const fs::path& folder) {
+  const auto refuse = [&folder](const char* sentence) { throw io::InputError("--output", folder.string(), sentence); };
+  if (fs::exists(folder) && !fs::is_directory(folder)) refuse("is not a folder");
+  if (fs::exists(folder / "run.h5")) refuse("holds the results of a run: choose another folder");
+  expect_unlocked(folder);
+}
+
+/// Looks at the case and the folder of a run, before anything is written.
 void expect_startable(const PlannedRun& planned, const ProcessRun& run, bool resume) {
-  const Case input = [&planned] {
-    try {
-      return accept_case(planned.case_file, planned.overrides).input;
-    } catch (const io::InputError& fault) {
-      throw io::InputError(planned.place, "set", fmt::format("run {}: {}", planned.name, fault.what()));
-    }
-  }();
+  const Case input = accept_run(planned).input;
   expect_unlocked(run.folder);
   check_folder({.folder = run.folder, .resume = resume, .command = {}}, identity_of(input));
 }
@@ -65,6 +64,7 @@ Outcome run_all(const SweepPlan& plan, const SweepOptions& given) {
   catch_interrupts();
   const RunLock lock(options.folder, options.runs.take_over);
   io::remove_leftovers(options.folder);
+  if (fs::exists(options.folder / "outcomes")) io::remove_leftovers(options.folder / "outcomes");
   if (!lock.note().empty()) std::printf("%s\n", lock.note().c_str());
   options.runs.threads = threads_of_a_run(options.runs);
   run_and_keep(runs, options.folder, options.runs);
@@ -95,16 +95,10 @@ Outcome command_sweep(const fs::path& sweep_file, const SweepOptions& given) {
   SweepOptions options = given;
   if (options.folder.empty()) options.folder = fs::path("out") / sweep_file.stem();
   const SweepPlan plan = load_sweep(sweep_file);
-  switch (options.task) {
-    case SweepTask::list:
-      return print_answer(list_of(plan, options.folder, options.json));
-    case SweepTask::run_one:
-      return run_one(plan, options);
-    case SweepTask::gather:
-      return gather_only(plan, options);
-    case SweepTask::run_all:
-      break;
-  }
+  if (options.task == SweepTask::list) return print_answer(list_of(plan, options.folder, options.json));
+  expect_folder_of_sweeps(options.folder);
+  if (options.task == SweepTask::run_one) return run_one(plan, options);
+  if (options.task == SweepTask::gather) return gather_only(plan, options);
   return run_all(plan, options);
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "host/estimate/report.hpp"
-#include "host/program/accept_case.hpp"
 #include "io/input_error.hpp"
 #include "io/run_list.hpp"
 
@@ -23,13 +22,7 @@ double rate_of(const Case& input) {
 }
 
 io::ListedRun listed(const PlannedRun& run, const fs::path& folder) {
-  const AcceptedCase accepted = [&run] {
-    try {
-      return accept_case(run.case_file, run.overrides);
-    } catch (const io::InputError& fault) {
-      throw io::InputError(run.place, "", fmt::format("run {}: {}", run.name, fault.what()));
-    }
-  }();
+  const AcceptedCase accepted = accept_run(run);
   const CaseSize& size = accepted.size;
   const double files = static_cast<double>(size.increments) / static_cast<double>(accepted.input.output.every);
   return {.name = run.name,
@@ -64,6 +57,14 @@ std::string table_of(const std::vector<io::ListedRun>& runs) {
 }
 
 }  // namespace
+
+AcceptedCase accept_run(const PlannedRun& run) {
+  try {
+    return accept_case(run.case_file, run.overrides);
+  } catch (const io::InputError& fault) {
+    throw io::InputError(run.place, "", fmt::format("run {}: {}", run.name, fault.what()));
+  }
+}
 
 std::string list_of(const SweepPlan& plan, const fs::path& folder, bool as_json) {
   std::vector<io::ListedRun> runs;

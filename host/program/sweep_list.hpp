@@ -4,12 +4,16 @@
 #include <filesystem>
 #include <string>
 
+#include "host/program/accept_case.hpp"
 #include "host/sweep/sweep_file.hpp"
 
 namespace voussoir::host {
 
-/// The runs as a table, or as JSON (io/run_list.hpp). Each case is accepted as `voussoir check` does it; throws
-/// io::InputError with the run's place where one is not.
+/// The case of a run, accepted as `voussoir check` does it. Throws io::InputError with the run's place in the sweep
+/// where it is not.
+[[nodiscard]] AcceptedCase accept_run(const PlannedRun& run);
+
+/// The runs as a table, or as JSON (io/run_list.hpp); throws what accept_run throws.
 [[nodiscard]] std::string list_of(const SweepPlan& plan, const std::filesystem::path& folder, bool as_json);
 
 }  // namespace voussoir::host

@@ -28,13 +28,13 @@ struct RunEnd {
 
 /// The first of these that holds for a run: interrupted (`--resume` goes on), machine failure (another try may
 /// succeed), wrong input, no equilibrium (no other try would change these two); done where all are. A run that was not
-/// started counts as interrupted, because only a request to stop keeps a run from being started.
+/// started counts as interrupted: `--resume` starts it.
 [[nodiscard]] Outcome outcome_of(std::span<const RunEnd> runs);
 
 /// The rule of outcome_of for `--help`.
 inline constexpr const char* sweep_rule =
     "Sweeps and ensembles tell in summary.csv how each run ended. Their own exit status is the first of these that "
-    "holds for a run: 130 (a run was stopped, or not started because of a request to stop), 4, 2, 3; 0 where all runs "
-    "are done. A run that a signal killed counts as 4.";
+    "holds for a run: 130 (a run was stopped, or was not started), 4, 2, 3; 0 where all runs are done. "
+    " A run that a signal killed counts as 4.";
 
 }  // namespace voussoir::host

@@ -165,6 +165,8 @@ class KnownAnswers(unittest.TestCase):
         self.assertIn("The smallest size that meets 0.1 at all strains has 200 grains.", table)
         self.assertIn("A larger one misses it again; from 400 grains on all meet it.", table)
         self.assertIn("| 300 | 3 | 0.120 (", table)
+        self.assertIn("| smallest that meets 0.1 | | 200 | 200 | 200 | 200 | 200 | 200 |", table)
+        self.assertEqual(study.smallest_not_excluded(), 200)  # the interval of 0.2 of three packings begins at 0.103
 
     def test_axes_of_a_sweep(self):
         """The values of the axes come from sweep.h5, an empty one being none; runs without results are left out."""

@@ -4,6 +4,8 @@ others are done; `sweep.h5` repeats `summary.csv`; kinds without a mesh have res
 
 import csv
 import json
+import subprocess
+import time
 from pathlib import Path
 
 import h5py
@@ -105,6 +107,15 @@ mean, wanted = bands(at_once / "tunnels/cover_ratio_2/ensemble.h5"), bands(alone
 check(mean.keys() == wanted.keys() and len(mean) > 10, f"the curves of the ensembles: {mean.keys() ^ wanted.keys()}")
 check(all(np.array_equal(mean[name], wanted[name], equal_nan=True) for name in mean), "the means of the ensembles")
 
+# A missing first member: the others keep their own seeds.
+seeds = [int(row["seed"]) for row in csv.DictReader((at_once / "tunnels/cover_ratio_2/members.csv").open())]
+(one_by_one / "outcomes/tunnels__cover_ratio_2__member_000.json").unlink()
+done = sweep("tunnels.toml", one_by_one, "--gather", code=130)
+left = list(csv.DictReader((one_by_one / "tunnels/cover_ratio_2/members.csv").open()))
+check([int(row["seed"]) for row in left] == seeds[1:], f"the seeds of the members that are left: {left}, {seeds}")
+check("voussoir: tunnels/cover_ratio_2: means and bands need two members" in done.stderr, f"which point: {done.stderr}")
+check(not (one_by_one / "tunnels/cover_ratio_2/ensemble.h5").exists(), "an ensemble of one member")
+
 # Runs without equilibrium are named with their reason; the others are done.
 failing = fresh("failing")
 done = sweep("elastic.toml", failing, "-j", "2", "--threads", "1", code=3)
@@ -129,6 +140,28 @@ check("cover_ratio_1-loose.json is no outcome" in done.stderr, f"a damaged outco
 (failing / "outcomes/cover_ratio_1-loose.json").unlink()
 done = sweep("elastic.toml", failing, "--gather", code=130)
 check("cover_ratio_1-loose (not run)" in done.stderr, f"a run without an outcome: {done.stderr}")
+
+# Gathering looks at what lies in the folders: results of another case, damaged ones, none.
+Path("changed.toml").write_text(ELASTIC.replace("volume_loss.increments=2", "volume_loss.increments=3"))
+done = sweep("changed.toml", failing, "--gather", code=2)
+check(done.stderr.count("(wrong input): its folder holds results of another case") == 4, f"{done.stderr}")
+check("surface_settlement" not in rows_of(failing)["cover_ratio_1.5-loose"], "results of another case in the table")
+(failing / "cover_ratio_1.5-loose/run.h5").write_text("junk")
+check("(machine failure)" in sweep("elastic.toml", failing, "--gather", code=130).stderr, "a damaged run.h5")
+(failing / "cover_ratio_1.5-loose/run.h5").unlink()
+check("its run.h5 is missing" in sweep("elastic.toml", failing, "--gather", code=130).stderr, "a missing run.h5")
+for path, sentence in ((failing / "cover_ratio_1-tight", "choose another folder"), ("elastic.toml", "is not a folder")):
+    check(sentence in sweep("elastic.toml", path, "--gather", code=2).stderr, f"--gather in {path}")
+
+# While another process holds the sweep, --only leaves its outcomes alone.
+with subprocess.Popen([PROGRAM, "sweep", "elastic.toml", "-o", "held", "--threads", "1"]) as holder:
+    while not Path("held/outcomes/cover_ratio_1-loose.json").exists() and holder.poll() is None:
+        time.sleep(0.02)
+    kept = Path("held/outcomes/cover_ratio_1-loose.json").read_text()
+    refused = sweep("elastic.toml", "held", "--only", "cover_ratio_1-loose", "--resume", code=None)
+    holder.terminate()
+check("is held by process" in refused.stderr and refused.returncode == 2, f"--only beside a sweep: {refused}")
+check(Path("held/outcomes/cover_ratio_1-loose.json").read_text() == kept, "--only has changed an outcome")
 
 # What cannot be asked for.
 for options, sentence in (

@@ -33,6 +33,7 @@ from . import (
     troughs,
     widths,
 )
+from .study.catalogue import OF_SWEEP
 
 Figures = dict[str, Callable[[Any, Path], None]]
 
@@ -79,6 +80,7 @@ SWEEP: Figures = {
     "rve_size_variation.png": rve_size_figures.draw_variation,
     "rve_size_curves.png": rve_size_figures.draw_curves,
     "rve_size.md": rve_size_figures.write_table,
+    **OF_SWEEP,
 }
 
 OF: dict[str, Figures] = {

@@ -50,7 +50,7 @@ def rows(result: Result, increment: Increment) -> list[tuple[str, str]]:
 
 
 def draw(result: Result, path: Path, losses: Sequence[float] = (), followed: Sequence[str] = ()) -> None:
-    """`losses`: V_l of the columns [-], in place of those of the settings; `followed`: only the RVEs at these points."""
+    """`losses`: V_l of the columns [-], in place of those of the settings; `followed`: only RVEs at these points."""
     chosen = [
         result.loss_increments[0],
         *(result.nearest(losses or result.settings.field_losses) or [result.loss_increments[-1]]),

@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from . import output, paths, points, resolution, settlements, trends, troughs, widths
+from . import paths, points, resolution, settlements, trends, troughs, widths
 from .reaction import curve
 from .resolution import percent
 from .result import Missing, Result
@@ -18,13 +18,6 @@ def name(result: Result) -> str:
     """ "dense sand, C/D = 3", for legends."""
     (diameter,) = result.need("diameter")
     return f"{result.soil}, $C/D$ = {result.cover / diameter:.3g}"
-
-
-def tunnel(result: Result) -> Result:
-    """The run itself; raises Missing where it is not a tunnel, or not at its volume loss yet."""
-    result.need("diameter", "axis_depth", "surface_y")
-    _ = result.loss_increments
-    return result
 
 
 def cover_ratio(result: Result) -> float:
@@ -235,36 +228,6 @@ TRENDS = (
     looser_is_less_connected,
     gravel_is_as_connected,
 )
-
-
-def write(results: Sequence[Result], path: Path) -> None:
-    faults: list[Exception] = []
-    lines = [
-        "# Trends between tunnels",
-        "",
-        "; ".join(
-            f"{r.folder.resolve().name}: {name(r).replace('$', '')}, V_l to {percent(r.volume_loss[-1])}"
-            for r in results
-        )
-        + ".",
-        "",
-        "| trend | verdict | numbers |",
-        "|---|---|---|",
-    ]
-    for judge in TRENDS:
-        try:
-            row = judge(results)
-        except Missing as reason:
-            row = trends.Trend(statement(judge), trends.NO_DATA, str(reason))
-        except Exception as error:
-            if output.is_of_the_machine(error):
-                raise
-            row = trends.fault(statement(judge), error)
-            faults.append(error)
-        lines.append(f"| {row.statement} | **{row.verdict}** | {row.numbers} |")
-    output.write(path, "\n".join(lines) + "\n")
-    if faults:
-        raise faults[0]  # the table is written, and the fault is told
 
 
 def statement(judge: Callable[[Sequence[Result]], trends.Trend]) -> str:

@@ -31,7 +31,7 @@ FIGURES = (
         "4",
         "biaxial curves, peak and critical state lines",
         ("biaxial_curves.png", "biaxial_strength.png", "biaxial_angles.png"),
-        of="the element tests",
+        of="the sweep's element tests",
     ),
     PaperFigure("5", "model, mesh and boundaries", missing="a sketch of the model"),
     PaperFigure("6", "stress, K0 and fabric after gravity", ("study_initial.png",), compare=sentences.initial),
@@ -70,10 +70,10 @@ FIGURES = (
     ),
     PaperFigure("23", "connectivity by soil", ("study_connectivity.png",), compare=micro_sentences.connectivity),
     PaperFigure("24", "strong networks at Aa by soil", ("study_strong.png",), compare=micro_sentences.strong_networks),
-    PaperFigure("A1", "scatter against the size of the RVE", ("rve_size.png",)),
+    PaperFigure("A1", "scatter against the size of the RVE", ("rve_size_variation.png", "rve_size.md")),
     PaperFigure("A2", "curves of RVEs of several sizes", ("rve_size_curves.png",)),
     PaperFigure("Table 1", "parameters of the grains", missing="it is an input: cases/soils has these numbers"),
-    PaperFigure("Table 2", "angles of the soils", ("table_2.md",), of="the element tests"),
+    PaperFigure("Table 2", "angles of the soils", ("table_2.md",), of="the sweep's element tests"),
 )
 
 

@@ -105,6 +105,15 @@ class SizeStudy:
         """The smallest size that meets the bound at all strains; None: no size does."""
         return next((size for k, size in enumerate(self.sizes) if self.meets(k)), None)
 
+    def smallest_at(self, column: int) -> int | None:
+        """The smallest size that meets the bound at one of STRAINS."""
+        return next((size for size, row in zip(self.sizes, self.table) if row[column].cov <= BOUND), None)
+
+    def smallest_not_excluded(self) -> int | None:
+        """The smallest size of which no interval lies above the bound as a whole: the coefficient of a draw of more
+        packings may meet it at all strains."""
+        return next((size for size, row in zip(self.sizes, self.table) if all(one.low <= BOUND for one in row)), None)
+
     def smallest_from(self) -> int | None:
         """The size from which on all larger ones meet the bound as well."""
         found = None

@@ -65,10 +65,18 @@ def _draw_variation(axis: Axes, study: SizeStudy) -> None:
         axis.axvline(smallest, color="0.5", linestyle=":", linewidth=1.2)
     if study.soil in STUDY and sizes.min() <= STUDY[study.soil] <= sizes.max():
         axis.axvline(STUDY[study.soil], color="0.75", linewidth=5, alpha=0.6, zorder=0, label="size of the study")
-    met = f"met from {smallest} grains on (dotted)" if smallest is not None else "not met by the largest size"
-    axis.set_title(f"{study.label}, {study.pressure / 1e3:g} kPa: {met}")
+    axis.set_title(f"{study.label}, {study.pressure / 1e3:g} kPa\n{_in_short(study)}", fontsize=11)
     axis.set_xlabel("number of grains  [-]")
     axis.set_xticks(study.sizes)
+
+
+def _in_short(study: SizeStudy) -> str:
+    smallest, possible = study.smallest_from(), study.smallest_not_excluded()
+    if smallest is not None:
+        return f"all strains meet {BOUND:g} from {smallest} grains on (dotted)"
+    if possible is not None:
+        return f"{possible} grains: the least of which no interval is above {BOUND:g}"
+    return f"no size meets {BOUND:g} at all strains"
 
 
 def draw_curves(sweep: Sweep, path: Path) -> None:
@@ -112,7 +120,9 @@ def write_table(sweep: Sweep, path: Path) -> None:
         ]
         for k, series in enumerate(study.series):
             lines.append(_row(study, k, series))
-        lines += ["", in_words(study), ""]
+        least = [study.smallest_at(column) for column in range(len(STRAINS))]
+        cells = " | ".join("-" if size is None else str(size) for size in least)
+        lines += [f"| smallest that meets {BOUND:g} | | {cells} | {study.smallest() or '-'} |", "", in_words(study), ""]
     output.write(path, "\n".join(lines[:-1]) + "\n")
 
 
@@ -138,6 +148,11 @@ def in_words(study: SizeStudy) -> str:
     if smallest is None:
         parts.append(f"No size meets a coefficient of variation of {BOUND:g} at all strains.")
         parts += _what_the_largest_misses(study)
+        possible = study.smallest_not_excluded()
+        if possible is not None:
+            parts.append(
+                f"The smallest one of which no interval lies above the bound as a whole has {possible} grains."
+            )
     else:
         parts.append(f"The smallest size that meets {BOUND:g} at all strains has {smallest} grains.")
         row = study.table[study.sizes.index(smallest)]
@@ -158,7 +173,5 @@ def _what_the_largest_misses(study: SizeStudy) -> list[str]:
     if not missed:
         return []
     said = ", ".join(f"{100 * strain:g} % ({one.cov:.3f})" for strain, one in missed)
-    parts = [f"The largest one misses it at {said}."]
-    if all(one.low <= BOUND for _, one in missed):
-        parts.append("The bound lies within the intervals there, so that another draw of packings may meet it.")
-    return parts
+    within = all(one.low <= BOUND for _, one in missed)
+    return [f"The largest one misses it at {said}{', within the intervals there' if within else ''}."]

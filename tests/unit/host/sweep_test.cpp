@@ -153,6 +153,42 @@ TEST_F(SweepFileTest, FaultsAreSaidWithTheirPlace) {
   expect_fault(base + "[[run]]\nname = \"outcomes\"\n", {"that the sweep itself writes"});
   expect_fault(base + "[[run]]\nname = \"t\"\n[[grid]]\nname = \"t\"\n\"a.b\" = [1]\n",
                {"lies in the folder of the run t"});
+  expect_fault(base + "[[run]]\nname = \"t__p\"\n[[grid]]\nname = \"t\"\n[grid.s]\np = \"a.b=1\"\n",
+               {"t/p is the name of two runs", "t__p"});
+}
+
+TEST_F(SweepFileTest, AxesThatTheTablesCouldNotHoldAreRefused) {
+  const std::string base = "base = \"tunnel.toml\"\n";
+  const std::string ratio = "\"ground.cover_ratio\" = [1, 2]\n";
+  for (const char* name : {"a/b", "a,b", ".", "", "status", "wall_s", "a b"}) {
+    const std::string said = fault(base + "[grid.\"" + name + "\"]\nx = \"a.b=1\"\n");
+    EXPECT_NE(said.find("sweep.toml:2"), std::string::npos) << name << ": " << said;
+  }
+  EXPECT_NE(fault(base + "[grid]\nmembers = 2\n[grid.member]\nx = \"a.b=1\"\n").find("column"), std::string::npos);
+  EXPECT_EQ(fault(base + "[grid.member]\nx = \"a.b=1\"\n"), "");
+  EXPECT_NE(fault(base + "[grid]\nground.cover_ratio = [1, 2]\n").find("in quotes"), std::string::npos);
+  EXPECT_NE(fault(base + "[grid]\nmembers = 2\n").find("has no axis"), std::string::npos);
+  EXPECT_NE(fault(base + "[grid]\n" + ratio + "zip = [[\"members\"]]\n").find("no axis"), std::string::npos);
+}
+
+TEST_F(SweepFileTest, AxesThatContradictOneAnotherAreRefused) {
+  const std::string base = "base = \"tunnel.toml\"\n";
+  const std::string three = "\"a.x\" = [1, 2]\n\"a.y\" = [1, 2]\n\"a.z\" = [1, 2]\n";
+  EXPECT_NE(fault(base + "[grid]\n" + three + "zip = [[\"a.x\", \"a.y\"], [\"a.y\", \"a.z\"]]\n").find("a.y twice"),
+            std::string::npos);
+  EXPECT_NE(fault("[grid.a]\nx = \"tunnel.toml\"\n[grid.b]\ny = \"other.toml\"\n").find("names cases, and so does"),
+            std::string::npos);
+}
+
+TEST_F(SweepFileTest, TooManyPointsAndTooLongNamesAreRefused) {
+  const std::string base = "base = \"tunnel.toml\"\n";
+  std::string axes;
+  for (int axis = 0; axis < 30; ++axis)
+    axes += "\"a.x" + std::to_string(axis) + "\" = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]\n";
+  EXPECT_NE(fault(base + "[grid]\n" + axes).find("more than 100000 points"), std::string::npos);
+  const std::string half(150, 'n');
+  EXPECT_NE(fault(base + "[[grid]]\nname = \"" + half + "\"\n[grid.s]\n" + half + " = \"a.b=1\"\n").find("too long"),
+            std::string::npos);
 }
 
 TEST_F(SweepFileTest, ARunIsFoundByItsName) {

@@ -1,12 +1,14 @@
 """All figures of a study, by the name of their file, and study.md."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from .. import output, paper
 from ..resolution import percent
 from . import fields, initial, judging, microstructure, paths, settlements, stresses
-from .data import Study, Tunnel
+from .data import Study, Tunnel, open_study
 
 STUDY_FIGURES: dict[str, Callable[[Study, Path], None]] = {
     "study_initial.png": initial.draw,
@@ -57,8 +59,8 @@ def _cell(text: str) -> str:
 
 def _tunnels(study: Study) -> list[str]:
     lines = [
-        "Numbers are means over the members ± half width of the 95 % band of the mean; a number without ± is of a single "
-        "run, or the members do not differ in it.",
+        "Numbers are means over the members ± half width of the 95 % band of the mean. A number without ± is of a",
+        "single run, or the members do not differ in it.",
         "",
         "| tunnel | soil | C/D | members | V_l to | member of the fields |",
         "|---|---|---|---|---|---|",
@@ -86,3 +88,17 @@ def _figures(study: Study) -> list[str]:
         number = figure.number if figure.number.startswith("Table") else f"Fig. {figure.number}"
         lines.append(f"| {number} | {figure.what} | {files} | {_cell(paper.sentence(figure, study))} |")
     return lines
+
+
+def _of_sweep(name: str, sweep: Any, path: Path) -> None:
+    """The same for a sweep that is opened already (`..sweep`): its study is opened once and kept with it."""
+    kept = sweep.__dict__
+    if "_study" not in kept:
+        kept["_study"] = open_study([sweep.folder], sweep.settings)
+    {**STUDY_FIGURES, "study.md": write}[name](kept["_study"], path)
+
+
+# For the catalogue of what a sweep holds.
+OF_SWEEP: dict[str, Callable[[Any, Path], None]] = {
+    name: partial(_of_sweep, name) for name in (*STUDY_FIGURES, "study.md")
+}

@@ -181,8 +181,8 @@ def _subfolders(folder: Path) -> list[Path]:
 
 
 def _points(folder: Path) -> list[Path]:
-    """Folders of runs and ensembles: the folder itself, or those below it (POINT, or GRID/POINT; of a sweep's grids only
-    those whose runs are tunnels)."""
+    """Folders of runs and ensembles: the folder itself, or those below it (POINT, or GRID/POINT) whose runs are
+    tunnels."""
     below = _subfolders(folder)
     if _is_point(folder):
         return [folder]

@@ -39,8 +39,8 @@ class Cell:
         return moved - np.array([0.0, surface_y])
 
 
-def grid(tunnels: Sequence[Tunnel], losses: Sequence[float]) -> tuple[list[float], list[list[Cell]]]:
-    """The V_l that all tunnels have near the wanted ones, and the pictures, a row a tunnel."""
+def grid(tunnels: Sequence[Tunnel], losses: Sequence[float]) -> list[list[Cell]]:
+    """The pictures, a row a tunnel, at the wanted V_l that all tunnels reached."""
     last = min(tunnel.loss[-1] for tunnel in tunnels)
     wanted = [loss for loss in losses if loss <= last + 1e-9] or [last]
     rows = []
@@ -48,7 +48,7 @@ def grid(tunnels: Sequence[Tunnel], losses: Sequence[float]) -> tuple[list[float
         result = tunnel.representative
         found = [result.loss_increments[int(np.argmin(np.abs(result.volume_loss - loss)))] for loss in wanted]
         rows.append([Cell(tunnel, result, increment) for increment in found])
-    return wanted, rows
+    return rows
 
 
 def _canvas(rows: list[list[Cell]]) -> tuple[Figure, np.ndarray]:
@@ -69,7 +69,7 @@ def _canvas(rows: list[list[Cell]]) -> tuple[Figure, np.ndarray]:
         figsize=(inches * len(rows[0]) + 0.9, inches / wide * sum(depths) + 0.35 * len(rows) + 1.5),
     )
     for row, of_row, depth in zip(axes, rows, depths):
-        for axis, cell in zip(row, of_row):
+        for axis in row:
             axis.set_xlim(0, wide)
             axis.set_ylim(-depth, 0.06 * wide)
             axis.set_aspect("equal")
@@ -90,7 +90,7 @@ def crown_displacement(cell: Cell) -> float:
 def draw_displacement(study: Study, path: Path) -> None:
     """Figure 8: the displacement of the ground in dense sand, by cover and V_l; full colour is the crown's."""
     tunnels = study.covers()
-    losses, rows = grid(tunnels, study.settings.field_losses)
+    rows = grid(tunnels, study.settings.field_losses)
     figure, axes = _canvas(rows)
     levels = np.linspace(0, 1, 21)
     for row, of_row in zip(axes, rows):
@@ -126,7 +126,7 @@ def draw_shear_by_soil(study: Study, path: Path) -> None:
 
 
 def _draw_shear(study: Study, tunnels: Sequence[Tunnel], path: Path, title: str) -> None:
-    _, rows = grid(tunnels, study.settings.field_losses)
+    rows = grid(tunnels, study.settings.field_losses)
     figure, axes = _canvas(rows)
     for k, column in enumerate(axes.T):
         values = [100 * row[k].increment.field("gauss/deviatoric_strain") for row in rows]

@@ -25,13 +25,14 @@ TABLE_ROWS = 60  # stresses of the K0 curve
 def draw(study: Study, path: Path) -> None:
     tunnel = study.main()
     figure = plt.figure(figsize=(16.0, 9.6), layout="constrained")
-    grid = figure.add_gridspec(2, 12)
+    above, below = figure.subfigures(2, 1)
     names = ((1, r"vertical  $\sigma_{yy}$"), (0, r"horizontal  $\sigma_{xx}$"), (2, r"shear  $\tau_{xy}$"))
-    for k, (component, name) in enumerate(names):
-        _add_field(figure.add_subplot(grid[0, 4 * k : 4 * k + 4]), tunnel, component, f"{name}  [kPa]")
-    _add_path(figure.add_subplot(grid[1, 0:3]), tunnel)
-    _add_ratio(figure.add_subplot(grid[1, 3:6]), tunnel)
-    _add_rves([figure.add_subplot(grid[1, 6:9]), figure.add_subplot(grid[1, 9:12])], tunnel)
+    for axis, (component, name) in zip(above.subplots(1, 3), names):
+        _add_field(axis, tunnel, component, f"{name}  [kPa]")
+    axes = below.subplots(1, 4)
+    _add_path(axes[0], tunnel)
+    _add_ratio(axes[1], tunnel)
+    _add_rves(list(axes[2:]), tunnel)
     figure.suptitle(f"Ground after gravity, {tunnel.label}", fontsize=12)
     shown = f"Fields: means of {tunnel.count} members." if tunnel.count > 1 else ""
     finish(figure, path, shown, about_bands([tunnel]), about_members([tunnel]) if tunnel.count > 1 else "")

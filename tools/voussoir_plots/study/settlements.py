@@ -122,7 +122,8 @@ def normalised_trough(tunnel: Tunnel, ratio: float, loss: float) -> tuple[np.nda
     """x [m] and the bands of the settlement over the crown's at z/C = ratio, at the state next to V_l = `loss`."""
     found = []
     for member in tunnel.members:
-        k = int(np.argmin(np.abs(member.volume_loss - loss)))
+        away = np.where(member.volume_loss > 0, np.abs(member.volume_loss - loss), np.inf)  # none at V_l = 0
+        k = int(np.argmin(away))
         line = troughs.line_at(member, ratio)
         found.append(line.settlement(member.loss_increments[k]) / of_crown(member)[k])
     x = troughs.line_at(tunnel.members[0], ratio).x

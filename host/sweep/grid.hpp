@@ -1,0 +1,24 @@
+#pragma once
+/// A [grid] table of a sweep file: its axes, which of them advance together, and the points that they span.
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/sweep/axes.hpp"
+#include "io/case_file.hpp"
+
+namespace voussoir::host {
+
+inline constexpr std::size_t most_runs_of_a_sweep = 100'000;
+
+/// The name, where it can be that of a run's folder and, without quotes, a field of summary.csv. Throws io::InputError
+/// at the key's place where it cannot.
+[[nodiscard]] std::string checked_name(const io::Table& table, const std::string& key, std::string name);
+
+/// The points of a grid. Names of cases are relative to `folder`. Throws io::InputError for axes that cannot be: two of
+/// one name, two that name cases, different lengths of axes that advance together, none at all.
+[[nodiscard]] std::vector<GridPoint> points_of(const io::Table& grid, const std::filesystem::path& folder);
+
+}  // namespace voussoir::host
