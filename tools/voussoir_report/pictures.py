@@ -61,7 +61,7 @@ def draw_all(figures: Mapping[str, Callable[[Any, Path], None]], data: Any, note
     plt.rcParams["savefig.dpi"] = DOTS_PER_INCH
     with tempfile.TemporaryDirectory() as folder:
         for name, draw in figures.items():
-            if name != "trends.md":  # the page has them as a part of its own
+            if name not in ("trends.md", "study.md"):  # the page has them as parts of its own
                 _draw(drawn, draw, data, Path(folder) / name)
     style.set_note("")
     return drawn

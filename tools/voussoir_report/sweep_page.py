@@ -8,7 +8,6 @@ import numpy as np
 from voussoir_plots.catalogue import figures_of
 from voussoir_plots.result import Missing
 from voussoir_plots.study import judging
-from voussoir_plots.study.catalogue import STUDY_FIGURES
 from voussoir_plots.style import CYCLE
 from voussoir_plots.sweep import Sweep
 from voussoir_plots.sweep_table import COST, Run, SweepTable
@@ -43,8 +42,6 @@ def make(sweep: Sweep, folder: Path, only: list[str] | None = None) -> Builder:
     _compare(builder, points, curves, grounds)
     drawn = pictures.draw_all(pictures.chosen(figures_of("a sweep"), only), sweep)
     study = paper_sentences.study_of(folder, sweep.settings)
-    if study is not None:
-        drawn += pictures.draw_all(pictures.chosen(STUDY_FIGURES, only), study)
     paper_sentences.apply(drawn.pictures, study)
     builder.figures(drawn)
     if study is not None:

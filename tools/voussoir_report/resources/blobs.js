@@ -2,13 +2,11 @@
 "use strict";
 
 class Blob16 {
-  constructor(blob, codes) {
-    Object.assign(this, { frames: blob.frames, count: blob.count, codes, blob });
-  }
+  constructor(blob, codes) { Object.assign(this, {frames: blob.frames, count: blob.count, codes, blob}); }
 
   // The value of a place in a frame; NaN where the run has no number.
   at(frame, place) {
-    const { low, step, scale, none } = this.blob;
+    const {low, step, scale, none} = this.blob;
     const code = this.codes[frame * this.count + place];
     if (code === none) return NaN;
     const bent = low + step * code;
@@ -22,9 +20,7 @@ class Blob16 {
   }
 
   // One place over all frames.
-  history(place) {
-    return Array.from({ length: this.frames }, (_, frame) => this.at(frame, place));
-  }
+  history(place) { return Array.from({length: this.frames}, (_, frame) => this.at(frame, place)); }
 }
 
 async function unpack(blob) {
@@ -60,12 +56,12 @@ function written(value, digits = 4) {
 // Round numbers between two limits for an axis.
 function ticks(low, high, about) {
   const span = high - low;
-  if (!(span > 0)) return { at: [low], step: 1 };
+  if (!(span > 0)) return {at: [low], step: 1};
   const raw = span / about, power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= raw * 0.999);
   const at = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * span; ++k) at.push(k * step);
-  return { at, step };
+  return {at, step};
 }
 
 function tickText(value, step) {

@@ -1,20 +1,25 @@
-// The ground over the deformed mesh: one colour a Gauss point, because each point is one RVE and smoothing would hide how
-// localised a field is. Wheel and drag move the view, a double click resets it, a click picks a point.
+// The ground over the deformed mesh: one colour a Gauss point, because each point is one RVE and smoothing would hide
+// how localised a field is. Wheel and drag move the view, a double click resets it, a click picks a point.
 "use strict";
 
-const MARGIN = { left: 48, right: 92, top: 8, bottom: 40 };
+const MARGIN = {
+  left: 48,
+  right: 92,
+  top: 8,
+  bottom: 40
+};
 
 class GroundView {
   // `changed(frame)` and `picked(point)` are called when the reader moves the slider or clicks.
   static async make(host, sliding, ground, colourMaps, calls = {}) {
     const view = new GroundView();
-    Object.assign(view, { host, sliding, ground, colourMaps, calls, point: null, zoom: null, times: [] });
-    view.mesh = await unpackAll({ x: ground.x, y: ground.y, connectivity: ground.connectivity });
+    Object.assign(view, {host, sliding, ground, colourMaps, calls, point: null, zoom: null, times: []});
+    view.mesh = await unpackAll({x: ground.x, y: ground.y, connectivity: ground.connectivity});
     view.x0 = view.mesh.x.frame(0);
     view.y0 = view.mesh.y.frame(0);
     view.nodes = Uint32Array.from(view.mesh.connectivity.frame(0));
     view.points = view.nodes.length / 2;
-    view.sets = await Promise.all(ground.sets.map(async (set) => ({ ...set, data: await unpackAll(set.blobs) })));
+    view.sets = await Promise.all(ground.sets.map(async (set) => ({...set, data: await unpackAll(set.blobs)})));
     view.controls();
     view.listen();
     view.update();
@@ -23,33 +28,35 @@ class GroundView {
 
   controls() {
     const choice = (title, options, value) => {
-      const select = element("select", { "aria-label": title });
-      for (const [key, text] of options) select.append(element("option", { value: key }, text));
+      const select = element("select", {"aria-label": title});
+      for (const [key, text] of options) select.append(element("option", {value: key}, text));
       select.value = value;
       select.addEventListener("change", () => this.update());
       return [select, element("label", {}, `${title} `, select)];
     };
-    const { fields, loads, load, sets } = this.ground;
-    const bar = element("div", { class: "controls" });
+    const {fields, loads, load, sets} = this.ground;
+    const bar = element("div", {class: "controls"});
     let label;
     [this.set, label] = choice("show", sets.map((s, k) => [k, s.title]), 0);
     if (sets.length > 1) bar.append(label);
     const first = fields.find((f) => f.name === "deviatoric_strain") || fields[0];
-    [this.menu, label] = choice("field", fields.map((f) => [f.name, `${f.label}${f.unit ? ` [${f.unit}]` : ""}`]), first.name);
+    [this.menu, label] =
+        choice("field", fields.map((f) => [f.name, `${f.label}${f.unit ? ` [${f.unit}]` : ""}`]), first.name);
     bar.append(label);
-    [this.scale, label] = choice("deformation", [0, 1, 2, 5, 10, 20, 50, 100].map((m) => [m, `× ${m}`]), this.visibleScale());
+    [this.scale, label] =
+        choice("deformation", [0, 1, 2, 5, 10, 20, 50, 100].map((m) => [m, `× ${m}`]), this.visibleScale());
     bar.append(label);
     [this.range, label] = choice("colours", [["all", "same for all states"], ["this", "this state's"]], "all");
     bar.append(label);
-    this.slider = element("input", { type: "range", min: 0, max: loads.length - 1, step: 1, "aria-label": load.label });
+    this.slider = element("input", {type: "range", min: 0, max: loads.length - 1, step: 1, "aria-label": load.label});
     this.slider.value = loads.length - 1;
     this.slider.addEventListener("input", () => this.update());
-    this.told = element("output", { class: "load" });
+    this.told = element("output", {class: "load"});
     this.sliding.append(this.slider, this.told);
-    this.canvas = element("canvas", { class: "ground", tabindex: 0 });
-    this.tip = element("div", { class: "tip", hidden: "" });
-    this.note = element("p", { class: "note" });
-    this.host.append(bar, element("div", { class: "canvas" }, this.canvas, this.tip), this.note);
+    this.canvas = element("canvas", {class: "ground", tabindex: 0});
+    this.tip = element("div", {class: "tip", hidden: ""});
+    this.note = element("p", {class: "note"});
+    this.host.append(bar, element("div", {class: "canvas"}, this.canvas, this.tip), this.note);
   }
 
   // A deformation of about 2 % of the width is visible.
@@ -122,12 +129,12 @@ class GroundView {
   }
 
   update() {
-    const start = performance.now(), { frame, field, shown } = this;
+    const start = performance.now(), {frame, field, shown} = this;
     this.corners = this.quarters();
-    this.values = Float64Array.from({ length: this.points }, (_, p) => this.value(shown, field, frame, p));
+    this.values = Float64Array.from({length: this.points}, (_, p) => this.value(shown, field, frame, p));
     this.limits = this.range.value === "this" ? this.ownLimits(field) : shown.limits[field.name] || [0, 1];
     this.draw();
-    const { loads, load } = this.ground;
+    const {loads, load} = this.ground;
     this.told.textContent = `${load.label} = ${written(loads[frame])}${load.unit === "-" ? "" : ` ${load.unit}`}`;
     this.note.textContent = shown.note || "";
     this.calls.changed?.(frame);

@@ -1,6 +1,9 @@
 // How the ground view draws itself, and what the reader's hand does to it.
 "use strict";
 
+// Each quarter is drawn larger by this on all sides [px], so that no seams show between them; lines would be slower.
+const AIR = 0.4;
+
 Object.assign(GroundView.prototype, {
   // Scale and middle of the view: the whole ground unless the reader has moved it.
   fit() {
@@ -9,9 +12,9 @@ Object.assign(GroundView.prototype, {
     const inner = width - MARGIN.left - MARGIN.right;
     const height = Math.min(Math.max(inner * high / wide, 260), 640) + MARGIN.top + MARGIN.bottom;
     const scale = Math.min(inner / wide, (height - MARGIN.top - MARGIN.bottom) / high) * 0.98;
-    this.size = { width, height };
+    this.size = {width, height};
     if (!this.zoom) {
-      this.zoom = { scale, x: Math.min(...this.x0) + wide / 2, y: Math.min(...this.y0) + high / 2 };
+      this.zoom = {scale, x: Math.min(...this.x0) + wide / 2, y: Math.min(...this.y0) + high / 2};
     }
   },
 
@@ -30,26 +33,26 @@ Object.assign(GroundView.prototype, {
   },
 
   // Half widths of bands have no sign, and so no colours of two signs.
-  map(field) {
-    return this.colourMaps[this.shown.band ? "viridis" : field.map];
-  },
+  map(field) { return this.colourMaps[this.shown.band ? "viridis" : field.map]; },
 
-  colour(value) {
-    const field = this.field, map = this.map(field);
-    if (!Number.isFinite(value)) return "#bbbbbb";
-    if (field.levels && !this.shown.band) return (field.levels[Math.round(value)] || { colour: "#bbbbbb" }).colour;
-    const [low, high] = this.limits;
-    return map[Math.min(255, Math.max(0, Math.floor(256 * (value - low) / (high - low))))];
+  // The function that gives a value its colour; what does not depend on the value is looked up once.
+  palette() {
+    const field = this.field, map = this.map(field), [low, high] = this.limits, none = "#bbbbbb";
+    if (field.levels && !this.shown.band) return (value) => field.levels[Math.round(value)]?.colour || none;
+    const slope = 256 / (high - low);
+    return (value) =>
+               (Number.isFinite(value) ? map[Math.min(255, Math.max(0, Math.floor(slope * (value - low))))] : none);
   },
 
   draw() {
     this.fit();
     this.center = this.middle();
-    const { width, height } = this.size, ratio = window.devicePixelRatio || 1;
+    const {width, height} = this.size, ratio = window.devicePixelRatio || 1;
     const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
-    if (this.canvas.width !== wide || this.canvas.height !== high) {  // a new size makes the browser lay the page out anew
-      Object.assign(this.canvas, { width: wide, height: high });
-      Object.assign(this.canvas.style, { width: `${width}px`, height: `${height}px` });
+    if (this.canvas.width !== wide ||
+        this.canvas.height !== high) {  // a new size makes the browser lay the page out anew
+      Object.assign(this.canvas, {width: wide, height: high});
+      Object.assign(this.canvas.style, {width: `${width}px`, height: `${height}px`});
     }
     const pen = this.canvas.getContext("2d");
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -65,27 +68,35 @@ Object.assign(GroundView.prototype, {
   },
 
   path(pen, point) {
-    const c = this.corners, { scale, x, y } = this.zoom, [mx, my] = this.center;
-    const at = (k) => [mx + (c[8 * point + k] - x) * scale, my - (c[8 * point + k + 1] - y) * scale];
-    pen.moveTo(...at(0));
-    for (let k = 2; k < 8; k += 2) pen.lineTo(...at(k));
+    const c = this.corners, {scale, x, y} = this.zoom, [mx, my] = this.center;
+    const first = 8 * point, px = (k) => mx + (c[first + k] - x) * scale,
+          py = (k) => my - (c[first + k + 1] - y) * scale;
+    const cx = (px(0) + px(2) + px(4) + px(6)) / 4, cy = (py(0) + py(2) + py(4) + py(6)) / 4;
+    for (let k = 0; k < 8; k += 2) {
+      const qx = px(k) + (px(k) > cx ? AIR : -AIR), qy = py(k) + (py(k) > cy ? AIR : -AIR);
+      if (k === 0)
+        pen.moveTo(qx, qy);
+      else
+        pen.lineTo(qx, qy);
+    }
     pen.closePath();
   },
 
-  // Points of one colour are drawn together; the line of the same colour closes the seams between them.
+  // Points of one colour are drawn together.
   drawPoints(pen) {
-    const groups = new Map();
+    const groups = new Map(), colourOf = this.palette();
     this.values.forEach((value, p) => {
-      const colour = this.colour(value);
-      if (groups.has(colour)) groups.get(colour).push(p); else groups.set(colour, [p]);
+      const colour = colourOf(value);
+      if (groups.has(colour))
+        groups.get(colour).push(p);
+      else
+        groups.set(colour, [p]);
     });
-    pen.lineWidth = 0.7;
     for (const [colour, members] of groups) {
       pen.beginPath();
       for (const p of members) this.path(pen, p);
-      pen.fillStyle = pen.strokeStyle = colour;
+      pen.fillStyle = colour;
       pen.fill();
-      pen.stroke();
     }
     if (this.point === null) return;
     for (const [colour, line] of [["white", 5], ["black", 2]]) {
@@ -98,14 +109,15 @@ Object.assign(GroundView.prototype, {
   },
 
   drawAxes(pen) {
-    const { width, height } = this.size, bottom = height - MARGIN.bottom, right = width - MARGIN.right;
+    const {width, height} = this.size, bottom = height - MARGIN.bottom, right = width - MARGIN.right;
     const [x0, y1] = this.toGround(MARGIN.left, MARGIN.top), [x1, y0] = this.toGround(right, bottom);
     pen.strokeStyle = pen.fillStyle = "#333";
     pen.lineWidth = 1;
     pen.font = "12px sans-serif";
     pen.strokeRect(MARGIN.left, MARGIN.top, right - MARGIN.left, bottom - MARGIN.top);
     pen.textAlign = "center";
-    const along = ticks(x0, x1, Math.max(3, (right - MARGIN.left) / 80)), up = ticks(y0, y1, Math.max(3, (bottom - MARGIN.top) / 70));
+    const along = ticks(x0, x1, Math.max(3, (right - MARGIN.left) / 80)),
+          up = ticks(y0, y1, Math.max(3, (bottom - MARGIN.top) / 70));
     for (const x of along.at) pen.fillText(tickText(x, along.step), this.toCanvas(x, 0)[0], bottom + 15);
     const from = this.ground.tunnel ? "the tunnel's axis" : "the left edge";
     pen.fillText(`distance from ${from} x [m]`, (MARGIN.left + right) / 2, bottom + 32);
@@ -124,7 +136,7 @@ Object.assign(GroundView.prototype, {
   },
 
   drawColourBar(pen) {
-    const { width, height } = this.size, field = this.field, left = width - MARGIN.right + 14;
+    const {width, height} = this.size, field = this.field, left = width - MARGIN.right + 14;
     const top = MARGIN.top + 8, bottom = height - MARGIN.bottom - 8;
     pen.font = "12px sans-serif";
     pen.textAlign = "left";
@@ -159,7 +171,7 @@ Object.assign(GroundView.prototype, {
     };
     let held = null;
     this.canvas.addEventListener("pointerdown", (event) => {
-      held = { from: place(event), x: this.zoom.x, y: this.zoom.y, moved: false };
+      held = {from: place(event), x: this.zoom.x, y: this.zoom.y, moved: false};
     });
     this.canvas.addEventListener("pointermove", (event) => {
       const [px, py] = place(event);
@@ -167,7 +179,7 @@ Object.assign(GroundView.prototype, {
         const dx = px - held.from[0], dy = py - held.from[1];
         held.moved = held.moved || Math.hypot(dx, dy) > 4;
         if (!held.moved) return;
-        this.zoom = { ...this.zoom, x: held.x - dx / this.zoom.scale, y: held.y + dy / this.zoom.scale };
+        this.zoom = {...this.zoom, x: held.x - dx / this.zoom.scale, y: held.y + dy / this.zoom.scale};
         this.draw();
       }
       this.hover(px, py);
@@ -177,10 +189,16 @@ Object.assign(GroundView.prototype, {
       held = null;
       if (point !== null) this.pick(point);
     });
-    this.canvas.addEventListener("pointerleave", () => { this.tip.hidden = true; });
-    this.canvas.addEventListener("dblclick", () => { this.zoom = null; this.draw(); });
+    this.canvas.addEventListener("pointerleave", () => {
+      this.tip.hidden = true;
+    });
+    this.canvas.addEventListener("dblclick", () => {
+      this.zoom = null;
+      this.draw();
+    });
     this.canvas.addEventListener("wheel", (event) => {
-      if (!event.ctrlKey && document.activeElement !== this.canvas) return;  // the page scrolls until the ground is clicked
+      if (!event.ctrlKey && document.activeElement !== this.canvas)
+        return;  // the page scrolls until the ground is clicked
       event.preventDefault();
       const [px, py] = place(event), [wx, wy] = this.toGround(px, py);
       this.zoom.scale *= event.deltaY < 0 ? 1.2 : 1 / 1.2;
@@ -188,9 +206,12 @@ Object.assign(GroundView.prototype, {
       this.zoom.x += wx - nx;
       this.zoom.y += wy - ny;
       this.draw();
-    }, { passive: false });
+    }, {passive: false});
     new ResizeObserver(() => {
-      if (this.size && this.host.clientWidth !== this.size.width) { this.zoom = null; this.draw(); }
+      if (this.size && this.host.clientWidth !== this.size.width) {
+        this.zoom = null;
+        this.draw();
+      }
     }).observe(this.host);
   },
 
@@ -199,7 +220,8 @@ Object.assign(GroundView.prototype, {
     this.tip.hidden = point === null;
     if (point === null) return;
     const value = this.values[point], level = field.levels && !this.shown.band && field.levels[Math.round(value)];
-    this.tip.textContent = `point ${point}: ${level ? level.name : `${written(value)} ${field.unit === "-" ? "" : field.unit}`}`;
-    Object.assign(this.tip.style, { left: `${Math.min(px + 14, this.size.width - 150)}px`, top: `${py + 10}px` });
+    this.tip.textContent =
+        `point ${point}: ${level ? level.name : `${written(value)} ${field.unit === "-" ? "" : field.unit}`}`;
+    Object.assign(this.tip.style, {left: `${Math.min(px + 14, this.size.width - 150)}px`, top: `${py + 10}px`});
   },
 });

@@ -5,7 +5,8 @@
 async function readySpec(spec) {
   for (const series of spec.series) {
     if (!series.frames) continue;
-    for (const name of ["y", "band", "further"]) if (series[name]) series[name] = await unpack(series[name]);
+    for (const name of ["y", "band", "further"])
+      if (series[name]) series[name] = await unpack(series[name]);
   }
   return spec;
 }
@@ -21,19 +22,19 @@ async function startGround(host, sliding, ground, colourMaps, charts, panelHost)
   };
   const view = await GroundView.make(host, sliding, ground, colourMaps, calls);
   if (panelHost) panel = new PointPanel(panelHost, view);
-  return { view, panel };
+  return {view, panel};
 }
 
 async function start() {
   const data = JSON.parse(document.getElementById("data").textContent);
-  const report = (window.report = { ready: false, data, views: [], charts: [], panels: [] });
+  const report = (window.report = {ready: false, data, views: [], charts: [], panels: []});
   for (const host of document.querySelectorAll("[data-chart]")) {
     report.charts.push(new Chart(host, await readySpec(data.charts[Number(host.dataset.chart)])));
   }
   const host = document.getElementById("ground");
   if (host && data.ground) {
     const [sliding, point] = ["slider", "point"].map((name) => document.getElementById(name));
-    const { view, panel } = await startGround(host, sliding, data.ground, data.colourMaps, report.charts, point);
+    const {view, panel} = await startGround(host, sliding, data.ground, data.colourMaps, report.charts, point);
     report.views.push(view);
     report.panels.push(panel);
     if (data.first_point !== undefined) view.pick(data.first_point);
@@ -51,6 +52,7 @@ async function start() {
 }
 
 window.addEventListener("DOMContentLoaded", () => start().catch((error) => {
-  document.getElementById("failed").textContent = `The page could not start: ${error.message}. It needs a browser of 2023 or newer.`;
+  document.getElementById("failed").textContent =
+      `The page could not start: ${error.message}. It needs a browser of 2023 or newer.`;
   console.error(error);
 }));
