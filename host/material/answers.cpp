@@ -63,7 +63,8 @@ fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double p
     }
     if (r.steps == 0) ++out.deferred;
     if (r.status == kernels::RveStatus::open) ++out.open;
-    if (r.mean_overlap > most_mean_overlap || r.cell_area < least_areas[k]) ++out.out_of_range;
+    if (r.mean_overlap > most_mean_overlap || r.largest_overlap > most_single_overlap || r.cell_area < least_areas[k])
+      ++out.out_of_range;
     out.mean_overlap = std::max(*out.mean_overlap, r.mean_overlap);
     if (r.status == kernels::RveStatus::step_limit) {
       ++out.step_limit;

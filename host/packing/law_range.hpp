@@ -11,6 +11,11 @@ namespace voussoir::host {
 /// The largest mean overlap over r_i + r_j of an RVE's contacts up to which stresses count as those of grains [-].
 inline constexpr double most_mean_overlap = 0.06;
 
+/// The overlap over r_i + r_j of a single contact beyond which a grain counts as crushed [-]: the point is reported as
+/// out of range, and the run goes on, because in a wide grading one small grain between large ones says little of the
+/// stress of thousands of contacts. A stored packing with such a contact is refused.
+inline constexpr double most_single_overlap = 0.3;
+
 /// The void ratio below which no plane packing of rigid discs can be, whatever its order [-]: Florian's bound
 /// of the density for radii between two limits, which is the hexagonal packing's for equal discs.
 /// @param size_ratio largest over smallest size, at least 1

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "host/packing/grading.hpp"
+#include "host/packing/law_range.hpp"
 #include "host/packing/stored_packing.hpp"
 #include "kernels/contact/cell.hpp"
 #include "kernels/state/requests.hpp"
@@ -145,7 +146,7 @@ DeepestPair deepest_pair(const io::Packing& file) {
 }
 
 void check_overlaps(const io::Packing& file) {
-  const double most = kernels::EngineSettings{}.overlap_limit;
+  const double most = most_single_overlap;
   const DeepestPair deepest = deepest_pair(file);
   if (deepest.overlap < most) return;
   throw std::runtime_error(

@@ -26,10 +26,12 @@ struct EngineSettings {
   double skin = 0.08;             ///< list skin / mean diameter [-]
   double hold_tolerance = 1e-3;   ///< unbalanced ratio that ends a hold [-]
   double pressure_floor = 100.0;  ///< ratios use max(p, floor) [Pa]
-  double overlap_limit = 0.3;     ///< overlap / (r_i + r_j) at which an RVE is given up [-]
-  int look_interval = 16;         ///< steps between looks at stress and unbalanced force
-  int list_interval = 8;          ///< steps between looks at displacements
-  int guard_interval = 256;       ///< steps between looks at overlaps while straining
+  /// Overlap / (r_i + r_j) of a single contact at which an RVE is given up [-]: at 1 the contact has no normal. Whether
+  /// stresses count as those of grains is judged at far smaller overlaps (host/packing/law_range.hpp).
+  double overlap_limit = 0.95;
+  int look_interval = 16;    ///< steps between looks at stress and unbalanced force
+  int list_interval = 8;     ///< steps between looks at displacements
+  int guard_interval = 256;  ///< steps between looks at overlaps while straining
   TangentKind tangent = TangentKind::contact;
   double tangent_tolerance = 2e-3;  ///< error of the grains' motion under which a static tangent's iterations end, in
                                     ///< the norm of the energy; the tangent's own error is its square [-]

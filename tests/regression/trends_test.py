@@ -155,7 +155,7 @@ class Paths(unittest.TestCase):
 
     def test_soil_as_the_case_tells(self):
         def soil_of(**case):
-            return Result.soil.fget(SimpleNamespace(case=case))
+            return Result.soil.fget(SimpleNamespace(case=case))  # type: ignore[attr-defined]
 
         self.assertEqual(soil_of(), "dense sand")
         self.assertEqual(soil_of(soil={"sizes": ["4 mm", "20 mm"]}), "gravel")
