@@ -1,0 +1,143 @@
+"""Searches rolling stiffness, rolling limit and thickness for the study's three soils at once, and writes what of Table
+2 is met. Parts: readings (what the printed coefficient may mean), design (sets all over the box), near (around the
+best), confirm (the chosen sets at full size), slow (the shipped sets at the study's inertial number)."""
+
+import argparse
+import json
+import shlex
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+from calibration_study import fit, pictures, plan, report, results
+from calibration_study.definitions import USUAL
+from calibration_study.plan import SOILS, Set
+from calibration_study.runs import Programme, run_sets
+
+PARTS = ("readings", "design", "near", "confirm", "slow")
+SIZES = {
+    "readings": plan.SEARCH,
+    "design": plan.SEARCH,
+    "near": plan.SEARCH,
+    "confirm": plan.CONFIRM,
+    "slow": plan.SLOW,
+}
+
+
+class Study:
+    """The parts of the study below one folder. What `near` and `confirm` run follows from earlier parts; it is chosen
+    once and kept in chosen.json, so that a study that is gone on with runs the same sets."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.places = folder / "chosen.json"
+
+    def chosen(
+        self, name: str, choose: Mapping[str, Sequence[str]], *, keep_peak: bool = True
+    ) -> dict[str, list[float]]:
+        """{purpose: place} stored under a name, or found from what the search gave."""
+        stored = json.loads(self.places.read_text()) if self.places.exists() else {}
+        if name not in stored:
+            data = self.measured(USUAL)
+            stored[name] = {
+                purpose: list(fit.optimum(data, soils, packings=plan.SEARCH.seeds, keep_peak=keep_peak).place)
+                for purpose, soils in choose.items()
+            }
+            self.places.write_text(json.dumps(stored, indent=1) + "\n")
+        return dict(stored[name])
+
+    def sets(self, part: str) -> list[Set]:
+        if part == "readings":
+            return plan.readings()
+        if part == "design":
+            return plan.design()
+        if part == "near":
+            return plan.near(self.chosen("near", {"joint": SOILS})["joint"])
+        by_name = {one.name: one for one in plan.readings()}
+        if part == "slow":
+            return [by_name["shipped"]]
+        places = self.chosen("confirm", {"joint": SOILS, **{soil: (soil,) for soil in SOILS}})
+        free = self.chosen("confirm without the peak's strain", {"joint": SOILS}, keep_peak=False)
+        joint, unbound = plan.at(places["joint"]), plan.at(free["joint"])
+        each = Set("each_soil_by_itself", {soil: plan.at(places[soil]).soils[soil] for soil in SOILS})
+        return [by_name["shipped"], by_name["literal"], Set("joint", joint.soils, joint.place),
+                Set("joint_any_peak_strain", unbound.soils, unbound.place), each]  # fmt: skip
+
+    def of(self, part: str) -> dict[str, dict[str, results.Angles]]:
+        """What is finished of a part; nothing where its sets are not chosen yet."""
+        if part in ("near", "confirm") and not self.places.exists():
+            return {}
+        return results.of_group(self.folder / part, self.sets(part))
+
+    def measured(self, choice: fit.Choice) -> fit.Measured:
+        parts = [part for part in ("design", "readings", "near") if part != "near" or self.places.exists()]
+        found: dict[str, dict[str, results.Angles]] = {}
+        for part in parts:
+            found |= self.of(part)
+        return fit.measured([one for part in parts for one in self.sets(part)], found, choice)
+
+    def optima(self, choice: fit.Choice) -> tuple[fit.Measured, dict[str, fit.Optimum]]:
+        data, n = self.measured(choice), plan.SEARCH.seeds
+        found = {
+            "all soils": fit.optimum(data, SOILS, packings=n),
+            "all soils, any strain at the peak": fit.optimum(data, SOILS, packings=n, keep_peak=False),
+            "both sands": fit.optimum(data, SOILS[:2], packings=n),
+            **{report.NAMES[soil]: fit.optimum(data, (soil,), packings=n) for soil in SOILS},
+        }
+        return data, found
+
+
+def tables(study: Study) -> str:
+    """All tables of what is finished."""
+    parts = []
+    if readings := study.of("readings"):
+        parts.append(report.section("Readings of the printed coefficient", report.sets(readings, USUAL)))
+    for title, choice in (("", USUAL), (", read from smooth curves", report.SMOOTH)):
+        try:
+            data, found = study.optima(choice)
+        except ValueError as few:
+            parts.append(f"No search yet: {few}\n")
+            break
+        parts.append(report.section(f"Optima{title} ({len(data.units)} sets)", report.optima(found)))
+        table = report.sensitivities(found["all soils"], data, plan.SEARCH.seeds)
+        parts.append(report.section(f"Sensitivities at the joint optimum{title}", table))
+    for part in ("confirm", "slow"):
+        if confirmed := study.of(part):
+            parts += report.full_size(part, confirmed)
+    return "\n".join(parts)
+
+
+def draw(study: Study, folder: Path) -> None:
+    data = study.measured(USUAL)
+    if len(data.units):
+        pictures.reached(data, plan.SEARCH.seeds, folder / "calibration_reached.png")
+    if confirmed := study.of("confirm"):
+        pictures.nine_numbers(confirmed, USUAL, folder / "calibration_numbers.png")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="tools/calibrate_soils", description=__doc__)
+    parser.add_argument("parts", nargs="*", choices=[*PARTS, []], metavar="PART", help=f"{', '.join(PARTS)} (all)")
+    parser.add_argument("-o", "--output", type=Path, default=Path("out/calibration_study"))
+    parser.add_argument("--program", type=Path, default=Path("build/openmp/host/voussoir"))
+    parser.add_argument("--prefix", default="", help="words before each run, such as 'nice -n 10'")
+    parser.add_argument("--tables", action="store_true", help="run nothing, write the tables of what is finished")
+    given = parser.parse_args()
+    try:
+        given.output.mkdir(parents=True, exist_ok=True)
+        study = Study(given.output)
+        how = Programme(given.program, given.output, shlex.split(given.prefix))
+        for part in () if given.tables else given.parts or PARTS:
+            run_sets(how, part, study.sets(part), SIZES[part])
+        (given.output / "tables.md").write_text(tables(study))
+        draw(study, given.output)
+    except (OSError, ValueError) as error:  # ValueError: too few results for a search, or a damaged chosen.json
+        print(f"calibrate_soils: {error}", file=sys.stderr)
+        return 1
+    print(f"wrote {given.output}/tables.md")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,160 @@
+"""A quadratic response surface of all numbers over the logarithms of beta, limit and thickness, by weighted least
+squares, and the place of the box that meets Table 2 best, for the three soils at once or for some of them."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .definitions import Value
+from .plan import ANGLES, BOX, PEAK_STRAIN, SOILS, TARGETS, Set, from_unit, inside, to_unit
+
+Array = np.ndarray
+Observable = tuple[str, str]  # soil, and "peak", "critical", "dilatancy" or "strain"
+Choice = Mapping[str, str]  # the definition by which each of them is read
+OBSERVABLES: list[Observable] = [(soil, kind) for soil in SOILS for kind in (*ANGLES, "strain")]
+SIDE = 41  # places of the lattice along each side of the box on which the optimum is looked for
+
+
+def target_of(observable: Observable) -> float:
+    """The number of Table 2 [degrees]."""
+    soil, kind = observable
+    return TARGETS[soil][ANGLES.index(kind)]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the sets of a design gave: one row for each set."""
+
+    units: Array  # (set, 3), places in the unit box
+    values: dict[Observable, Array]  # (set,), nan where it is missing
+    errors: dict[Observable, Array]  # standard errors over the packings
+
+    def packing_deviation(self, observable: Observable, packings: int) -> float:
+        """The typical standard deviation of a single packing: the root mean square over the sets."""
+        errors = self.errors[observable]
+        errors = errors[np.isfinite(errors)]
+        return float(np.sqrt(np.mean(errors**2) * packings)) if len(errors) else float("nan")
+
+
+def measured(sets: Iterable[Set], results: Mapping[str, Mapping[str, Mapping[str, Mapping[str, Value]]]],
+             choice: Choice) -> Measured:  # fmt: skip
+    """Rows of the sets that have a place in the box and a result; each name counts once."""
+    rows = list({one.name: one for one in sets if inside(one) and one.name in results}.values())
+    missing = Value(float("nan"), float("nan"), 0)
+
+    def value(one: Set, observable: Observable) -> Value:
+        soil, kind = observable
+        return results[one.name].get(soil, {}).get(kind, {}).get(choice[kind], missing)
+
+    table = {observable: [value(one, observable) for one in rows] for observable in OBSERVABLES}
+    units = np.array([to_unit(one.place) for one in rows if one.place is not None]).reshape(-1, len(BOX))
+    return Measured(units, {o: np.array([v.mean for v in vs]) for o, vs in table.items()},
+                    {o: np.array([v.error for v in vs]) for o, vs in table.items()})  # fmt: skip
+
+
+def monomials(units: Array) -> Array:
+    """1, x_i and x_i x_j at places (..., 3) -> (..., 10)."""
+    x = [units[..., k] for k in range(units.shape[-1])]
+    products = [x[i] * x[j] for i in range(len(x)) for j in range(i + 1)]
+    return np.stack([np.ones_like(x[0]), *x, *products], axis=-1)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """One number over the box."""
+
+    coefficients: Array  # (10,)
+    covariance: Array  # (10, 10)
+    misfit: float  # weighted root mean square of the residuals over their standard errors [-]
+
+    def at(self, units: Array) -> Array:
+        return np.asarray(monomials(units) @ self.coefficients)
+
+    def error_at(self, units: Array) -> Array:
+        m = monomials(units)
+        return np.sqrt(np.maximum(np.einsum("...i,ij,...j->...", m, self.covariance, m), 0.0))
+
+    def per_doubling(self, unit: Array, k: int) -> tuple[float, float]:
+        """What doubling parameter `k` changes around a place, and its standard error."""
+        low, high = list(BOX.values())[k]
+        step = 0.05
+        ends = np.stack([unit, unit])
+        ends[:, k] += [-step, step]
+        m = monomials(ends)
+        difference = (m[1] - m[0]) / (2 * step * np.log2(high / low))
+        return float(difference @ self.coefficients), float(np.sqrt(difference @ self.covariance @ difference))
+
+
+def surface(data: Measured, observable: Observable, centre: Array, reach: float) -> Surface:
+    """Weights are 1/(standard error)^2, and fall with the distance from `centre` over `reach` [unit box]. A standard
+    error of a few packings is itself uncertain: half of its square is taken from the mean of all sets. Where the
+    residuals are larger than the errors explain, the covariance grows with them."""
+    y, own = data.values[observable], data.errors[observable]
+    good = np.isfinite(y) & np.isfinite(own)
+    y, own, units = y[good], own[good], data.units[good]
+    if len(y) < 12:
+        raise ValueError(f"{len(y)} sets have {observable[1]} of {observable[0]}; a quadratic surface takes 12")
+    variance = 0.5 * (own**2 + np.mean(own**2)) + 1e-4
+    weight = np.exp(-0.5 * np.sum((units - centre) ** 2, axis=1) / reach**2) / variance
+    rows = monomials(units) * np.sqrt(weight)[:, None]
+    inverse = np.linalg.pinv(rows.T @ rows)
+    coefficients = inverse @ rows.T @ (y * np.sqrt(weight))
+    near = weight * variance
+    residuals = (y - monomials(units) @ coefficients) / np.sqrt(variance)
+    free = max(float(near.sum()) - 10.0, 1.0)
+    misfit = float(np.sqrt(np.sum(near * residuals**2) / free))
+    return Surface(coefficients, inverse * max(misfit, 1.0) ** 2, misfit)
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """The best place, its expected numbers, and how far each parameter may move."""
+
+    place: tuple[float, float, float]
+    chi_squared: float
+    numbers: int  # how many of them entered it
+    intervals: list[tuple[float, float]]  # of beta, limit and thickness: chi^2 rises by no more than 1 (68 %)
+    expected: dict[Observable, tuple[float, float]]
+    surfaces: dict[Observable, Surface]
+
+
+def chi_squared(surfaces: Mapping[Observable, Surface], units: Array, deviations: Mapping[Observable, float], *,
+                keep_peak: bool) -> Array:  # fmt: skip
+    """Sum of squared differences from Table 2, each over the scatter of one packing, because Table 2 is of one packing,
+    and the surface's own error. `keep_peak` adds what the axial strain at the peak of a dense soil is beyond its
+    limits."""
+    total = np.zeros(units.shape[:-1])
+    for observable, fitted in surfaces.items():
+        soil, kind = observable
+        value, error = fitted.at(units), fitted.error_at(units)
+        if kind != "strain":
+            total += (value - target_of(observable)) ** 2 / (deviations[observable] ** 2 + error**2)
+        elif keep_peak and soil in PEAK_STRAIN:
+            low, high = PEAK_STRAIN[soil]
+            total += np.maximum(np.maximum(low - value, value - high), 0.0) ** 2
+    return total
+
+
+def optimum(data: Measured, soils: Sequence[str], *, packings: int, keep_peak: bool = True, reach: float = 0.5,
+            ) -> Optimum:  # fmt: skip
+    """Done three times: the weights of the surface follow the place that the surface had before."""
+    wanted = [o for o in OBSERVABLES if o[0] in soils]
+    deviations = {o: data.packing_deviation(o, packings) for o in wanted}
+    axis = np.linspace(0, 1, SIDE)
+    lattice = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
+    centre = np.full(3, 0.5)
+    for width in (9.0, reach, reach):
+        surfaces = {o: surface(data, o, centre, width) for o in wanted}
+        chi = chi_squared(surfaces, lattice, deviations, keep_peak=keep_peak)
+        best = np.unravel_index(int(np.argmin(chi)), chi.shape)
+        centre = lattice[best]
+    least = float(chi[best])
+    intervals = []
+    for k, side in enumerate(BOX.values()):
+        others = tuple(j for j in range(3) if j != k)
+        inside = axis[chi.min(axis=others) <= least + 1.0]
+        low, high = (side[0] * (side[1] / side[0]) ** float(u) for u in (inside[0], inside[-1]))
+        intervals.append((low, high))
+    expected = {o: (float(s.at(centre)), float(s.error_at(centre))) for o, s in surfaces.items()}
+    return Optimum(from_unit(centre), least, sum(o[1] != "strain" for o in wanted), intervals, expected, surfaces)
