@@ -11,9 +11,10 @@ from pathlib import Path
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 sys.path.insert(0, str(ROOT / "tools"))
 
+import h5py
 import numpy as np
 from calibration_study import definitions as d
-from calibration_study import fit, plan, report, runs
+from calibration_study import fit, plan, report, results, runs
 
 
 def sine(degrees):
@@ -21,8 +22,8 @@ def sine(degrees):
 
 
 def curve(seed=1, kpa=100, peak=40.0, critical=32.0, psi=15.0, at=0.04, end=0.2, noise=0.0):
-    """q/p rises in a straight line to its peak at the strain `at`, stays for 3 % and falls to the critical state at 12 %;
-    the volume dilates by `psi` as long as the strength is at its peak and does not change after 12 %."""
+    """q/p rises in a straight line to its peak at the strain `at`, stays for 3 % and falls to the critical state at
+    12 %; the volume dilates by `psi` as long as the strength is at its peak and does not change after 12 %."""
     axial = np.linspace(0, end, 801)
     ratio = np.interp(axial, [0, at, at + 0.03, 0.12, 1], [0, sine(peak), sine(peak), sine(critical), sine(critical)])
     rate = np.interp(axial, [0, at, at + 0.03, 0.12, 1], [-0.2, sine(psi), sine(psi), 0, 0])  # -d(eps_v)/d(gamma)
@@ -137,6 +138,21 @@ class Search(unittest.TestCase):
 
 
 class Runs(unittest.TestCase):
+    def test_tests_are_read_by_their_pressures_of_rest(self):
+        """A packing of 400 kPa rests at 400006 Pa; tests whose lateral stress was not held do not count."""
+        with tempfile.TemporaryDirectory() as folder:
+            with h5py.File(f"{folder}/run.h5", "w") as file:
+                file.attrs["format"], file.attrs["format_version"] = np.bytes_("voussoir run"), 1
+                strength = {"seed": [1, 1, 2], "pressure": [99999.6, 400006.1, 400006.1],
+                            "lateral_scatter": [0.02, 0.03, 0.2], "mean_overlap": [0.01, 0.02, 0.02]}  # fmt: skip
+                for name, values in strength.items():
+                    file[f"tables/strength/{name}"] = np.array(values)
+                for seed, kpa in ((1, 100), (1, 400), (2, 400)):
+                    for name in results.COLUMNS:
+                        file[f"tables/seed_{seed}_{kpa}_kPa/{name}"] = np.linspace(0, 0.2, 50) + 1
+            found = results.tests_of(Path(folder))
+        self.assertEqual([(test.seed, test.pressure) for test in found], [(1, 1e5), (1, 4e5)])
+
     def test_cases_are_read_by_the_program(self):
         """Each reading is a case that the program takes, with the values of the set."""
         program = Path(os.environ["VOUSSOIR"])

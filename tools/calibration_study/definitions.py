@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .plan import PRESSURES
+
 Array = np.ndarray
 NAN = float("nan")
 
@@ -118,11 +120,15 @@ def ratio_at_zero_dilatancy(test: Test, window: float = 0.02) -> float:
 
 
 def by_pressure(tests: Sequence[Test], value_of: Callable[[Test], float]) -> tuple[Array, Array]:
-    """(pressures, means): the mean over the packings of a value at each pressure [Pa]; nan where no test has it."""
-    pressures = sorted({test.pressure for test in tests})
-    values = [[value_of(test) for test in tests if test.pressure == pressure] for pressure in pressures]
-    means = [float(np.nanmean(v)) if not np.all(np.isnan(v)) else NAN for v in values]
-    return np.array(pressures), np.array(means)
+    """(pressures, means): the mean over the packings of a value at each pressure [Pa]; nan where no test has it, so
+    that a set that lost all tests of a pressure is not compared with one that has them."""
+    pressures = 1e3 * np.array(PRESSURES)
+    means = []
+    for pressure in pressures:
+        values = np.array([value_of(test) for test in tests if abs(test.pressure - pressure) < 1e-3 * pressure])
+        values = values[np.isfinite(values)]
+        means.append(float(np.mean(values)) if len(values) else NAN)
+    return pressures, np.array(means)
 
 
 def angle(sine: float) -> float:
@@ -133,21 +139,22 @@ def angle(sine: float) -> float:
 def _line(pressures: Array, sines: Array, *, through_origin: bool) -> float:
     """Angle of the line q against p fitted to the tests' points; each lies where a test under its pressure on x has its
     ratio, p = pressure / (1 - sin phi)."""
-    if np.isnan(sines).any() or not len(sines):
+    if np.isnan(sines).any():
         return NAN
     p = pressures / (1.0 - sines)
     q = sines * p
     if through_origin:
         return angle(float(p @ q / (p @ p)))
-    return angle(float(np.polynomial.polynomial.polyfit(p, q, 1)[1])) if len(p) > 1 else NAN
+    return angle(float(np.polynomial.polynomial.polyfit(p, q, 1)[1]))
 
 
 def averaged_curves(tests: Sequence[Test], points: int = 401) -> list[Test]:
     """One curve for each pressure: stresses and strains averaged over the packings at the same axial strain, as far as
     all packings went."""
     out = []
-    for pressure in sorted({test.pressure for test in tests}):
-        members = [test for test in tests if test.pressure == pressure and test.reached > 0.1]
+    for pressure in 1e3 * np.array(PRESSURES):
+        near = [test for test in tests if abs(test.pressure - pressure) < 1e-3 * pressure]
+        members = [test for test in near if test.reached > 0.1]
         if not members:
             continue
         axial = np.linspace(0, min(m.reached for m in members), points)
@@ -166,7 +173,7 @@ def mean_peak_strain(tests: Sequence[Test]) -> float:
         at, ratio = smoothed_ratio(test, 0.02)
         return float(100 * at[int(np.argmax(ratio))]) if np.isfinite(peak_of(test, 0.02)) else NAN
 
-    return float(np.nanmean(by_pressure(tests, strain)[1])) if tests else NAN
+    return float(np.mean(by_pressure(tests, strain)[1]))
 
 
 def line(value_of: Callable[[Test], float], *, through_origin: bool = True) -> Definition:
@@ -175,16 +182,14 @@ def line(value_of: Callable[[Test], float], *, through_origin: bool = True) -> D
 
 def mean_of_tests(value_of: Callable[[Test], float]) -> Definition:
     def value(tests: Sequence[Test]) -> float:
-        sines = by_pressure(tests, value_of)[1]
-        return float(np.mean([angle(s) for s in sines])) if len(sines) else NAN
+        return float(np.mean([angle(s) for s in by_pressure(tests, value_of)[1]]))
 
     return value
 
 
-def at_pressure(kilopascals: float, value_of: Callable[[Test], float]) -> Definition:
+def at_pressure(kilopascals: int, value_of: Callable[[Test], float]) -> Definition:
     def value(tests: Sequence[Test]) -> float:
-        chosen = [test for test in tests if abs(test.pressure - 1e3 * kilopascals) < 1.0]
-        return angle(float(by_pressure(chosen, value_of)[1][0])) if chosen else NAN
+        return angle(float(by_pressure(tests, value_of)[1][PRESSURES.index(kilopascals)]))
 
     return value
 

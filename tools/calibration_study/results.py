@@ -20,6 +20,11 @@ _CURVE = re.compile(r"seed_(\d+)_([0-9.e+]+)_kPa")
 Angles = dict[str, dict[str, Value]]  # {"peak": {definition: value}, ...}
 
 
+def _name(seed: float, pressure: float) -> str:
+    """The table of a test; `pressure` [Pa]."""
+    return f"seed_{int(seed)}_{pressure * 1e-3:.4g}_kPa"
+
+
 def tests_of(folder: Path) -> list[Test]:
     """The tests of one run whose lateral stress was held and whose overlaps the contact law allows, also those that
     broke off. Raises Missing where there is no such run."""
@@ -32,13 +37,13 @@ def tests_of(folder: Path) -> list[Test]:
         tables = file["tables"]
         table = {name: tables["strength"][name][()] for name in ("seed", "pressure", "lateral_scatter", "mean_overlap")}
         usable = {
-            (int(seed), round(pressure))
+            _name(seed, pressure)  # the pressure of a packing is that of its rest, 400006 Pa where 400 kPa are wanted
             for seed, pressure, scatter, overlap in zip(*table.values(), strict=True)
             if scatter <= MOST_SCATTER and overlap <= MOST_OVERLAP
         }
         for name in tables:
             found = _CURVE.fullmatch(name)
-            if not found or (int(found[1]), round(1e3 * float(found[2]))) not in usable:
+            if not found or name not in usable:
                 continue
             x = {key: tables[name][key][()] for key in COLUMNS}
             if len(x["p"]) > 10:
