@@ -8,13 +8,14 @@ import tempfile
 import unittest
 from pathlib import Path
 
-ROOT = Path(os.environ["VOUSSOIR_ROOT"])
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
 import h5py
 import numpy as np
 from calibration_study import definitions as d
 from calibration_study import fit, plan, report, results, runs
+
+ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 
 
 def sine(degrees):

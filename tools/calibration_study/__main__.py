@@ -1,6 +1,7 @@
 """Searches rolling stiffness, rolling limit and thickness for the study's three soils at once, and writes what of Table
 2 is met. Parts: readings (what the printed coefficient may mean), design (sets all over the box), near (around the
-best), confirm (the chosen sets at full size), slow (the shipped sets at the study's inertial number)."""
+best), confirm (the chosen sets at full size), slow (the shipped sets at the study's inertial number), compressed (the shipped
+sets with packings that are compressed from 1 kPa)."""
 
 import argparse
 import json
@@ -10,12 +11,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from calibration_study import fit, pictures, plan, report, results
+from calibration_study import compressed, fit, pictures, plan, report, results
 from calibration_study.definitions import USUAL
 from calibration_study.plan import SOILS, Set
 from calibration_study.runs import Programme, run_sets
 
-PARTS = ("readings", "design", "near", "confirm", "slow")
+PARTS = ("readings", "design", "near", "confirm", "slow", "compressed")
 SIZES = {
     "readings": plan.SEARCH,
     "design": plan.SEARCH,
@@ -105,6 +106,11 @@ def tables(study: Study) -> str:
     for part in ("confirm", "slow"):
         if confirmed := study.of(part):
             parts += report.full_size(part, confirmed)
+    found = {soil: tests for soil in SOILS if (tests := compressed.tests(study.folder, soil))}
+    if found:
+        shipped = {"compressed from 1 kPa": {soil: results.all_angles(tests) for soil, tests in found.items()}}
+        reference = {"shipped": study.of("readings").get("shipped", {})}
+        parts.append(report.section("Packings compressed from 1 kPa", report.sets(reference | shipped, USUAL)))
     return "\n".join(parts)
 
 
@@ -129,7 +135,10 @@ def main() -> int:
         study = Study(given.output)
         how = Programme(given.program, given.output, shlex.split(given.prefix))
         for part in () if given.tables else given.parts or PARTS:
-            run_sets(how, part, study.sets(part), SIZES[part])
+            if part == "compressed":
+                compressed.run(how, plan.readings()[0], plan.SEARCH)
+            else:
+                run_sets(how, part, study.sets(part), SIZES[part])
         (given.output / "tables.md").write_text(tables(study))
         draw(study, given.output)
     except (OSError, ValueError) as error:  # ValueError: too few results for a search, or a damaged chosen.json

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from voussoir_plots.result import Missing, check_format, reading
@@ -54,6 +54,13 @@ def tests_of(folder: Path) -> list[Test]:
     return tests
 
 
+def all_angles(tests: Sequence[Test]) -> Angles:
+    return {
+        kind: {name: with_error(tests, definition) for name, definition in definitions.items()}
+        for kind, definitions in DEFINITIONS.items()
+    }
+
+
 def angles_of(folder: Path) -> Angles:
     """All definitions of one run; kept beside it, because the jackknife takes a while."""
     cache, index = folder / "angles.json", folder / "run.h5"
@@ -61,11 +68,7 @@ def angles_of(folder: Path) -> Angles:
         stored = json.loads(cache.read_text())
         if isinstance(stored, dict) and stored.get("version") == VERSION:
             return {kind: {name: Value(*v) for name, v in values.items()} for kind, values in stored["angles"].items()}
-    tests = tests_of(folder)
-    angles = {
-        kind: {name: with_error(tests, definition) for name, definition in definitions.items()}
-        for kind, definitions in DEFINITIONS.items()
-    }
+    angles = all_angles(tests_of(folder))
     stored = {k: {n: [v.mean, v.error, v.packings] for n, v in values.items()} for k, values in angles.items()}
     cache.write_text(json.dumps({"version": VERSION, "angles": stored}))
     return angles

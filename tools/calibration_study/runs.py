@@ -32,27 +32,37 @@ def _class_text(values: Parameters, k: int) -> str:
     )
 
 
-def case_text(soil: str, values: Parameters, size: Size, packings: Path) -> str:
-    """The case file of one soil with one set."""
-    text = f'kind = "biaxial"\nextends = "{ROOT}/cases/soils/{soil}.toml"\n[soil]\nthickness = "{values.thickness} m"\n'
+def soil_text(soil: str, values: Parameters) -> str:
+    """What a case of one soil has of a set."""
+    text = f'extends = "{ROOT}/cases/soils/{soil}.toml"\n[soil]\nthickness = "{values.thickness} m"\n'
     if len(PRINTED[soil]) == 1:
-        text += f"rolling_stiffness = {values.stiffness[0]:.6g}\nrolling_limit = {values.limit[0]:.6g}\n"
-    else:
-        text += "".join(_class_text(values, k) for k in range(len(CLASSES)))
+        return text + f"rolling_stiffness = {values.stiffness[0]:.6g}\nrolling_limit = {values.limit[0]:.6g}\n"
+    return text + "".join(_class_text(values, k) for k in range(len(CLASSES)))
+
+
+def packing_text(soil: str, size: Size, packings: Path) -> str:
     seeds = ", ".join(str(seed) for seed in range(1, size.seeds + 1))
+    return f'[packing]\ngrains = {size.grains[soil]}\nseeds = [{seeds}]\nfolder = "{packings}"\n'
+
+
+def tests_text(soil: str, size: Size) -> str:
     pressures = ", ".join(f'"{kpa} kPa"' for kpa in PRESSURES)
-    return text + (
-        f'[packing]\ngrains = {size.grains[soil]}\nseeds = [{seeds}]\nfolder = "{packings}"\n'
+    return (
         f"[biaxial]\npressures = [{pressures}]\nstrain = 0.2\nsamples = 400\n"
         f"inertial_number = {size.inertial_number[soil]:g}\n"
     )
+
+
+def case_text(soil: str, values: Parameters, size: Size, packings: Path) -> str:
+    """The case file of one soil with one set."""
+    return 'kind = "biaxial"\n' + soil_text(soil, values) + packing_text(soil, size, packings) + tests_text(soil, size)
 
 
 def folder_of(group: Path, soil: str, name: str) -> Path:
     return group / f"{soil}_{name}"
 
 
-def _run_one(how: Programme, folder: Path, text: str) -> str:
+def run_one(how: Programme, folder: Path, text: str) -> str:
     """Empty where the run was there; the last line of what the program said where tests were lost."""
     case = folder.with_name(folder.name + ".toml")
     done = folder.with_name(folder.name + ".done")
@@ -82,5 +92,5 @@ def run_sets(how: Programme, group: str, sets: Sequence[Set], size: Size) -> Non
             if soil not in one.soils:
                 continue
             text = case_text(soil, one.soils[soil], size, how.folder.resolve() / "packings")
-            if line := _run_one(how, folder_of(folder, soil, one.name), text):
+            if line := run_one(how, folder_of(folder, soil, one.name), text):
                 print(line, flush=True)
