@@ -106,9 +106,9 @@ def tables(study: Study) -> str:
     for part in ("confirm", "slow"):
         if confirmed := study.of(part):
             parts += report.full_size(part, confirmed)
-    found = {soil: tests for soil in SOILS if (tests := compressed.tests(study.folder, soil))}
-    if found:
-        shipped = {"compressed from 1 kPa": {soil: results.all_angles(tests) for soil, tests in found.items()}}
+    other_way = {soil: tests for soil in SOILS if (tests := compressed.tests(study.folder, soil))}
+    if other_way:
+        shipped = {"compressed from 1 kPa": {soil: results.all_angles(tests) for soil, tests in other_way.items()}}
         reference = {"shipped": study.of("readings").get("shipped", {})}
         parts.append(report.section("Packings compressed from 1 kPa", report.sets(reference | shipped, USUAL)))
     return "\n".join(parts)

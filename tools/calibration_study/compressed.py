@@ -1,5 +1,5 @@
-"""Another way to the confining pressure. The study's packings rest at 1 kPa; the program consolidates a packing for each
-test at the test's pressure, still without friction. Here packings of 1 kPa are compressed to the pressures with their
+"""Another way to the confining pressure. The study's packings rest at 1 kPa; the program consolidates a packing for
+each test at the test's pressure, still without friction. Here packings of 1 kPa are compressed to the pressures with their
 working friction and rolling resistance instead."""
 
 import json
@@ -44,12 +44,7 @@ def run(how: Programme, one: Set, size: Size) -> None:
             seed = _seed_of(source)
             grains = packings / f"seed{seed}_particles.csv"
             _write_packing(source, grains)
-            text = (
-                'kind = "biaxial"\n'
-                + soil_text(soil, values)
-                + f'[packing]\nfile = "{grains}"\n'
-                + tests_text(soil, size)
-            )
+            text = f'kind = "biaxial"\n{soil_text(soil, values)}[packing]\nfile = "{grains}"\n{tests_text(soil, size)}'
             if line := run_one(how, folder / f"{soil}_seed{seed}", text):
                 print(line, flush=True)
 
