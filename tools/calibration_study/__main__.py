@@ -1,7 +1,7 @@
 """Searches rolling stiffness, rolling limit and thickness for the study's three soils at once, and writes what of Table
 2 is met. Parts: readings (what the printed coefficient may mean), design (sets all over the box), near (around the
-best), confirm (the chosen sets at full size), slow (the shipped sets at the study's inertial number), compressed (the shipped
-sets with packings that are compressed from 1 kPa)."""
+best), confirm (the chosen sets at full size), slow (the shipped sets at the study's inertial number), compressed (the
+shipped sets with packings that are compressed from 1 kPa)."""
 
 import argparse
 import json

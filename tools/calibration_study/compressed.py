@@ -1,6 +1,6 @@
 """Another way to the confining pressure. The study's packings rest at 1 kPa; the program consolidates a packing for
-each test at the test's pressure, still without friction. Here packings of 1 kPa are compressed to the pressures with their
-working friction and rolling resistance instead."""
+each test at the test's pressure, still without friction. Here packings of 1 kPa are compressed to the pressures with
+their working friction and rolling resistance instead."""
 
 import json
 from dataclasses import replace
