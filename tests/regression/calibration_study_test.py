@@ -1,4 +1,4 @@
-"""The definitions of the calibration study on curves with known answers, its search on known surfaces, and its refusals."""
+"""The definitions of the calibration study on curves with known answers, its search on known surfaces, its refusals."""
 
 import math
 import os
