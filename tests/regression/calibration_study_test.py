@@ -101,9 +101,9 @@ class Search(unittest.TestCase):
     best = (0.2, 0.7, 0.08)
 
     def data(self, sets):
-        """Numbers that are quadratic in the logarithms, and Table 2 at `best`."""
+        """Numbers that are quadratic in the features of a place, and Table 2 at `best`."""
         units = np.array([plan.to_unit(one.place) for one in sets])
-        off = units - plan.to_unit(self.best)
+        off = fit.features(units) - fit.features(plan.to_unit(self.best))
         values = {}
         for k, observable in enumerate(fit.OBSERVABLES):
             slope = np.array([[4, 1, -3], [5, 2, 1], [1, -2, 2], [1, 0, 3]][k % 4])
@@ -117,9 +117,9 @@ class Search(unittest.TestCase):
             self.assertAlmostEqual(math.log(x / wanted), 0, delta=0.15)
             self.assertTrue(low <= wanted <= high)
         self.assertLess(found.chi_squared, 0.1)
-        change, error = found.surfaces["cps_d", "peak"].per_doubling(plan.to_unit(self.best), 0)
-        low, high = plan.BOX["beta"]
-        self.assertAlmostEqual(change, 4 / math.log2(high / low), delta=0.05)
+        change, error = found.surfaces["cps_d", "peak"].per_doubling(plan.to_unit(self.best), 2)
+        low, high = plan.BOX["thickness"]
+        self.assertAlmostEqual(change, -3 / math.log2(high / low), delta=0.05)
         self.assertGreater(error, 0)
 
     def test_too_few_sets_are_refused(self):

@@ -34,16 +34,14 @@ class Study:
         self.folder = folder
         self.places = folder / "chosen.json"
 
-    def chosen(
-        self, name: str, choose: Mapping[str, Sequence[str]], *, keep_peak: bool = True
-    ) -> dict[str, list[float]]:
-        """{purpose: place} stored under a name, or found from what the search gave."""
+    def chosen(self, name: str, groups: Mapping[str, Sequence[str]], choice: fit.Choice) -> dict[str, list[float]]:
+        """{purpose: place} stored under a name, or found from what the search gave for the soils of each purpose."""
         stored = json.loads(self.places.read_text()) if self.places.exists() else {}
         if name not in stored:
-            data = self.measured(USUAL)
+            data = self.measured(choice)
             stored[name] = {
-                purpose: list(fit.optimum(data, soils, packings=plan.SEARCH.seeds, keep_peak=keep_peak).place)
-                for purpose, soils in choose.items()
+                purpose: list(fit.optimum(data, soils, packings=plan.SEARCH.seeds).place)
+                for purpose, soils in groups.items()
             }
             self.places.write_text(json.dumps(stored, indent=1) + "\n")
         return dict(stored[name])
@@ -54,16 +52,17 @@ class Study:
         if part == "design":
             return plan.design()
         if part == "near":
-            return plan.near(self.chosen("near", {"joint": SOILS})["joint"])
+            return plan.near(self.chosen("near", {"joint": SOILS}, USUAL)["joint"])
         by_name = {one.name: one for one in plan.readings()}
         if part == "slow":
             return [by_name["shipped"]]
-        places = self.chosen("confirm", {"joint": SOILS, **{soil: (soil,) for soil in SOILS}})
-        free = self.chosen("confirm without the peak's strain", {"joint": SOILS}, keep_peak=False)
-        joint, unbound = plan.at(places["joint"]), plan.at(free["joint"])
-        each = Set("each_soil_by_itself", {soil: plan.at(places[soil]).soils[soil] for soil in SOILS})
-        return [by_name["shipped"], by_name["literal"], Set("joint", joint.soils, joint.place),
-                Set("joint_any_peak_strain", unbound.soils, unbound.place), each]  # fmt: skip
+        sets = [by_name["shipped"], by_name["literal"]]
+        for name, choice in (("joint", USUAL), ("joint_smooth", report.SMOOTH)):
+            one = plan.at(self.chosen(name, {"joint": SOILS}, choice)["joint"])
+            sets.append(Set(name, one.soils, one.place))
+        places = self.chosen("each", {soil: (soil,) for soil in SOILS}, report.SMOOTH)
+        each = {soil: plan.at(places[soil]).soils[soil] for soil in SOILS}
+        return [*sets, Set("each_soil_by_itself", each)]
 
     def of(self, part: str) -> dict[str, dict[str, results.Angles]]:
         """What is finished of a part; nothing where its sets are not chosen yet."""

@@ -108,7 +108,7 @@ def design(count: int = 24) -> list[Set]:
     return [at(from_unit(unit)) for unit in space_filling(count)]
 
 
-def near(place: Sequence[float], count: int = 12, reach: float = 0.22) -> list[Set]:
+def near(place: Sequence[float], count: int = 8, reach: float = 0.22) -> list[Set]:
     """A finer design around one place of the box, the place itself first."""
     centre = to_unit(place)
     units = np.clip(centre + reach * (2 * space_filling(count, seed=2) - 1), 0, 1)

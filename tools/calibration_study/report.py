@@ -105,7 +105,7 @@ def sensitivities(best: Optimum, data: Measured, packings: int) -> str:
     """What doubling a parameter changes at the optimum, with standard errors, and the scatter that hides it."""
     unit = to_unit(best.place)
     names = ("β doubled", "η doubled", "t doubled")
-    text = [f"| number | wanted | expected | {' | '.join(names)} | scatter of one packing | residuals over errors |",
+    text = [f"| number | wanted | expected | {' | '.join(names)} | scatter of one packing | error of a set left out |",
             "|---" * 8 + "|"]  # fmt: skip
     for observable in OBSERVABLES:
         if observable not in best.surfaces:
@@ -117,7 +117,7 @@ def sensitivities(best: Optimum, data: Measured, packings: int) -> str:
         label = f"{NAMES[soil]} {SYMBOLS[kind]} [°]" if kind != "strain" else f"{NAMES[soil]} strain at the peak [%]"
         mean, error = best.expected[observable]
         text.append(f"| {label} | {wanted} | {mean:.1f} ± {error:.1f} | {' | '.join(cells)} "
-                    f"| {data.packing_deviation(observable, packings):.1f} | {surface.misfit:.1f} |")  # fmt: skip
+                    f"| {data.packing_deviation(observable, packings):.1f} | {surface.left_out:.1f} |")  # fmt: skip
     return "\n".join(text) + "\n"
 
 
