@@ -1,6 +1,6 @@
-"""A quadratic response surface of all numbers over the logarithms of beta, of what the limit leaves of the spring and of
-the thickness, by weighted least squares, and the place of the box that meets Table 2 best, for the three soils at once
-or for some of them."""
+"""A quadratic response surface of all numbers over the logarithms of beta, of what the limit leaves of the spring and
+of the thickness, by weighted least squares, and the place of the box that meets Table 2 best, for the three soils at
+once or for some of them."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
