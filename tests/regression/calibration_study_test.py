@@ -102,14 +102,14 @@ class Search(unittest.TestCase):
 
     def data(self, sets):
         """Numbers that are quadratic in the features of a place, and Table 2 at `best`."""
-        units = np.array([plan.to_unit(one.place) for one in sets])
+        units = np.array([plan.to_unit(plan.place_of("cps_d", one.soils["cps_d"])) for one in sets])
         off = fit.features(units) - fit.features(plan.to_unit(self.best))
         values = {}
         for k, observable in enumerate(fit.OBSERVABLES):
             slope = np.array([[4, 1, -3], [5, 2, 1], [1, -2, 2], [1, 0, 3]][k % 4])
             wanted = 3.0 if observable[1] == "strain" else fit.target_of(observable)
             values[observable] = wanted + off @ slope + 2 * off[:, 0] ** 2 - off[:, 1] * off[:, 2]
-        return fit.Measured(units, values, {o: np.full(len(units), 0.3) for o in values})
+        return fit.Measured(dict.fromkeys(plan.SOILS, units), values, {o: np.full(len(units), 0.3) for o in values})
 
     def test_the_optimum_of_a_known_surface_is_found(self):
         found = fit.optimum(self.data(plan.design()), plan.SOILS, packings=5)

@@ -34,9 +34,12 @@ class Study:
         self.folder = folder
         self.places = folder / "chosen.json"
 
+    def stored(self) -> dict[str, dict[str, list[float]]]:
+        return dict(json.loads(self.places.read_text())) if self.places.exists() else {}
+
     def chosen(self, name: str, groups: Mapping[str, Sequence[str]], choice: fit.Choice) -> dict[str, list[float]]:
         """{purpose: place} stored under a name, or found from what the search gave for the soils of each purpose."""
-        stored = json.loads(self.places.read_text()) if self.places.exists() else {}
+        stored = self.stored()
         if name not in stored:
             data = self.measured(choice)
             stored[name] = {
@@ -44,7 +47,7 @@ class Study:
                 for purpose, soils in groups.items()
             }
             self.places.write_text(json.dumps(stored, indent=1) + "\n")
-        return dict(stored[name])
+        return stored[name]
 
     def sets(self, part: str) -> list[Set]:
         if part == "readings":
@@ -59,19 +62,19 @@ class Study:
         sets = [by_name["shipped"], by_name["literal"]]
         for name, choice in (("joint", USUAL), ("joint_smooth", report.SMOOTH)):
             one = plan.at(self.chosen(name, {"joint": SOILS}, choice)["joint"])
-            sets.append(Set(name, one.soils, one.place))
+            sets.append(Set(name, one.soils))
         places = self.chosen("each", {soil: (soil,) for soil in SOILS}, report.SMOOTH)
         each = {soil: plan.at(places[soil]).soils[soil] for soil in SOILS}
         return [*sets, Set("each_soil_by_itself", each)]
 
     def of(self, part: str) -> dict[str, dict[str, results.Angles]]:
         """What is finished of a part; nothing where its sets are not chosen yet."""
-        if part in ("near", "confirm") and not self.places.exists():
+        if {"near": "near", "confirm": "each"}.get(part, part) not in (*self.stored(), "readings", "design", "slow"):
             return {}
         return results.of_group(self.folder / part, self.sets(part))
 
     def measured(self, choice: fit.Choice) -> fit.Measured:
-        parts = [part for part in ("design", "readings", "near") if part != "near" or self.places.exists()]
+        parts = [part for part in ("design", "readings", "near") if part != "near" or "near" in self.stored()]
         found: dict[str, dict[str, results.Angles]] = {}
         for part in parts:
             found |= self.of(part)
@@ -99,7 +102,12 @@ def tables(study: Study) -> str:
         except ValueError as few:
             parts.append(f"No search yet: {few}\n")
             break
-        parts.append(report.section(f"Optima{title} ({len(data.units)} sets)", report.optima(found)))
+        parts.append(
+            report.section(
+                f"Optima{title} ({', '.join(f'{len(data.units[soil])} sets of {report.NAMES[soil]}' for soil in SOILS)})",
+                report.optima(found),
+            )
+        )
         table = report.sensitivities(found["all soils"], data, plan.SEARCH.seeds)
         parts.append(report.section(f"Sensitivities at the joint optimum{title}", table))
     for part in ("confirm", "slow"):
@@ -115,7 +123,7 @@ def tables(study: Study) -> str:
 
 def draw(study: Study, folder: Path) -> None:
     data = study.measured(USUAL)
-    if len(data.units):
+    if all(len(units) for units in data.units.values()):
         pictures.reached(data, plan.SEARCH.seeds, folder / "calibration_reached.png")
     if confirmed := study.of("confirm"):
         pictures.nine_numbers(confirmed, USUAL, folder / "calibration_numbers.png")

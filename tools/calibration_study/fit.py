@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .definitions import Value
-from .plan import ANGLES, BOX, PEAK_STRAIN, SOILS, TARGETS, Set, from_unit, inside, to_unit
+from .plan import ANGLES, BOX, PEAK_STRAIN, SOILS, TARGETS, Set, from_unit, place_of, to_unit
+from .results import Angles
 
 Array = np.ndarray
 Observable = tuple[str, str]  # soil, and "peak", "critical", "dilatancy" or "strain"
@@ -25,9 +25,9 @@ def target_of(observable: Observable) -> float:
 
 @dataclass(frozen=True)
 class Measured:
-    """What the sets of a design gave: one row for each set."""
+    """What the sets of a design gave for each soil: one row for each set that has a place in the box."""
 
-    units: Array  # (set, 3), places in the unit box
+    units: dict[str, Array]  # of a soil: (set, 3), places in the unit box
     values: dict[Observable, Array]  # (set,), nan where it is missing
     errors: dict[Observable, Array]  # standard errors over the packings
 
@@ -38,20 +38,24 @@ class Measured:
         return float(np.sqrt(np.mean(errors**2) * packings)) if len(errors) else float("nan")
 
 
-def measured(sets: Iterable[Set], results: Mapping[str, Mapping[str, Mapping[str, Mapping[str, Value]]]],
-             choice: Choice) -> Measured:  # fmt: skip
-    """Rows of the sets that have a place in the box and a result; each name counts once."""
-    rows = list({one.name: one for one in sets if inside(one) and one.name in results}.values())
-    missing = Value(float("nan"), float("nan"), 0)
-
-    def value(one: Set, observable: Observable) -> Value:
-        soil, kind = observable
-        return results[one.name].get(soil, {}).get(kind, {}).get(choice[kind], missing)
-
-    table = {observable: [value(one, observable) for one in rows] for observable in OBSERVABLES}
-    units = np.array([to_unit(one.place) for one in rows if one.place is not None]).reshape(-1, len(BOX))
-    return Measured(units, {o: np.array([v.mean for v in vs]) for o, vs in table.items()},
-                    {o: np.array([v.error for v in vs]) for o, vs in table.items()})  # fmt: skip
+def measured(sets: Iterable[Set], results: Mapping[str, Mapping[str, Angles]], choice: Choice) -> Measured:
+    """The rows of all sets; each set counts once, and so does each place of a soil."""
+    units: dict[str, Array] = {}
+    values: dict[Observable, Array] = {}
+    errors: dict[Observable, Array] = {}
+    by_name = {one.name: one for one in sets}
+    for soil in SOILS:
+        rows: dict[tuple[float, float, float], Angles] = {}
+        for name, one in by_name.items():
+            place = place_of(soil, one.soils[soil]) if soil in one.soils else None
+            if place is not None and soil in results.get(name, {}):
+                rows.setdefault(place, results[name][soil])
+        units[soil] = np.array([to_unit(place) for place in rows]).reshape(-1, len(BOX))
+        for kind in (*ANGLES, "strain"):
+            chosen = [angles[kind][choice[kind]] for angles in rows.values()]
+            values[soil, kind] = np.array([value.mean for value in chosen])
+            errors[soil, kind] = np.array([value.error for value in chosen])
+    return Measured(units, values, errors)
 
 
 def features(units: Array) -> Array:
@@ -103,7 +107,7 @@ def surface(data: Measured, observable: Observable, centre: Array, reach: float)
     residuals are larger than the errors explain, the covariance grows with them."""
     y, own = data.values[observable], data.errors[observable]
     good = np.isfinite(y) & np.isfinite(own)
-    y, own, units = y[good], own[good], data.units[good]
+    y, own, units = y[good], own[good], data.units[observable[0]][good]
     if len(y) < 12:
         raise ValueError(f"{len(y)} sets have {observable[1]} of {observable[0]}; a quadratic surface takes 12")
     variance = 0.5 * (own**2 + np.mean(own**2)) + 1e-4

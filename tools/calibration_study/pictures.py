@@ -21,8 +21,8 @@ def reached(data: Measured, packings: int, path: Path) -> None:
     its arms are the scatter of a single packing."""
     use_style()
     figure, axes = plt.subplots(2, 3, figsize=(11.5, 6.6), sharex="col", layout="constrained")
-    thickness = np.array([from_unit(unit)[2] for unit in data.units])
     for column, soil in enumerate(SOILS):
+        thickness = [from_unit(unit)[2] for unit in data.units[soil]]
         peak, critical, dilatancy = (data.values[soil, kind] for kind in ANGLES)
         wanted = TARGETS[soil]
         scatter = [data.packing_deviation((soil, kind), packings) for kind in ANGLES]

@@ -46,7 +46,6 @@ class Set:
 
     name: str
     soils: dict[str, Parameters]
-    place: tuple[float, float, float] | None = None  # beta, limit and thickness, where one of each holds for all soils
 
 
 FULL = {"cps_d": 700, "cps_md": 700, "cpg_d": 1500}
@@ -60,7 +59,7 @@ def joint(name: str, beta: float, limit: float, thickness: float) -> Set:
     soils = {
         soil: Parameters((beta,), tuple(min(limit * x, UNLIMITED) for x in PRINTED[soil]), thickness) for soil in SOILS
     }
-    return Set(name, soils, (beta, limit, thickness))
+    return Set(name, soils)
 
 
 def name_of(beta: float, limit: float, thickness: float) -> str:
@@ -98,9 +97,15 @@ def space_filling(count: int, seed: int = 1, tries: int = 2000) -> np.ndarray:
     return best
 
 
-def inside(one: Set) -> bool:
-    """Whether a set has a place, and within the box."""
-    return one.place is not None and bool(np.all(np.abs(to_unit(one.place) - 0.5) < 0.51))
+def place_of(soil: str, values: Parameters) -> tuple[float, float, float] | None:
+    """Stiffness, limit over the printed one and thickness; None outside the box or where classes have other values."""
+    limit = values.limit[0] / PRINTED[soil][0]
+    if len(set(values.stiffness)) > 1 or not np.allclose(values.limit, limit * np.array(PRINTED[soil])):
+        return None
+    place = (values.stiffness[0], limit, values.thickness)
+    if any(not 0.999 * low <= x <= 1.001 * high for x, (low, high) in zip(place, BOX.values(), strict=True)):
+        return None
+    return place
 
 
 def design(count: int = 24) -> list[Set]:
