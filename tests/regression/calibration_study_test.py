@@ -102,7 +102,8 @@ class Search(unittest.TestCase):
 
     def data(self, sets):
         """Numbers that are quadratic in the features of a place, and Table 2 at `best`."""
-        units = np.array([plan.to_unit(plan.place_of("cps_d", one.soils["cps_d"])) for one in sets])
+        places = [plan.place_of("cps_d", one.soils["cps_d"]) for one in sets]
+        units = np.array([plan.to_unit(place) for place in places if place is not None])
         off = fit.features(units) - fit.features(plan.to_unit(self.best))
         values = {}
         for k, observable in enumerate(fit.OBSERVABLES):

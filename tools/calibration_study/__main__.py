@@ -24,6 +24,7 @@ SIZES = {
     "confirm": plan.CONFIRM,
     "slow": plan.SLOW,
 }
+CHOSEN_FOR = {"near": "near", "confirm": "each"}  # the last places of chosen.json that a part needs
 
 
 class Study:
@@ -69,7 +70,7 @@ class Study:
 
     def of(self, part: str) -> dict[str, dict[str, results.Angles]]:
         """What is finished of a part; nothing where its sets are not chosen yet."""
-        if {"near": "near", "confirm": "each"}.get(part, part) not in (*self.stored(), "readings", "design", "slow"):
+        if part in CHOSEN_FOR and CHOSEN_FOR[part] not in self.stored():
             return {}
         return results.of_group(self.folder / part, self.sets(part))
 
@@ -102,12 +103,8 @@ def tables(study: Study) -> str:
         except ValueError as few:
             parts.append(f"No search yet: {few}\n")
             break
-        parts.append(
-            report.section(
-                f"Optima{title} ({', '.join(f'{len(data.units[soil])} sets of {report.NAMES[soil]}' for soil in SOILS)})",
-                report.optima(found),
-            )
-        )
+        counts = ", ".join(f"{len(data.units[soil])} sets of {report.NAMES[soil]}" for soil in SOILS)
+        parts.append(report.section(f"Optima{title} ({counts})", report.optima(found)))
         table = report.sensitivities(found["all soils"], data, plan.SEARCH.seeds)
         parts.append(report.section(f"Sensitivities at the joint optimum{title}", table))
     for part in ("confirm", "slow"):
