@@ -124,8 +124,8 @@ class Search(unittest.TestCase):
         self.assertGreater(error, 0)
 
     def test_too_few_sets_are_refused(self):
-        with self.assertRaisesRegex(ValueError, "takes 12"):
-            fit.optimum(self.data(plan.design()[:8]), plan.SOILS, packings=5)
+        with self.assertRaisesRegex(ValueError, "takes 6"):
+            fit.optimum(self.data(plan.design()[:5]), plan.SOILS, packings=5)
 
     def test_the_design_fills_the_box(self):
         units = plan.space_filling(24)
@@ -174,8 +174,8 @@ class Runs(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             missing = said("readings", "-o", folder, "--program", "/nowhere/voussoir")
             (Path(folder) / "chosen.json").write_text("{")
-            damaged = said("near", "-o", folder)
-            nothing = said("near", "-o", f"{folder}/new")
+            damaged = said("chosen", "-o", folder)
+            nothing = said("chosen", "-o", f"{folder}/new")
         for result in (missing, damaged, nothing):
             self.assertNotEqual(result.returncode, 0)
             self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)

@@ -1,6 +1,6 @@
 """Searches rolling stiffness, rolling limit and thickness for the study's three soils at once, and writes what of Table
-2 is met. Parts: readings (what the printed coefficient may mean), design (sets all over the box), near (around the
-best), confirm (the chosen sets at full size), slow (the shipped sets at the study's inertial number), compressed (the
+2 is met. Parts: readings (what the printed coefficient may mean), design (sets all over the box), chosen (the best of
+them), confirm (the shipped, literal and chosen sets at full size), slow (the shipped sets at the study's inertial number), compressed (the
 shipped sets with packings that are compressed from 1 kPa)."""
 
 import argparse
@@ -16,20 +16,13 @@ from calibration_study.definitions import USUAL
 from calibration_study.plan import SOILS, Set
 from calibration_study.runs import Programme, run_sets
 
-PARTS = ("readings", "design", "near", "confirm", "slow", "compressed")
-SIZES = {
-    "readings": plan.SEARCH,
-    "design": plan.SEARCH,
-    "near": plan.SEARCH,
-    "confirm": plan.CONFIRM,
-    "slow": plan.SLOW,
-}
-CHOSEN_FOR = {"near": "near", "confirm": "each"}  # the last places of chosen.json that a part needs
+PARTS = ("readings", "design", "chosen", "confirm", "slow", "compressed")
+SIZES = {"confirm": plan.CONFIRM, "slow": plan.SLOW}  # the others: plan.SEARCH
 
 
 class Study:
-    """The parts of the study below one folder. What `near` and `confirm` run follows from earlier parts; it is chosen
-    once and kept in chosen.json, so that a study that is gone on with runs the same sets."""
+    """The parts of the study below one folder. What `chosen` and `confirm` run follows from earlier parts; it is
+    chosen once and kept in chosen.json, so that a study that is gone on with runs the same sets."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -55,30 +48,25 @@ class Study:
             return plan.readings()
         if part == "design":
             return plan.design()
-        if part == "near":
-            return plan.near(self.chosen("near", {"joint": SOILS}, USUAL)["joint"])
         by_name = {one.name: one for one in plan.readings()}
         if part == "slow":
             return [by_name["shipped"]]
-        sets = [by_name["shipped"], by_name["literal"]]
-        for name, choice in (("joint", USUAL), ("joint_smooth", report.SMOOTH)):
-            one = plan.at(self.chosen(name, {"joint": SOILS}, choice)["joint"])
-            sets.append(Set(name, one.soils))
-        places = self.chosen("each", {soil: (soil,) for soil in SOILS}, report.SMOOTH)
-        each = {soil: plan.at(places[soil]).soils[soil] for soil in SOILS}
-        return [*sets, Set("each_soil_by_itself", each)]
+        joint = plan.at(self.chosen("joint", {"all": SOILS}, USUAL)["all"])
+        places = self.chosen("sand_and_gravel", {"sand": SOILS[:2], "gravel": SOILS[2:]}, report.SMOOTH)
+        sand, gravel = plan.at(places["sand"]), plan.at(places["gravel"])
+        apart = {soil: (gravel if soil == "cpg_d" else sand).soils[soil] for soil in SOILS}
+        best = [Set("joint", joint.soils), Set("sand_and_gravel", apart)]
+        return best if part == "chosen" else [by_name["shipped"], by_name["literal"], *best]
 
     def of(self, part: str) -> dict[str, dict[str, results.Angles]]:
         """What is finished of a part; nothing where its sets are not chosen yet."""
-        if part in CHOSEN_FOR and CHOSEN_FOR[part] not in self.stored():
+        if part in ("chosen", "confirm") and "sand_and_gravel" not in self.stored():
             return {}
         return results.of_group(self.folder / part, self.sets(part))
 
     def measured(self, choice: fit.Choice) -> fit.Measured:
-        parts = [part for part in ("design", "readings", "near") if part != "near" or "near" in self.stored()]
-        found: dict[str, dict[str, results.Angles]] = {}
-        for part in parts:
-            found |= self.of(part)
+        parts = ("readings", "design")
+        found = {name: soils for part in parts for name, soils in self.of(part).items()}
         return fit.measured([one for part in parts for one in self.sets(part)], found, choice)
 
     def optima(self, choice: fit.Choice) -> tuple[fit.Measured, dict[str, fit.Optimum]]:
@@ -107,7 +95,7 @@ def tables(study: Study) -> str:
         parts.append(report.section(f"Optima{title} ({counts})", report.optima(found)))
         table = report.sensitivities(found["all soils"], data, plan.SEARCH.seeds)
         parts.append(report.section(f"Sensitivities at the joint optimum{title}", table))
-    for part in ("confirm", "slow"):
+    for part in ("chosen", "confirm", "slow"):
         if confirmed := study.of(part):
             parts += report.full_size(part, confirmed)
     other_way = {soil: tests for soil in SOILS if (tests := compressed.tests(study.folder, soil))}
@@ -122,8 +110,12 @@ def draw(study: Study, folder: Path) -> None:
     data = study.measured(USUAL)
     if all(len(units) for units in data.units.values()):
         pictures.reached(data, plan.SEARCH.seeds, folder / "calibration_reached.png")
-    if confirmed := study.of("confirm"):
-        pictures.nine_numbers(confirmed, USUAL, folder / "calibration_numbers.png")
+    readings = study.of("readings")
+    shown: dict[str, dict[str, results.Angles]] = {
+        name: readings[name] for name in ("shipped", "literal", "soft_unlimited") if name in readings
+    }
+    shown |= study.of("chosen")
+    pictures.nine_numbers(shown, USUAL, folder / "calibration_numbers.png")
 
 
 def main() -> int:
@@ -142,7 +134,7 @@ def main() -> int:
             if part == "compressed":
                 compressed.run(how, plan.readings()[0], plan.SEARCH)
             else:
-                run_sets(how, part, study.sets(part), SIZES[part])
+                run_sets(how, part, study.sets(part), SIZES.get(part, plan.SEARCH))
         (given.output / "tables.md").write_text(tables(study))
         draw(study, given.output)
     except (OSError, ValueError) as error:  # ValueError: too few results for a search, or a damaged chosen.json

@@ -14,6 +14,7 @@ Array = np.ndarray
 Observable = tuple[str, str]  # soil, and "peak", "critical", "dilatancy" or "strain"
 Choice = Mapping[str, str]  # the definition by which each of them is read
 OBSERVABLES: list[Observable] = [(soil, kind) for soil in SOILS for kind in (*ANGLES, "strain")]
+FEWEST = {1: 6, 2: 14}  # sets that a linear and a quadratic surface take
 SIDE = 41  # places of the lattice along each side of the box on which the optimum is looked for
 
 
@@ -67,10 +68,10 @@ def features(units: Array) -> Array:
     return np.stack([units[..., 0], np.log(limit / (limit + beta**0.75)), units[..., 2]], axis=-1)
 
 
-def monomials(units: Array) -> Array:
-    """1, x_i and x_i x_j of the features at places (..., 3) -> (..., 10)."""
+def monomials(units: Array, order: int) -> Array:
+    """1, x_i and, of order 2, x_i x_j of the features at places (..., 3) -> (..., 4 or 10)."""
     x = list(np.moveaxis(features(units), -1, 0))
-    products = [x[i] * x[j] for i in range(len(x)) for j in range(i + 1)]
+    products = [x[i] * x[j] for i in range(len(x)) for j in range(i + 1)] if order == 2 else []
     return np.stack([np.ones_like(x[0]), *x, *products], axis=-1)
 
 
@@ -78,16 +79,17 @@ def monomials(units: Array) -> Array:
 class Surface:
     """One number over the box."""
 
-    coefficients: Array  # (10,)
-    covariance: Array  # (10, 10)
+    order: int  # 2, or 1 where too few sets have the number
+    coefficients: Array  # (4,) or (10,)
+    covariance: Array
     misfit: float  # weighted root mean square of the residuals over their standard errors [-]
     left_out: float  # the same of a set that is left out, in degrees or % of strain
 
     def at(self, units: Array) -> Array:
-        return np.asarray(monomials(units) @ self.coefficients)
+        return np.asarray(monomials(units, self.order) @ self.coefficients)
 
     def error_at(self, units: Array) -> Array:
-        m = monomials(units)
+        m = monomials(units, self.order)
         return np.sqrt(np.maximum(np.einsum("...i,ij,...j->...", m, self.covariance, m), 0.0))
 
     def per_doubling(self, unit: Array, k: int) -> tuple[float, float]:
@@ -96,7 +98,7 @@ class Surface:
         step = 0.05
         ends = np.stack([unit, unit])
         ends[:, k] += [-step, step]
-        m = monomials(ends)
+        m = monomials(ends, self.order)
         difference = (m[1] - m[0]) / (2 * step * np.log2(high / low))
         return float(difference @ self.coefficients), float(np.sqrt(difference @ self.covariance @ difference))
 
@@ -108,21 +110,23 @@ def surface(data: Measured, observable: Observable, centre: Array, reach: float)
     y, own = data.values[observable], data.errors[observable]
     good = np.isfinite(y) & np.isfinite(own)
     y, own, units = y[good], own[good], data.units[observable[0]][good]
-    if len(y) < 12:
-        raise ValueError(f"{len(y)} sets have {observable[1]} of {observable[0]}; a quadratic surface takes 12")
+    if len(y) < FEWEST[1]:
+        raise ValueError(f"{len(y)} sets have {observable[1]} of {observable[0]}; a surface takes {FEWEST[1]}")
+    order = 2 if len(y) >= FEWEST[2] else 1
     variance = 0.5 * (own**2 + np.mean(own**2)) + 1e-4
     weight = np.exp(-0.5 * np.sum((units - centre) ** 2, axis=1) / reach**2) / variance
-    rows = monomials(units) * np.sqrt(weight)[:, None]
+    terms = monomials(units, order)
+    rows = terms * np.sqrt(weight)[:, None]
     inverse = np.linalg.pinv(rows.T @ rows)
     influence = np.einsum("ki,ij,kj->k", rows, inverse, rows)
     coefficients = inverse @ rows.T @ (y * np.sqrt(weight))
     near = weight * variance
-    residuals = (y - monomials(units) @ coefficients) / np.sqrt(variance)
-    free = max(float(near.sum()) - 10.0, 1.0)
+    residuals = (y - terms @ coefficients) / np.sqrt(variance)
+    free = max(float(near.sum()) - terms.shape[1], 1.0)
     misfit = float(np.sqrt(np.sum(near * residuals**2) / free))
-    left_out = (y - monomials(units) @ coefficients) / np.maximum(1.0 - influence, 0.05)
+    left_out = (y - terms @ coefficients) / np.maximum(1.0 - influence, 0.05)
     spread = float(np.sqrt(np.average(left_out**2, weights=near)))
-    return Surface(coefficients, inverse * max(misfit, 1.0) ** 2, misfit, spread)
+    return Surface(order, coefficients, inverse * max(misfit, 1.0) ** 2, misfit, spread)
 
 
 @dataclass(frozen=True)

@@ -113,13 +113,6 @@ def design(count: int = 24) -> list[Set]:
     return [at(from_unit(unit)) for unit in space_filling(count)]
 
 
-def near(place: Sequence[float], count: int = 8, reach: float = 0.22) -> list[Set]:
-    """A finer design around one place of the box, the place itself first."""
-    centre = to_unit(place)
-    units = np.clip(centre + reach * (2 * space_filling(count, seed=2) - 1), 0, 1)
-    return [at(place), *(at(from_unit(unit)) for unit in units)]
-
-
 def _elastic_plastic_spring(soil: str) -> Parameters:
     """Model C of Ai et al. (2011) as LIGGGHTS documents it: k_r = 2.25 k_n mu_r^2 R^2, |M| <= mu_r R F_n with
     1/R = 1/r1 + 1/r2; for equal grains R = r/2."""

@@ -116,8 +116,9 @@ def sensitivities(best: Optimum, data: Measured, packings: int) -> str:
         wanted = f"{target_of(observable):.1f}" if kind != "strain" else ""
         label = f"{NAMES[soil]} {SYMBOLS[kind]} [°]" if kind != "strain" else f"{NAMES[soil]} strain at the peak [%]"
         mean, error = best.expected[observable]
-        text.append(f"| {label} | {wanted} | {mean:.1f} ± {error:.1f} | {' | '.join(cells)} "
-                    f"| {data.packing_deviation(observable, packings):.1f} | {surface.left_out:.1f} |")  # fmt: skip
+        linear = ", linear" if surface.order == 1 else ""
+        scatter = f"{data.packing_deviation(observable, packings):.1f} | {surface.left_out:.1f}{linear}"
+        text.append(f"| {label} | {wanted} | {mean:.1f} ± {error:.1f} | {' | '.join(cells)} | {scatter} |")
     return "\n".join(text) + "\n"
 
 
@@ -142,7 +143,7 @@ def section(title: str, *parts: str) -> str:
 def full_size(part: str, confirmed: ByName) -> list[str]:
     """The numbers of the sets at full size, and what each definition makes of each set."""
     smooth = ["Read from smooth curves:", "", sets(confirmed, SMOOTH)]
-    text = [section(f"Full size: {part}", sets(confirmed, USUAL), *smooth)]
+    text = [section(f"Sets: {part}", sets(confirmed, USUAL), *smooth)]
     for name, soils in confirmed.items():
         if len(soils) < len(SOILS):
             continue
