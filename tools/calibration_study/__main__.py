@@ -1,7 +1,7 @@
 """Searches rolling stiffness, rolling limit and thickness for the study's three soils at once, and writes what of Table
 2 is met. Parts: readings (what the printed coefficient may mean), design (sets all over the box), chosen (the best of
-them), confirm (the shipped, literal and chosen sets at full size), slow (the shipped sets at the study's inertial number), compressed (the
-shipped sets with packings that are compressed from 1 kPa)."""
+them), confirm (the shipped, literal and chosen sets at full size), slow (the shipped sets at the study's inertial
+number), compressed (the shipped sets with packings that are compressed from 1 kPa)."""
 
 import argparse
 import json
@@ -17,6 +17,7 @@ from calibration_study.plan import SOILS, Set
 from calibration_study.runs import Programme, run_sets
 
 PARTS = ("readings", "design", "chosen", "confirm", "slow", "compressed")
+SHOWN = ("shipped", "soft_unlimited")  # readings that are shown with all definitions
 SIZES = {"confirm": plan.CONFIRM, "slow": plan.SLOW}  # the others: plan.SEARCH
 
 
@@ -84,7 +85,11 @@ def tables(study: Study) -> str:
     """All tables of what is finished."""
     parts = []
     if readings := study.of("readings"):
-        parts.append(report.section("Readings of the printed coefficient", report.sets(readings, USUAL)))
+        both = [report.sets(readings, USUAL), "Read from smooth curves:", "", report.sets(readings, report.SMOOTH)]
+        parts.append(report.section("Readings of the printed coefficient", *both))
+        parts += [
+            report.by_definition(name, readings[name]) for name in SHOWN if len(readings.get(name, {})) == len(SOILS)
+        ]
     for title, choice in (("", USUAL), (", read from smooth curves", report.SMOOTH)):
         try:
             data, found = study.optima(choice)
@@ -97,7 +102,7 @@ def tables(study: Study) -> str:
         parts.append(report.section(f"Sensitivities at the joint optimum{title}", table))
     for part in ("chosen", "confirm", "slow"):
         if confirmed := study.of(part):
-            parts += report.full_size(part, confirmed)
+            parts += report.of_part(part, confirmed)
     other_way = {soil: tests for soil in SOILS if (tests := compressed.tests(study.folder, soil))}
     if other_way:
         shipped = {"compressed from 1 kPa": {soil: results.all_angles(tests) for soil, tests in other_way.items()}}

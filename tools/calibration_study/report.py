@@ -140,18 +140,22 @@ def section(title: str, *parts: str) -> str:
     return "\n".join([f"## {title}", "", *parts])
 
 
-def full_size(part: str, confirmed: ByName) -> list[str]:
-    """The numbers of the sets at full size, and what each definition makes of each set."""
+def by_definition(title: str, soils: Mapping[str, Angles]) -> str:
+    """What each definition makes of one set, and what is met by the nearest of them."""
+    choice = chosen_definitions(soils)
+    met, scattered, off = score(soils, choice)
+    nearest = (
+        f"Nearest: {'; '.join(choice[kind] for kind in ANGLES)}. With these {met} are met within one standard error, "
+        f"{scattered} within the scatter of one packing, rms {off:.1f}°.\n"
+    )
+    return section(f"Definitions: {title}", definitions(soils), nearest)
+
+
+def of_part(part: str, confirmed: ByName) -> list[str]:
+    """The numbers of the sets of a part, and what each definition makes of each set."""
     smooth = ["Read from smooth curves:", "", sets(confirmed, SMOOTH)]
-    text = [section(f"Sets: {part}", sets(confirmed, USUAL), *smooth)]
-    for name, soils in confirmed.items():
-        if len(soils) < len(SOILS):
-            continue
-        choice = chosen_definitions(soils)
-        met, scattered, off = score(soils, choice)
-        nearest = (
-            f"Nearest: {'; '.join(choice[kind] for kind in ANGLES)}. With these {met} are met within one standard "
-            f"error, {scattered} within the scatter of one packing, rms {off:.1f}°.\n"
-        )
-        text.append(section(f"Definitions: {part}, {name}", definitions(soils), nearest))
-    return text
+    whole = {name: soils for name, soils in confirmed.items() if len(soils) == len(SOILS)}
+    return [
+        section(f"Sets: {part}", sets(confirmed, USUAL), *smooth),
+        *(by_definition(f"{part}, {name}", soils) for name, soils in whole.items()),
+    ]
