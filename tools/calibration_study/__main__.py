@@ -114,7 +114,8 @@ def tables(study: Study) -> str:
 def draw(study: Study, folder: Path) -> None:
     data = study.measured(USUAL)
     if all(len(units) for units in data.units.values()):
-        pictures.reached(data, plan.SEARCH.seeds, folder / "calibration_reached.png")
+        smooth = study.measured(report.SMOOTH)
+        pictures.reached(data, smooth, plan.SEARCH.seeds, folder / "calibration_reached.png")
     readings = study.of("readings")
     shown: dict[str, dict[str, results.Angles]] = {
         name: readings[name] for name in ("shipped", "literal", "soft_unlimited") if name in readings

@@ -15,6 +15,7 @@ from .plan import PRESSURES
 
 Array = np.ndarray
 NAN = float("nan")
+END = 0.199  # axial strain of a test that came to its end [-]
 
 
 @dataclass(frozen=True)
@@ -72,12 +73,12 @@ def dilatancy(test: Test, window: float) -> tuple[Array, Array]:
 
 
 def peak_of(test: Test, window: float) -> float:
-    """The largest smoothed q/p; nan for a test that broke off before it had been past its peak for a while."""
+    """The largest smoothed q/p; nan for a test that broke off before twice the strain of its peak."""
     strain, ratio = smoothed_ratio(test, window)
     if not len(ratio):
         return NAN
     k = int(np.argmax(ratio))
-    return float(ratio[k]) if test.reached >= 0.199 or strain[k] <= 0.75 * test.reached else NAN
+    return float(ratio[k]) if test.reached >= END or strain[k] <= 0.5 * test.reached else NAN
 
 
 def largest_dilatancy_of(test: Test, window: float) -> float:
@@ -85,7 +86,7 @@ def largest_dilatancy_of(test: Test, window: float) -> float:
     if not len(rate):
         return NAN
     k = int(np.argmax(rate))
-    return float(rate[k]) if test.reached >= 0.199 or strain[k] <= 0.75 * test.reached else NAN
+    return float(rate[k]) if test.reached >= END or (k > 0 and strain[k] <= 0.5 * test.reached) else NAN
 
 
 def mean_ratio_of(test: Test, low: float, high: float) -> float:
@@ -108,13 +109,13 @@ def ratio_at_constant_volume(test: Test, window: float = 0.02, most: float = 0.0
     """Mean q/p past the peak where the volume hardly changes, |sin psi| <= `most`."""
     rate, ratio = _after_peak(test, window)
     chosen = np.abs(rate) <= most
-    return float(np.mean(ratio[chosen])) if chosen.sum() >= 5 and test.reached >= 0.199 else NAN
+    return float(np.mean(ratio[chosen])) if chosen.sum() >= 5 and test.reached >= END else NAN
 
 
 def ratio_at_zero_dilatancy(test: Test, window: float = 0.02) -> float:
     """q/p where a line through the points past the peak, q/p against dilatancy, has no dilatancy."""
     rate, ratio = _after_peak(test, window)
-    if len(rate) < 10 or np.ptp(rate) < 0.05 or test.reached < 0.199:
+    if len(rate) < 10 or np.ptp(rate) < 0.05 or test.reached < END:
         return NAN
     return float(np.polynomial.polynomial.polyfit(rate, ratio, 1)[0])
 
@@ -210,7 +211,7 @@ def _dilation(window: float) -> Callable[[Test], float]:
     return lambda test: largest_dilatancy_of(test, window)
 
 
-VERSION = 1  # of the definitions; results that another version has stored are made anew
+VERSION = 2  # of the definitions; results that another version has stored are made anew
 PEAK: dict[str, Definition] = {
     "line through the origin, 2 %": line(_peak(0.02)),
     "the same, 0.5 %": line(_peak(0.005)),

@@ -16,27 +16,31 @@ COLOURS = {"cps_d": "#0072B2", "cps_md": "#E69F00", "cpg_d": "#009E73"}  # of Ok
 MARKERS = {"cps_d": "o", "cps_md": "s", "cpg_d": "^"}
 
 
-def reached(data: Measured, packings: int, path: Path) -> None:
-    """The sets of the search: phi_p - phi_cs and psi_max against phi_p, coloured by thickness; the cross is Table 2,
-    its arms are the scatter of a single packing."""
+def reached(usual: Measured, smooth: Measured, packings: int, path: Path) -> None:
+    """The sets of the search: phi_p - phi_cs and psi_max against phi_p, psi_max also as read from smooth curves,
+    coloured by thickness. The cross is Table 2, its arms are the scatter of a single packing."""
     use_style()
-    figure, axes = plt.subplots(2, 3, figsize=(11.5, 6.6), sharex="col", layout="constrained")
+    figure, axes = plt.subplots(3, 3, figsize=(11.5, 8.6), sharex="col", layout="constrained")
     for column, soil in enumerate(SOILS):
-        thickness = [from_unit(unit)[2] for unit in data.units[soil]]
-        peak, critical, dilatancy = (data.values[soil, kind] for kind in ANGLES)
+        thickness = [from_unit(unit)[2] for unit in usual.units[soil]]
+        peak, critical, dilatancy = (usual.values[soil, kind] for kind in ANGLES)
         wanted = TARGETS[soil]
-        scatter = [data.packing_deviation((soil, kind), packings) for kind in ANGLES]
-        rows = ((peak - critical, wanted[0] - wanted[1], float(np.hypot(scatter[0], scatter[1]))),
-                (dilatancy, wanted[2], scatter[2]))  # fmt: skip
+        scatter = [usual.packing_deviation((soil, kind), packings) for kind in ANGLES]
+        smooth_scatter = smooth.packing_deviation((soil, "dilatancy"), packings)
+        rows = (
+            (peak - critical, wanted[0] - wanted[1], float(np.hypot(scatter[0], scatter[1]))),
+            (dilatancy, wanted[2], scatter[2]),
+            (smooth.values[soil, "dilatancy"], wanted[2], smooth_scatter),
+        )
         for axis, (y, target, arm) in zip(axes[:, column], rows, strict=True):
             points = axis.scatter(peak, y, c=thickness, norm=LogNorm(*BOX["thickness"]), cmap="viridis", s=36,
                                   marker=MARKERS[soil], edgecolors="0.3", linewidths=0.4)  # fmt: skip
             axis.errorbar(wanted[0], target, xerr=scatter[0], yerr=arm, color="#D55E00", lw=2, capsize=4, zorder=5)
         axes[0, column].set_title(NAMES[soil])
-        axes[1, column].set_xlabel("peak angle φ_p [°]")
-    axes[0, 0].set_ylabel("φ_p less φ_cs [°]")
-    axes[1, 0].set_ylabel("dilatancy angle ψ_max [°]")
-    bar = figure.colorbar(points, ax=axes, label="thickness t [m]", shrink=0.8)
+        axes[2, column].set_xlabel("peak angle φ_p [°]")
+    for axis, label in zip(axes[:, 0], ("φ_p less φ_cs [°]", "ψ_max, each test, 2 % [°]", "ψ_max, averages, 4 % [°]")):
+        axis.set_ylabel(label)
+    bar = figure.colorbar(points, ax=axes, label="thickness t [m]", shrink=0.7)
     bar.set_ticks([0.02, 0.05, 0.1, 0.2, 0.4], labels=["0.02", "0.05", "0.1", "0.2", "0.4"])
     save(figure, path)
 
