@@ -2,10 +2,11 @@
 
 import json
 import re
+import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from voussoir_plots.result import Missing, check_format, reading
+from voussoir_plots.result import Missing, Unreadable, check_format, reading
 
 from .definitions import DEFINITIONS, VERSION, Test, Value, with_error
 from .plan import SOILS, Set
@@ -81,6 +82,8 @@ def of_group(group: Path, sets: Iterable[Set]) -> dict[str, dict[str, Angles]]:
         for soil in SOILS:
             try:
                 found.setdefault(one.name, {})[soil] = angles_of(folder_of(group, soil, one.name))
+            except Unreadable as damaged:
+                print(f"calibrate_soils: left out: {damaged}", file=sys.stderr)
             except Missing:
                 continue
     return found
