@@ -98,8 +98,9 @@ def tables(study: Study) -> str:
             break
         counts = ", ".join(f"{len(data.units[soil])} sets of {report.NAMES[soil]}" for soil in SOILS)
         parts.append(report.section(f"Optima{title} ({counts})", report.optima(found)))
-        table = report.sensitivities(found["all soils"], data, plan.SEARCH.seeds)
-        parts.append(report.section(f"Sensitivities at the joint optimum{title}", table))
+        for name in ("all soils", "both sands"):
+            table = report.sensitivities(found[name], data, plan.SEARCH.seeds)
+            parts.append(report.section(f"Sensitivities at the optimum of {name}{title}", table))
     for part in ("chosen", "confirm", "slow"):
         if confirmed := study.of(part):
             parts += report.of_part(part, confirmed)
