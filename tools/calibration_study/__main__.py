@@ -17,7 +17,7 @@ from calibration_study.plan import SOILS, Set
 from calibration_study.runs import Programme, run_sets
 
 PARTS = ("readings", "design", "chosen", "confirm", "slow", "compressed")
-SHOWN = ("shipped", "soft_unlimited")  # readings that are shown with all definitions
+SHOWN = ("shipped", "stiffer_sand")  # readings that are shown with all definitions
 SIZES = {"confirm": plan.CONFIRM, "slow": plan.SLOW}  # the others: plan.SEARCH
 
 
@@ -119,7 +119,7 @@ def draw(study: Study, folder: Path) -> None:
         pictures.reached(data, smooth, plan.SEARCH.seeds, folder / "calibration_reached.png")
     readings = study.of("readings")
     shown: dict[str, dict[str, results.Angles]] = {
-        name: readings[name] for name in ("shipped", "literal", "soft_unlimited") if name in readings
+        name: readings[name] for name in ("shipped", "stiffer_sand", "soft_unlimited", "literal") if name in readings
     }
     shown |= study.of("chosen")
     pictures.nine_numbers(shown, USUAL, folder / "calibration_numbers.png")

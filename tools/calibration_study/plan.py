@@ -146,7 +146,7 @@ def readings() -> list[Set]:
         spring,
         joint("soft", 0.1, 1.0, 0.1),
         each("soft_unlimited", 0.1, UNLIMITED),
-        joint("twice_the_soft", 0.2, 1.0, 0.1),
+        Set("stiffer_sand", {**shipped.soils, **{s: Parameters((0.2,), PRINTED[s]) for s in SOILS[:2]}}),
         joint("tenth_of_limit", 1.0, 0.1, 0.1),
         joint("quarter_of_limit", 1.0, 0.25, 0.1),
         # As thick as a grain: six times the steps, so without the gravel, which needs most.
