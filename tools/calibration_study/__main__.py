@@ -30,7 +30,14 @@ class Study:
         self.places = folder / "chosen.json"
 
     def stored(self) -> dict[str, dict[str, list[float]]]:
-        return dict(json.loads(self.places.read_text())) if self.places.exists() else {}
+        """What chosen.json has. Raises ValueError where it is damaged."""
+        if not self.places.exists():
+            return {}
+        try:
+            stored = json.loads(self.places.read_text())
+            return {name: {k: [float(x) for x in v] for k, v in places.items()} for name, places in stored.items()}
+        except (AttributeError, TypeError, ValueError) as error:
+            raise ValueError(f"{self.places} is damaged ({error}); without it the places are chosen anew") from error
 
     def chosen(self, name: str, groups: Mapping[str, Sequence[str]], choice: fit.Choice) -> dict[str, list[float]]:
         """{purpose: place} stored under a name, or found from what the search gave for the soils of each purpose."""
@@ -122,12 +129,21 @@ def draw(study: Study, folder: Path) -> None:
         name: readings[name] for name in ("shipped", "stiffer_sand", "soft_unlimited", "literal") if name in readings
     }
     shown |= study.of("chosen")
-    pictures.nine_numbers(shown, USUAL, folder / "calibration_numbers.png")
+    if shown:
+        pictures.nine_numbers(shown, USUAL, folder / "calibration_numbers.png")
+
+
+def part_named(name: str) -> str:
+    """The name of a part. argparse's own `choices` refuse a list of defaults."""
+    if name not in PARTS:
+        raise argparse.ArgumentTypeError(f"there is no part {name}; there are {', '.join(PARTS)}")
+    return name
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="tools/calibrate_soils", description=__doc__)
-    parser.add_argument("parts", nargs="*", choices=[*PARTS, []], metavar="PART", help=f"{', '.join(PARTS)} (all)")
+    parser.add_argument("parts", nargs="*", type=part_named, default=list(PARTS), metavar="PART",
+                        help=f"{', '.join(PARTS)} (all)")  # fmt: skip
     parser.add_argument("-o", "--output", type=Path, default=Path("out/calibration_study"))
     parser.add_argument("--program", type=Path, default=Path("build/openmp/host/voussoir"))
     parser.add_argument("--prefix", default="", help="words before each run, such as 'nice -n 10'")
@@ -137,7 +153,7 @@ def main() -> int:
         given.output.mkdir(parents=True, exist_ok=True)
         study = Study(given.output)
         how = Programme(given.program, given.output, shlex.split(given.prefix))
-        for part in () if given.tables else given.parts or PARTS:
+        for part in () if given.tables else given.parts:
             if part == "compressed":
                 compressed.run(how, plan.readings()[0], plan.SEARCH)
             else:

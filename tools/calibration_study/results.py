@@ -4,6 +4,7 @@ import json
 import re
 import sys
 from collections.abc import Iterable, Sequence
+from functools import cache
 from pathlib import Path
 
 from voussoir_plots.result import Missing, Unreadable, check_format, reading
@@ -75,6 +76,11 @@ def angles_of(folder: Path) -> Angles:
     return angles
 
 
+@cache
+def say_once(line: str) -> None:
+    print(line, file=sys.stderr)
+
+
 def of_group(group: Path, sets: Iterable[Set]) -> dict[str, dict[str, Angles]]:
     """{set: {soil: angles}} of what is finished; what is not is left out."""
     found: dict[str, dict[str, Angles]] = {}
@@ -83,7 +89,7 @@ def of_group(group: Path, sets: Iterable[Set]) -> dict[str, dict[str, Angles]]:
             try:
                 found.setdefault(one.name, {})[soil] = angles_of(folder_of(group, soil, one.name))
             except Unreadable as damaged:
-                print(f"calibrate_soils: left out: {damaged}", file=sys.stderr)
+                say_once(f"calibrate_soils: left out: {damaged}")
             except Missing:
                 continue
     return found
