@@ -176,9 +176,13 @@ class Runs(unittest.TestCase):
             (Path(folder) / "chosen.json").write_text("{")
             damaged = said("chosen", "-o", folder)
             nothing = said("chosen", "-o", f"{folder}/new")
+            wrong = said("nonsense", "-o", folder)
+            empty = said("--tables", "-o", f"{folder}/new")  # no part named: all of them
         for result in (missing, damaged, nothing):
             self.assertNotEqual(result.returncode, 0)
             self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertIn("there is no part nonsense", wrong.stderr)
+        self.assertEqual(empty.returncode, 0, empty.stderr)
 
 
 if __name__ == "__main__":
