@@ -14,7 +14,7 @@ Array = np.ndarray
 Observable = tuple[str, str]  # soil, and "peak", "critical", "dilatancy" or "strain"
 Choice = Mapping[str, str]  # the definition by which each of them is read
 OBSERVABLES: list[Observable] = [(soil, kind) for soil in SOILS for kind in (*ANGLES, "strain")]
-FEWEST = {1: 6, 2: 14}  # sets that a linear and a quadratic surface take
+FEWEST = {1: 6, 2: 20}  # sets that a linear and a quadratic surface take
 SIDE = 41  # places of the lattice along each side of the box on which the optimum is looked for
 
 
