@@ -33,7 +33,7 @@ def says(ours: str, *claims: Claim) -> str:
     parts = []
     for wanted, begin in (
         (True, "As in the paper: "),
-        (False, "Other than in the paper, not: "),
+        (False, "Not seen here: "),
         (None, "Open, as the members scatter: "),
     ):
         found = [text for holds, text in claims if (holds is None) == (wanted is None) and bool(holds) == bool(wanted)]
