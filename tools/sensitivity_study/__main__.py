@@ -1,0 +1,56 @@
+"""Tables and figures of what moves three trends of the study: the recovery of the ground reaction, the contraction of
+Ac, and the shape of the troughs. Writes sensitivity.md and two figures."""
+
+import argparse
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tools"))
+from voussoir_plots import output, style
+from voussoir_plots.result import Missing
+
+from sensitivity_study import figures, runs, tables
+
+
+def arguments(words: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="tools/sensitivity", description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?", help="folder of the sweep; none: runs at full size alone")
+    parser.add_argument("--sweep", type=Path, default=ROOT / "cases/study/sensitivity.toml", help="its sweep file")
+    parser.add_argument("--full", type=Path, nargs="+", default=[], metavar="RUN", help="runs of the whole tunnel")
+    parser.add_argument("-o", "--output", type=Path, default=Path("out/sensitivity_tables"))
+    given = parser.parse_args(words)
+    if given.folder is None and not given.full:
+        parser.error("give the folder of a sweep, or --full")
+    return given
+
+
+def work(given: argparse.Namespace) -> None:
+    found = [] if given.folder is None else list(runs.variations(given.folder, given.sweep))
+    full = runs.at_full_size(given.full)
+    if not found and not full.runs:
+        raise runs.Fault(f"{given.folder or given.full[0]}: no run has come to V_l = 20 %")
+    output.make_folder(given.output)
+    style.use_style()
+    output.write(given.output / "sensitivity.md", tables.document(found, full))
+    if found:
+        figures.variations([*found, full] if full.runs else found, given.output / "unseen_trends_settings.png")
+    if full.runs:
+        figures.where_it_is_read(full.runs, given.output / "unseen_trends_places.png")
+    output.say(f"wrote {given.output}/sensitivity.md: {len(found)} variations, {len(full.runs)} runs at full size")
+
+
+def main(words: list[str] | None = None) -> int:
+    try:
+        work(arguments(words))
+    except (runs.Fault, Missing) as reason:
+        output.say(f"tools/sensitivity: {reason}", error=True)
+        return 2
+    except output.CannotWrite as reason:
+        output.say(f"tools/sensitivity: {reason}", error=True)
+        return 4
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
