@@ -5,12 +5,13 @@ import argparse
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "tools"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from voussoir_plots import output, style
 from voussoir_plots.result import Missing
 
 from sensitivity_study import figures, runs, tables
+
+ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def arguments(words: list[str] | None) -> argparse.Namespace:

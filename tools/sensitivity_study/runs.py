@@ -13,7 +13,7 @@ from voussoir_plots.result import Missing, Result
 from . import fits, measures, places
 
 AC_HEIGHT = 2.0  # of Ac above the crown as the tools read it unless told otherwise, in D
-HIGHER = 2.5  # and the height at which the ground does contract until V_l = 15 %
+HIGHER = 2.25  # and the height (z/C = 0.25 at C/D = 3) at which it contracts until V_l = 15 %, in D
 LATE = 0.12  # V_l until which a place must contract; trends.contracts_until allows 3 % below the 15 % of the study
 
 

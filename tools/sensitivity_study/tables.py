@@ -107,7 +107,8 @@ def by_height(runs: Sequence[Measured]) -> str:
     """Contraction and stress on the axis at each height."""
     shown = (0.0, 0.02, 0.15)
     head = ("height above the crown [D]", "largest contraction [%]", "until V_l [%]", "first volume again at V_l [%]",
-            "volumetric strain at 20 % [%]", *(f"p at V_l = {100 * v:g} % [kPa]" for v in shown),
+            "volumetric strain at 20 % [%]", "q/p is least at V_l [%]",
+            *(f"p at V_l = {100 * v:g} % [kPa]" for v in shown),
             *(f"q/p at {100 * v:g} %" for v in shown))  # fmt: skip
     rows = []
     for height in runs[0].levels:
@@ -117,6 +118,7 @@ def by_height(runs: Sequence[Measured]) -> str:
             f"{height:.3g}",
             cell((v.most for v in volumes), 100, 2), cell((v.at for v in volumes), 100),
             cell((v.net_until for v in volumes), 100), cell((v.end for v in volumes), 100, 2),
+            cell((run.loss[np.argmin(level.ratio)] for run, level in found), 100),
             *(cell((np.interp(s, run.loss, level.pressure) for run, level in found), 1e-3, 2) for s in shown),
             *(cell((np.interp(s, run.loss, level.ratio) for run, level in found), digits=2) for s in shown),
         ])  # fmt: skip
