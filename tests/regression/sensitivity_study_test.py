@@ -180,7 +180,7 @@ class Input(unittest.TestCase):
             folder = Path(name)
             self.assertIn("is no folder", self.ends(folder / "nothing", "-o", folder / "out"))
             self.assertIn("no run has come", self.ends(folder, "-o", folder / "out"))
-            damaged = folder / "base/member_000/run.h5"
+            damaged = folder / "tunnels/base/member_000/run.h5"
             damaged.parent.mkdir(parents=True)
             damaged.write_text("no HDF5")
             self.assertIn("left out", self.ends(folder, "-o", folder / "out"))
@@ -188,18 +188,18 @@ class Input(unittest.TestCase):
             broken.write_text("[grid")
             self.assertIn("no TOML", self.ends(folder, "--sweep", broken, "-o", folder / "out"))
             broken.write_text("base = 'a.toml'")
-            self.assertIn("no axis", self.ends(folder, "--sweep", broken, "-o", folder / "out"))
+            self.assertIn("has no grid", self.ends(folder, "--sweep", broken, "-o", folder / "out"))
             self.assertFalse((folder / "out").exists())
 
     def test_the_program_knows_all_settings_of_the_sweep(self):
-        sweep = tomllib.loads(SWEEP.read_text())
-        for point, change in sweep["grid"]["variation"].items():
-            changes = change if isinstance(change, list) else [change]
-            words = [os.environ["VOUSSOIR"], "check", str((SWEEP.parent / sweep["base"]).resolve())]
-            for setting in [*sweep["set"], *changes]:
-                words += ["--set", setting]
-            done = subprocess.run(words, check=False, capture_output=True, text=True, timeout=60)
-            self.assertEqual(done.returncode, 0, f"{point}: {done.stderr}")
+        for grid in tomllib.loads(SWEEP.read_text())["grid"]:
+            for point, change in grid["variation"].items():
+                changes = change if isinstance(change, list) else [change]
+                words = [os.environ["VOUSSOIR"], "check", str((SWEEP.parent / grid["base"]).resolve())]
+                for setting in [*grid["set"], *changes]:
+                    words += ["--set", setting]
+                done = subprocess.run(words, check=False, capture_output=True, text=True, timeout=60)
+                self.assertEqual(done.returncode, 0, f"{point}: {done.stderr}")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 """Tables and figures of what moves three trends of the study: the recovery of the ground reaction, the contraction of
-Ac, and the shape of the troughs. Writes sensitivity.md and two figures."""
+Ac, and the shape of the troughs. Writes sensitivity.md and three figures."""
 
 import argparse
 import sys
@@ -9,9 +9,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from voussoir_plots import output, style
 from voussoir_plots.result import Missing
 
-from sensitivity_study import figures, runs, tables
+from sensitivity_study import figures, place_figure, runs, strength, tables
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+LOW_PRESSURE, HIGH_PRESSURE = 20e3, 100e3  # of the biaxial tests [Pa]
 
 
 def arguments(words: list[str] | None) -> argparse.Namespace:
@@ -33,11 +34,15 @@ def work(given: argparse.Namespace) -> None:
         raise runs.Fault(f"{given.folder or given.full[0]}: no run has come to V_l = 20 %")
     output.make_folder(given.output)
     style.use_style()
-    output.write(given.output / "sensitivity.md", tables.document(found, full))
+    soils = {v.name: soil for v in found if (soil := strength.of_point(given.folder, v.name, LOW_PRESSURE))}
+    higher = {v.name: soil for v in found if (soil := strength.of_point(given.folder, v.name, HIGH_PRESSURE))}
+    output.write(given.output / "sensitivity.md", tables.document(found, full) + tables.strengths(found, soils, higher))
     if found:
-        figures.variations([*found, full] if full.runs else found, given.output / "unseen_trends_settings.png")
+        rows = [*found, full] if full.runs else found
+        figures.variations(rows, given.output / "unseen_trends_settings.png")
+        figures.reaction(found, soils, given.output / "unseen_trends_reaction.png")
     if full.runs:
-        figures.where_it_is_read(full.runs, given.output / "unseen_trends_places.png")
+        place_figure.draw(full.runs, given.output / "unseen_trends_places.png")
     output.say(f"wrote {given.output}/sensitivity.md: {len(found)} variations, {len(full.runs)} runs at full size")
 
 

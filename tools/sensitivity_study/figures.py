@@ -1,6 +1,6 @@
-"""The figures: what moves each trend, beside the scatter of draws, and how it depends on where the run is read."""
+"""Figures of the variations: what moves each trend, beside the scatter of draws."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -8,10 +8,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from voussoir_plots.style import save
 
-from . import fits, places
+from . import fits, measures, places
 from .runs import LATE, Measured, Variation
+from .strength import Strength
 
 BLUE, ORANGE, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "0.45"  # of the set of Okabe and Ito
+# The variations whose curves are drawn, with their labels.
+SHOWN = {
+    "beta_1": ("$\\beta$ = 1 (Table 1 read literally)", "#D55E00", "-"),
+    "thickness_0_05": ("t = 0.05 m", "#E69F00", "--"),
+    "base": ("base: $\\beta$ = 0.1, t = 0.1 m", "#000000", "-"),
+    "thickness_0_2": ("t = 0.2 m", "#56B4E9", "--"),
+    "friction_20": ("friction 20°", "#0072B2", "-."),
+    "consolidation_0_45": ("medium dense packing", "#CC79A7", ":"),
+}
 
 
 def _dots(axis: Axes, rows: Sequence[Variation], number: Callable[[Measured], float], colour: str) -> None:
@@ -33,8 +43,8 @@ def variations(rows: Sequence[Variation], path: Path) -> None:
     _dots(axes[1], rows, lambda run: 100 * run.ac.most, ORANGE)
     axes[1].set_xlabel("Ac, 2 $D$ above the crown:\nlargest contraction [%]")
     _dots(axes[2], rows, lambda run: 100 * run.ac.at, ORANGE)
-    axes[2].axvspan(100 * LATE, 15, color=GREY, alpha=0.25, linewidth=0)
-    axes[2].set_xlabel("Ac contracts until $V_l$ [%]\n(grey: the study, within 3 %)")
+    axes[2].axvspan(100 * LATE, 20, color=GREY, alpha=0.2, linewidth=0)
+    axes[2].set_xlabel("Ac contracts until $V_l$ [%]\n(grey: counts as the study's 15 %)")
     _dots(axes[3], rows, lambda run: 100 * fits.share_at_bound(run.fits), GREEN)
     axes[3].set_xlabel("fits with $\\alpha$ at its bound,\nall depths [%]")
     figure.suptitle("One setting changed at a time (circles: draws, bars: means, bands: draws of the first line)")
@@ -42,40 +52,39 @@ def variations(rows: Sequence[Variation], path: Path) -> None:
     save(figure, path)
 
 
-def where_it_is_read(runs: Sequence[Measured], path: Path) -> None:
-    """Thin lines are draws."""
+def _curves(axis: Axes, rows: Sequence[Variation], label: str) -> None:
+    """Running means of the ground reaction at one place, one line a draw."""
+    for v in rows:
+        if v.name not in SHOWN:
+            continue
+        text, colour, style = SHOWN[v.name]
+        drawn = [run for run in v.runs if label in run.reactions]
+        for k, run in enumerate(drawn):
+            means = measures.running_means(run.loss, run.reactions[label])
+            axis.plot(100 * means[0], means[1], style, color=colour, linewidth=1.5, label="" if k else text)
+    axis.set(xlabel="volume loss  $V_l$  [%]", ylabel=r"$\sigma_v / \sigma_{v,0}$  [-]", xlim=(0, 20))
+
+
+def reaction(rows: Sequence[Variation], strengths: Mapping[str, Strength], path: Path) -> None:
+    """Ground reaction curves of some variations, and the recovery against the strength of each soil."""
     figure, (left, middle, right) = plt.subplots(1, 3, figsize=(15, 4.8))
-    shown = ((places.CROWN_ELEMENT, "element above the crown", BLUE, "-"),
-             (places.PLACES[0].label, "over the whole opening, to 0.1 $D$", ORANGE, "--"),
-             (places.PLACES[5].label, "over the whole opening, 0.9–1.1 $D$", GREEN, "-."))  # fmt: skip
-    for label, text, colour, style in shown:
-        for k, run in enumerate(r for r in runs if label in r.reactions):
-            left.plot(100 * run.loss, run.reactions[label], style, color=colour, linewidth=1.1, label="" if k else text)
-    left.set(xlabel="volume loss  $V_l$  [%]", ylabel=r"$\sigma_v / \sigma_{v,0}$  [-]", xlim=(0, 20), ylim=(0, 0.5))
+    _curves(left, rows, places.CROWN_ELEMENT)
+    left.set(ylim=(0, 0.25), title="element above the crown")
     left.legend(fontsize=8.5)
-    left.set_title("ground reaction (cut off at 0.5)")
-    for k, run in enumerate(runs):
-        heights = list(run.levels)
-        until, most = ([100 * getattr(level.volume, what) for level in run.levels.values()] for what in ("at", "most"))
-        middle.plot(until, heights, "o-", color=BLUE, linewidth=1, markersize=3.5, label="" if k else "until $V_l$ [%]")
-        middle.plot(100 * np.array(most), heights, "s--", color=ORANGE, linewidth=1, markersize=3,
-                    label="" if k else "largest contraction [0.01 %]")  # fmt: skip
-    middle.axvspan(100 * LATE, 15, color=GREY, alpha=0.25, linewidth=0, label="the study's Ac, within 3 %")
-    middle.axhline(2, color="0.2", linewidth=0.9, linestyle=":")
-    middle.annotate("Ac of the tools", (19.5, 2.03), ha="right", fontsize=9)
-    middle.set(xlabel="$V_l$ [%]; contraction [0.01 %]", ylabel="height above the crown [$D$]", xlim=(0, 23))
-    middle.set_title("how long the soil on the axis contracts")
-    middle.legend(fontsize=8.5, loc="lower right")
-    for ratio, colour, style in zip(runs[0].fits, plt.get_cmap("viridis")(np.linspace(0, 0.87, 5)), "osv^D"):
-        reaches = [r for r in fits.RANGES if r != fits.WHOLE]
-        found = [[f for run in runs if (f := fits.of_depth(run.result, ratio, r))] for r in reaches]
-        share = [100 * np.mean([f.at_bound for f in group]) if group else np.nan for group in found]
-        whole = 100 * np.mean([run.fits[ratio].at_bound for run in runs])
-        right.plot([*reaches, 7], [*share, whole], style + "-", color=colour, label=f"$z/C$ = {ratio:g}")
-    right.set_xticks([1, 2, 3, 4, 7], ["1", "2", "3", "4", "7 (whole)"])
-    right.set(xlabel="trough fitted within this distance from the axis [$D$]",
-              ylabel=r"fits with $\alpha$ at its bound [%]")  # fmt: skip
-    right.legend(fontsize=8.5)
-    right.set_title("modified Gauss fits, all $V_l$")
+    _curves(middle, rows, places.PLACES[0].label)
+    middle.set(ylim=(0, 0.4), title="over the whole opening, to 0.1 $D$ above")
+    for v in rows:
+        if v.name not in strengths:
+            continue
+        soil, found = strengths[v.name], [run.opening.factor for run in v.runs if run.opening]
+        if not found:
+            continue
+        y, x = float(np.mean(found)), np.degrees(soil.peak)
+        right.errorbar(x, y, yerr=[[y - min(found)], [max(found) - y]], xerr=np.degrees(soil.peak_error), fmt="o",
+                       color=BLUE, capsize=2, linewidth=1)  # fmt: skip
+        right.annotate(v.name, (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8)
+    right.axhline(1, color=GREY, linewidth=1)
+    right.set(xlabel=r"peak friction angle at 20 kPa [°]", ylabel="end over minimum over the whole opening [-]",
+              title="recovery against strength (bars: draws, errors)")  # fmt: skip
     figure.tight_layout()
     save(figure, path)

@@ -14,6 +14,7 @@ from . import fits, measures, places
 
 AC_HEIGHT = 2.0  # of Ac above the crown as the tools read it unless told otherwise, in D
 HIGHER = 2.25  # and the height (z/C = 0.25 at C/D = 3) at which it contracts until V_l = 15 %, in D
+TUNNELS = "tunnels"  # grid of the sweep
 LATE = 0.12  # V_l until which a place must contract; trends.contracts_until allows 3 % below the 15 % of the study
 
 
@@ -22,21 +23,23 @@ class Fault(Exception):
 
 
 def settings_of(sweep: Path) -> dict[str, str]:
-    """{point: its overrides} of all named axes of a sweep file, in the file's order."""
+    """{point: its overrides} of the named axes of the tunnels' grid of a sweep file, in the file's order."""
     try:
-        grids = tomllib.loads(sweep.read_text()).get("grid", {})
+        grids = tomllib.loads(sweep.read_text()).get("grid", [])
     except OSError as error:
         raise Fault(f"{sweep} cannot be read: {error.strerror}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise Fault(f"{sweep} is no TOML: {error}") from error
     found: dict[str, str] = {}
-    for grid in grids if isinstance(grids, list) else [grids]:
+    for grid in grids if isinstance(grids, list) else []:
+        if grid.get("name") != TUNNELS:
+            continue
         for axis in (value for value in grid.values() if isinstance(value, dict)):
             for point, change in axis.items():
                 changes = change if isinstance(change, list) else [change]
-                found[point] = ", ".join(f"`{text}`" for text in changes) or "nothing"
+                found[point] = ", ".join(f"`{text}`" for text in changes)
     if not found:
-        raise Fault(f"{sweep} has no axis of named points")
+        raise Fault(f'{sweep} has no grid "{TUNNELS}" with an axis of named points')
     return found
 
 
@@ -122,7 +125,7 @@ def variations(folder: Path, sweep: Path) -> Iterator[Variation]:
     if not folder.is_dir():
         raise Fault(f"{folder} is no folder")
     for name, settings in settings_of(sweep).items():
-        found = _all_of(name, settings, members_of(folder / name))
+        found = _all_of(name, settings, members_of(folder / TUNNELS / name))
         if found.runs:
             yield found
 

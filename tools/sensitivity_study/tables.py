@@ -1,11 +1,12 @@
 """The tables of the study, as Markdown. A cell holds the mean of the draws and, in brackets, their range."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
 from . import fits, measures
 from .runs import HIGHER, LATE, Measured, Variation
+from .strength import Strength
 
 
 def cell(values: Iterable[float], factor: float = 1.0, digits: int = 3) -> str:
@@ -174,3 +175,23 @@ def document(variations: Sequence[Variation], full: Variation) -> str:
             shares(rows),
         ]
     return "\n\n".join(part.rstrip("\n") for part in parts) + "\n"
+
+
+def strengths(variations: Sequence[Variation], low: Mapping[str, Strength], high: Mapping[str, Strength]) -> str:
+    """Strength of the soils at two pressures, with standard errors."""
+
+    def of(soil: Strength | None) -> list[str]:
+        if soil is None:
+            return ["–"] * 4
+        peak, critical = (
+            f"{np.degrees(angle):.1f} ± {np.degrees(error):.1f}"
+            for angle, error in ((soil.peak, soil.peak_error), (soil.critical, soil.critical_error))
+        )
+        return [peak, critical, f"{100 * soil.peak_strain:.1f}", f"{100 * soil.contraction:.2f}"]
+
+    if not low and not high:
+        return ""
+    numbers = ("peak angle [°]", "critical angle [°]", "axial strain at the peak [%]", "largest contraction [%]")
+    head = ("soil", *(f"20 kPa: {n}" for n in numbers), *(f"100 kPa: {n}" for n in numbers))
+    rows = [[v.name, *of(low.get(v.name)), *of(high.get(v.name))] for v in variations if v.name in {*low, *high}]
+    return "\n## Strength of the soils\n\n" + table(head, rows)
