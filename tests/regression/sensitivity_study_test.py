@@ -12,7 +12,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
 import numpy as np
-from sensitivity_study import fits, measures, places, runs, tables
+from sensitivity_study import fits, measures, places, runs, strength, tables
 from voussoir_plots import q8, trough_fit
 from voussoir_plots.result import Result
 from voussoir_plots.settings import Settings
@@ -58,6 +58,17 @@ class Measures(unittest.TestCase):
         never = measures.Contraction(0.0, 0.2, 0.0, -1e-3)
         self.assertEqual(measures.heights_that_contract([1, 2, 2.5, 3], [early, late, late, never], 0.12), (2, 2.5))
         self.assertIsNone(measures.heights_that_contract([1, 3], [early, never], 0.12))
+
+    def test_strength_counts_valid_tests_at_the_pressure(self):
+        columns = {name: np.zeros(4) for name in strength.COLUMNS}
+        columns["pressure"] = np.array([20001.0, 19999.0, 20000.0, 1e5])
+        columns["valid"] = np.array([1.0, 1.0, 0.0, 1.0])
+        columns["peak_angle"] = np.array([0.7, 0.9, 5.0, 3.0])
+        found = strength.of_tests(columns, 20e3)
+        assert found is not None
+        self.assertEqual((found.count, found.peak), (2, 0.8))
+        self.assertAlmostEqual(found.peak_error, 0.1)
+        self.assertIsNone(strength.of_tests(columns, 1e5))
 
     def test_cells(self):
         self.assertEqual(tables.cell([0.01, 0.03], 100, 2), "2 (1–3)")
