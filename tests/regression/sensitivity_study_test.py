@@ -60,7 +60,7 @@ class Measures(unittest.TestCase):
         self.assertIsNone(measures.heights_that_contract([1, 3], [early, never], 0.12))
 
     def test_strength_counts_valid_tests_at_the_pressure(self):
-        columns = {name: np.zeros(4) for name in strength.COLUMNS}
+        columns: dict[str, np.ndarray] = {name: np.zeros(4) for name in strength.COLUMNS}
         columns["pressure"] = np.array([20001.0, 19999.0, 20000.0, 1e5])
         columns["valid"] = np.array([1.0, 1.0, 0.0, 1.0])
         columns["peak_angle"] = np.array([0.7, 0.9, 5.0, 3.0])
@@ -109,7 +109,7 @@ def grid(width, height, columns, rows):
 def made_up(settlement):
     """A block of 35 m × 17.5 m above a crown at y = 2.5 m; `settlement` is a function of x."""
     result = object.__new__(Result)
-    result.folder, result.settings = Path("made up"), Settings()
+    result.folder, result.settings = Path("made up"), Settings(depths=(0.0, 0.5))
     result.coordinates, result.connectivity = grid(35.0, 17.5, 40, 20)
     result.has_mesh, result.case = True, {}
     result.geometry = {"diameter": 5.0, "axis_depth": 17.5, "surface_y": 17.5}
