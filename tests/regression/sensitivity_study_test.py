@@ -71,7 +71,9 @@ class Measures(unittest.TestCase):
         self.assertIsNone(strength.of_tests(columns, 1e5))
 
     def test_cells(self):
-        self.assertEqual(tables.cell([0.01, 0.03], 100, 2), "2 (1–3)")
+        self.assertEqual(tables.cell([0.01, 0.03], 100, 2), "2 (1 to 3)")
+        self.assertEqual(tables.cell([1.0], 100, 2), "100")
+        self.assertEqual(tables.cell([0.01234], 1, 2), "0.012")
         self.assertEqual(tables.cell([float("nan"), 0.03], 100, 2), "3")
         self.assertEqual(tables.cell([]), "–")
 

@@ -9,14 +9,18 @@ from .runs import HIGHER, LATE, Measured, Variation
 from .strength import Strength
 
 
+def number(value: float, digits: int) -> str:
+    """So many significant digits, but never an exponent for a large number."""
+    return f"{value:.0f}" if abs(value) >= 10**digits - 0.5 else f"{value:.{digits}g}"
+
+
 def cell(values: Iterable[float], factor: float = 1.0, digits: int = 3) -> str:
     """Mean and range of the draws that have a value."""
     known = [factor * v for v in values if np.isfinite(v)]
     if not known:
         return "–"
-    mean, low, high = measures.spread(known)
-    form = f"{{:.{digits}g}}"
-    return form.format(mean) + (f" ({form.format(low)}–{form.format(high)})" if len(known) > 1 else "")
+    mean, low, high = (number(v, digits) for v in measures.spread(known))
+    return f"{mean} ({low} to {high})" if len(known) > 1 else mean
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
