@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+import matplotlib.pyplot as plt
 from voussoir_plots import output, style
 from voussoir_plots.result import Missing
 
@@ -34,6 +35,7 @@ def work(given: argparse.Namespace) -> None:
         raise runs.Fault(f"{given.folder or given.full[0]}: no run has come to V_l = 20 %")
     output.make_folder(given.output)
     style.use_style()
+    plt.rcParams["savefig.dpi"] = 100  # the figures are kept with the documents
     soils = {v.name: soil for v in found if (soil := strength.of_point(given.folder, v.name, LOW_PRESSURE))}
     higher = {v.name: soil for v in found if (soil := strength.of_point(given.folder, v.name, HIGH_PRESSURE))}
     output.write(given.output / "sensitivity.md", tables.document(found, full) + tables.strengths(found, soils, higher))

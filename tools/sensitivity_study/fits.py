@@ -2,10 +2,11 @@
 the trough is fitted."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from voussoir_plots import trough_fit, troughs
-from voussoir_plots.result import Result
+from voussoir_plots.result import Result, remembered
 
 WHOLE = float("inf")
 RANGES = (WHOLE, 4.0, 3.0, 2.0, 1.0)  # of the distance from the axis, in D
@@ -45,7 +46,10 @@ def of_depth(result: Result, ratio: float, reach: float = WHOLE) -> Fits | None:
 
 def of_all_depths(result: Result, reach: float = WHOLE) -> dict[float, Fits]:
     """{z/C: fits}"""
-    found = {ratio: of_depth(result, ratio, reach) for ratio in result.settings.depths}
+    found = {
+        ratio: remembered(result, f"fits at {ratio} within {reach}", partial(of_depth, result, ratio, reach))
+        for ratio in result.settings.depths
+    }
     return {ratio: fits for ratio, fits in found.items() if fits is not None}
 
 

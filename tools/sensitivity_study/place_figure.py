@@ -42,8 +42,9 @@ def _by_height(axis: Axes, runs: Sequence[Measured], number: Callable[[Level], f
 def _fits(axis: Axes, runs: Sequence[Measured]) -> None:
     reaches = sorted(fits.RANGES)
     depths = list(runs[0].fits)
+    by_reach = [[fits.of_all_depths(run.result, reach) for run in runs] for reach in reaches]
     for ratio, colour, style in zip(depths, colours("viridis", len(depths)), "osv^D"):
-        found = [[f for run in runs if (f := fits.of_depth(run.result, ratio, r))] for r in reaches]
+        found = [[f[ratio] for f in group if ratio in f] for group in by_reach]
         share = np.array([100 * np.mean([f.at_bound for f in group]) if group else np.nan for group in found])
         axis.plot([min(r, WHOLE) for r in reaches], share, style + "-", color=colour, label=f"$z/C$ = {ratio:g}")
     axis.set_xticks([1, 2, 3, 4, WHOLE], ["1", "2", "3", "4", "whole"])
