@@ -84,6 +84,7 @@ def reaction(rows: Sequence[Variation], strengths: Mapping[str, Strength], path:
                        color=BLUE, capsize=2, linewidth=1)  # fmt: skip
         right.annotate(v.name, (x, y), xytext=(5, 5), textcoords="offset points", fontsize=8)
     right.axhline(1, color=GREY, linewidth=1)
+    right.margins(x=0.2)  # room for the names
     right.set(xlabel=r"peak friction angle at 20 kPa [°]", ylabel="end over minimum over the whole opening [-]",
               title="recovery against strength (bars: draws, errors)")  # fmt: skip
     figure.tight_layout()
