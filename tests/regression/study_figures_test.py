@@ -67,9 +67,7 @@ class Texts(unittest.TestCase):
 
     def test_claims_by_their_verdict(self):
         text = sentences.says("K = 1", (True, "a"), (False, "b"), (None, "c"), (True, "d"))
-        self.assertEqual(
-            text, "As in the paper: a; d. Not seen here: b. Open, as the members scatter: c. Here K = 1."
-        )
+        self.assertEqual(text, "As in the paper: a; d. Not seen here: b. Open, as the members scatter: c. Here K = 1.")
 
     def test_every_figure_of_the_paper_has_a_file_or_a_reason(self):
         numbers = [figure.number for figure in paper.FIGURES]
