@@ -6,9 +6,10 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from voussoir_plots.resolution import running_means
 from voussoir_plots.style import save
 
-from . import fits, measures, places
+from . import fits, places
 from .runs import LATE, Measured, Variation
 from .strength import Strength
 
@@ -60,7 +61,7 @@ def _curves(axis: Axes, rows: Sequence[Variation], label: str) -> None:
         text, colour, style = SHOWN[v.name]
         drawn = [run for run in v.runs if label in run.reactions]
         for k, run in enumerate(drawn):
-            means = measures.running_means(run.loss, run.reactions[label])
+            means = running_means(run.loss, run.reactions[label])
             axis.plot(100 * means[0], means[1], style, color=colour, linewidth=1.5, label="" if k else text)
     axis.set(xlabel="volume loss  $V_l$  [%]", ylabel=r"$\sigma_v / \sigma_{v,0}$  [-]", xlim=(0, 20))
 

@@ -4,8 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-
-WINDOW = 0.02  # width in V_l of the running means [-]; single states of few points scatter by 10 % from one to the next
+from voussoir_plots.resolution import running_means
 
 
 @dataclass(frozen=True)
@@ -17,20 +16,12 @@ class Recovery:
     end: float
     mean_least: float  # the smallest running mean
     mean_at: float  # V_l at the middle of this mean [-]
-    mean_end: float  # mean over the last WINDOW
+    mean_end: float  # mean over the last window
 
     @property
     def factor(self) -> float:
         """End over minimum, of the running means. It is 1 where the curve falls to its end."""
         return self.mean_end / self.mean_least
-
-
-def running_means(loss: np.ndarray, values: np.ndarray, window: float = WINDOW) -> tuple[np.ndarray, np.ndarray]:
-    """Means over all states of a window of V_l, and the middles of the windows; only windows that lie within the
-    path."""
-    first = [v for v in loss if v + window <= loss[-1] + 1e-9]
-    inside = [(loss >= v - 1e-9) & (loss <= v + window + 1e-9) for v in first]
-    return np.array(first) + window / 2, np.array([values[i].mean() for i in inside])
 
 
 def recovery(loss: np.ndarray, ratio: np.ndarray) -> Recovery:

@@ -40,7 +40,7 @@ def draw(results: Sequence[Result], path: Path) -> None:
             )
         width_loss, width, _ = widths.surface_width(result)
         axes[0, 2].plot(100 * width_loss, width, **style)
-        for axis, point, height in zip(axes[1], points.above_crown(result), result.settings.above_crown):
+        for axis, point, height in zip(axes[1], points.above_crown(result), points.heights_above_crown(result)):
             axis.plot(loss, paths.stress_ratio(result, point), **style)
             axis.set_title(f"{point.name}, {height:g} $D$ above the crown")
             axis.set_ylabel("stress ratio  $q/p$  [-]")

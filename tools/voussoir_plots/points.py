@@ -37,10 +37,20 @@ def nearest(result: Result, name: str, x: float, y: float) -> Point:
     return Point(name, index, points[index])
 
 
+def heights_above_crown(result: Result) -> list[float]:
+    """Heights of Aa, Ab, Ac above the crown [D], without those above the surface. Unless an option gives them, they are
+    0.25 D, 1 D and, where this is higher, 0.75 C."""
+    (diameter,) = result.need("diameter")
+    cover = result.cover / diameter
+    if result.settings.above_crown is None:
+        return [k for k in (0.25, 1.0) if k <= cover] + ([0.75 * cover] if 0.75 * cover > 1 else [])
+    return [k for k in result.settings.above_crown if k <= cover * (1 + 1e-9)]
+
+
 def above_crown(result: Result) -> list[Point]:
     """The points Aa, Ab, Ac, without those that would lie above the surface."""
     (diameter,) = result.need("diameter")
-    heights = [k for k in result.settings.above_crown if k * diameter <= result.cover * (1 + 1e-9)]
+    heights = heights_above_crown(result)
     return [
         nearest(result, name, 0.0, result.crown_height + k * diameter) for name, k in zip(("Aa", "Ab", "Ac"), heights)
     ]

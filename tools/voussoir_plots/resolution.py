@@ -6,6 +6,24 @@ import numpy as np
 # between the states.
 RESOLVED = 0.025
 
+WINDOW = 0.02  # width in V_l of running means [-]; single states of few points scatter by 10 % from one to the next
+
+
+def running_means(loss: np.ndarray, values: np.ndarray, window: float = WINDOW) -> tuple[np.ndarray, np.ndarray]:
+    """Means over all states of a window of V_l, and the middles of the windows; only windows that lie within the
+    path."""
+    first = [v for v in loss if v + window <= loss[-1] + 1e-9]
+    inside = [(loss >= v - 1e-9) & (loss <= v + window + 1e-9) for v in first]
+    return np.array(first) + window / 2, np.array([values[i].mean() for i in inside])
+
+
+def recovery_factor(loss: np.ndarray, ratio: np.ndarray) -> float:
+    """The end of a ground reaction curve over its minimum, of running means, because the least single state of a curve
+    that scatters lies below its level by chance [-]. It is 1 where the curve falls to its end, or is shorter than the
+    window."""
+    _, means = running_means(loss, ratio)
+    return float(means[-1] / means.min()) if len(means) and means.min() > 0 else 1.0
+
 
 def percent(fraction: float) -> str:
     """0.125 -> '12.5 %'"""

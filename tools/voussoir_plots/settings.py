@@ -11,7 +11,10 @@ class Settings:
     losses: tuple | None = None  # V_l of troughs, profiles and lines [-]; None: quarters of the largest
     field_losses: tuple = (0.05, 0.10, 0.15, 0.20)  # V_l of the fields [-]
     depths: tuple = (0.0, 0.25, 0.5, 0.75, 1.0)  # z/C of troughs and settlements
-    above_crown: tuple = (0.25, 1.0, 2.0)  # heights of Aa, Ab, Ac above the crown, in D
+    # Heights of Aa, Ab, Ac above the crown, in D; None: 0.25 D, 1 D, and 0.75 C, which is the depth z/C = 0.25. The
+    # study gives no numbers; of the places that its words allow, Ac contracts there as it says
+    # (docs/measurements/unseen_trends.md).
+    above_crown: tuple | None = None
     aside: float = 0.25  # B is the most sheared point with x beyond this, in D
     aside_above: float = 0.0  # and at least this height above the crown, in D: RVEs at the wall lose their contacts
     line: float = 0.5  # height of the line of stress rotations above the crown, in D
@@ -63,7 +66,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         nargs=3,
         metavar="D",
-        help="heights of the points Aa, Ab, Ac above the crown over the diameter; default: 0.25 1 2",
+        help="heights of the points Aa, Ab, Ac above the crown over the diameter; default: 0.25, 1, and 0.75 C",
     )
     parser.add_argument(
         "--aside",

@@ -13,16 +13,16 @@ from .. import stresses as geostatic
 from ..points import original_points
 from ..q8 import gauss_coordinates
 from ..reaction import curve
-from ..resolution import percent
+from ..resolution import percent, recovery_factor
 from ..result import Increment, Missing, Result
 from ..trend_table import BAND
+from ..trends import MONOTONE, RECOVERS
 from .bands import Number, all_hold, exceeds, number
 from .data import Study, Tunnel
 from .initial import ratio_curve
 from .settlements import SUBSURFACE, largest, normalised_trough, widths
 
 HIGH_STRESS, LOW_STRESS = 200e3, 20e3  # of K0 [Pa]
-RECOVERY = 0.02  # of the stress before the loss: a ground reaction that rises by less from its minimum does not recover
 
 
 Claim = tuple[bool | np.bool | None, str]  # whether our results show it (None: the members do not decide), and what
@@ -306,22 +306,21 @@ def reaction(study: Study) -> str:
     least = {t.soil: t.number(lambda m: float(curve(m)[1].min())) for t in tunnels}
     when = {t.soil: t.number(lambda m: float(m.volume_loss[curve(m)[1].argmin()])) for t in tunnels}
     final = {t.soil: t.number(lambda m: float(curve(m)[1][-1])) for t in tunnels}
-    threshold = Number(RECOVERY, 0.0, 0)
-    recovery = {t.soil: t.number(lambda m: float(curve(m)[1][-1] - curve(m)[1].min())) for t in tunnels}
+    recovery = {t.soil: t.number(lambda m: recovery_factor(*curve(m)[:2])) for t in tunnels}
     claims: list[Claim] = []
     for tunnel in tunnels:
         gain = recovery[tunnel.soil]
         if tunnel.soil == "medium dense sand":
-            claims.append((exceeds(threshold, gain), "CPS_MD falls monotonically to its end value"))
+            claims.append((exceeds(Number(MONOTONE, 0.0, 0), gain), "CPS_MD falls monotonically to its end value"))
         else:
-            claims.append((exceeds(gain, threshold), f"{tunnel.code} has a minimum and recovers"))
+            claims.append((exceeds(gain, Number(RECOVERS, 0.0, 0)), f"{tunnel.code} has a minimum and recovers"))
     if {"gravel", "dense sand"} <= set(least):
         claims.append((exceeds(least["dense sand"], least["gravel"]), "the minimum of CPG_D is lower"))
     text = each(
         tunnels,
         lambda t: (
             f"least {least[t.soil].text('.3f')} at V_l = {when[t.soil].text('.1f', 100, '%')}, "
-            f"{final[t.soil].text('.3f')} at the end"
+            f"{final[t.soil].text('.3f')} at the end, end over minimum of running means {recovery[t.soil].text('.2f')}"
         ),
         "soil",
     )
