@@ -235,6 +235,10 @@ class Result(RunIndex):
             self._histories[name] = np.array([i.field(name) for i in self.loss_increments])
         return self._histories[name]
 
+    def next_to(self, loss: float) -> Increment:
+        """The increment of the volume loss whose V_l is nearest to this one [-]."""
+        return self.loss_increments[int(np.argmin(np.abs(self.volume_loss - loss)))]
+
     def nearest(self, losses: Iterable[float]) -> list[Increment]:
         """The increments whose V_l > 0 lie nearest to the wanted ones [-], each of them once. An increment that is
         farther away than two increments are from each other is left out."""

@@ -12,7 +12,7 @@ from ..resolution import percent
 from ..result import Missing, Result
 from .bands import Number, all_hold, exceeds, number
 from .data import Study
-from .microstructure import NEAR, NETWORK_LOSS, arch_points, fabric_at, nearest_snapshot, strong_contacts, strong_share
+from .microstructure import NETWORK_LOSS, arch_points, fabric_at, near_aa, strong_contacts, strong_share
 from .paths import STRONG, at_point, followed, point, ratio_at, strong_at
 from .sentences import Claim, each, says
 from .settlements import wanted_losses
@@ -232,9 +232,7 @@ def strong_networks(study: Study) -> str:
 def _strong(member: Result, which: int) -> float:
     """Of the RVE that was written near Aa: the share of its grains in the strong network (0) and in its strongest part
     (1), and the share of the strong contacts within 45° of the horizontal (2)."""
-    (diameter,) = member.need("diameter")
-    increment = member.loss_increments[int(np.argmin(np.abs(member.volume_loss - NETWORK_LOSS)))]
-    name = nearest_snapshot(member, point(member, "Aa").position, NEAR * diameter)[1]
+    increment, name = near_aa(member)
     if name is None:
         raise Missing("no RVE near Aa was written grain by grain (output.rves)")
     snapshot = increment.snapshot(name)

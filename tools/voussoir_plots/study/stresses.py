@@ -41,10 +41,7 @@ def draw_reaction(study: Study, path: Path) -> None:
 def mean_stress(tunnel: Tunnel, loss: float) -> np.ndarray:
     """The stress tensor at the Gauss points, mean over the members (element, 4, 3) [Pa], tension positive. A tensor's
     components are averaged, so that its axes are those of the mean."""
-    found = []
-    for member in tunnel.members:
-        k = int(np.argmin(np.abs(member.volume_loss - loss)))
-        found.append(member.loss_increments[k].field("gauss/stress"))
+    found = [member.next_to(loss).field("gauss/stress") for member in tunnel.members]
     if any(len(one) != len(found[0]) for one in found):
         raise Missing(f"the members of {tunnel.name} have different meshes")
     return np.mean(found, axis=0)
@@ -197,7 +194,7 @@ def directions(tunnel: Tunnel, loss: float) -> tuple[np.ndarray, np.ndarray, np.
     stress, fabric = [], []
     (diameter,) = tunnel.members[0].need("diameter")
     for member in tunnel.members:
-        increment = member.loss_increments[int(np.argmin(np.abs(member.volume_loss - loss)))]
+        increment = member.next_to(loss)
         x, angle = rotation.stress_angles(member, increment)
         stress.append(angle)
         fabric.append(rotation.fabric_angles(member, increment))
