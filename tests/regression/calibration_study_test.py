@@ -7,6 +7,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
@@ -154,6 +155,20 @@ class Runs(unittest.TestCase):
                         file[f"tables/seed_{seed}_{kpa}_kPa/{name}"] = np.linspace(0, 0.2, 50) + 1
             found = results.tests_of(Path(folder))
         self.assertEqual([(test.seed, test.pressure) for test in found], [(1, 1e5), (1, 4e5)])
+
+    def test_stored_angles_that_are_damaged_are_made_anew(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "run.h5").touch()
+            kept = folder / "angles.json"
+            tests = [*three(1), *three(2, peak=41)]
+            for damaged in ("{", "[]", '{"version": 0}', f'{{"version": {d.VERSION}, "angles": 1}}'):
+                kept.write_text(damaged)
+                with mock.patch.object(results, "tests_of", return_value=tests):
+                    made = results.angles_of(folder)
+                self.assertAlmostEqual(made["peak"]["at 100 kPa, 2 %"].mean, 40.5, delta=0.1, msg=damaged)
+            with mock.patch.object(results, "tests_of", side_effect=AssertionError("the stored angles are not taken")):
+                self.assertEqual(results.angles_of(folder)["peak"].keys(), made["peak"].keys())
 
     def test_cases_are_read_by_the_program(self):
         """Each reading is a case that the program takes, with the values of the set."""

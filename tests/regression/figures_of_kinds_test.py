@@ -21,8 +21,9 @@ from program import command, run
 from voussoir_plots import calibration, element_tests, grading, probes, rve_size, small_samples, style, table_two
 from voussoir_plots.guard import run as guarded
 from voussoir_plots.packings import Packing
-from voussoir_plots.result import Missing, RunIndex
+from voussoir_plots.result import Missing, RunIndex, Unreadable
 from voussoir_plots.sweep import Sweep
+from voussoir_plots.sweep_table import SweepTable
 from voussoir_plots.units import quantity
 
 TESTS = ["packing.grains=100", "packing.seeds=[1, 2]", "packing.folder=packings"]
@@ -180,6 +181,13 @@ class KnownAnswers(unittest.TestCase):
         (member,) = Sweep("axes").members
         self.assertEqual((member.name, member.kind), ("size_1-dense", "biaxial"))
         self.assertEqual(member.axes, {"size": "1", "soil": "dense"})
+        with self.assertRaisesRegex(Unreadable, "axes/sweep.h5 cannot be read.*exit_code"):
+            SweepTable(Sweep("axes"))
+        with h5py.File("axes/sweep.h5", "r+") as file:
+            file["runs/exit_code"] = [0, 0]
+            file["results/settlement"] = [0.1]
+        with self.assertRaisesRegex(Unreadable, "different lengths"):
+            SweepTable(Sweep("axes"))
 
     def test_a_stress_that_was_not_held(self):
         """Where sigma_xx is off by 20 % around 5 % of strain, the test does not count there, and counts elsewhere."""

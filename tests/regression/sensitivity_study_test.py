@@ -70,6 +70,17 @@ class Measures(unittest.TestCase):
         self.assertAlmostEqual(found.peak_error, 0.1)
         self.assertIsNone(strength.of_tests(columns, 1e5))
 
+    def test_a_strength_is_of_the_tests_that_have_it(self):
+        columns: dict[str, np.ndarray] = {name: np.ones(3) for name in strength.COLUMNS}
+        columns["pressure"] = np.full(3, 20e3)
+        columns["critical_angle"] = np.array([0.5, np.nan, 0.7])  # one test ended before its critical state
+        columns["contraction"] = np.full(3, np.nan)
+        found = strength.of_tests(columns, 20e3)
+        assert found is not None
+        self.assertEqual(found.critical, 0.6)
+        self.assertAlmostEqual(found.critical_error, 0.1)
+        self.assertTrue(np.isnan(found.contraction))
+
     def test_cells(self):
         self.assertEqual(tables.cell([0.01, 0.03], 100, 2), "2 (1 to 3)")
         self.assertEqual(tables.cell([1.0], 100, 2), "100")

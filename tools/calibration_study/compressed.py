@@ -3,16 +3,15 @@ each test at the test's pressure, still without friction. Here packings of 1 kPa
 their working friction and rolling resistance instead."""
 
 import json
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 import h5py
-from voussoir_plots.result import Missing
+from voussoir_plots.result import Missing, Unreadable
 
 from .definitions import Test
 from .plan import Set, Size
-from .results import tests_of
+from .results import say_once, tests_of
 from .runs import Programme, packing_text, run_one, soil_text, tests_text
 
 
@@ -55,7 +54,11 @@ def tests(folder: Path, soil: str) -> list[Test]:
     """The tests of all packings of a soil. A packing from a file has no seed; here it gets that of its name."""
     found: list[Test] = []
     for run_folder in sorted((folder / "compressed").glob(f"{soil}_seed*/")):
-        with suppress(Missing):  # not finished, or no test of it was held
-            seed = int(run_folder.name.rpartition("seed")[2])
+        seed = int(run_folder.name.rpartition("seed")[2])
+        try:
             found += [replace(test, seed=seed) for test in tests_of(run_folder)]
+        except Unreadable as damaged:
+            say_once(f"calibrate_soils: left out: {damaged}")
+        except Missing:  # it is not finished, or no test of it was held
+            continue
     return found

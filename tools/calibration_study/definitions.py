@@ -10,6 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from voussoir_plots.element_tests import common_angle
+from voussoir_plots.small_samples import jackknife_error
 
 from .plan import PRESSURES
 
@@ -142,11 +144,10 @@ def _line(pressures: Array, sines: Array, *, through_origin: bool) -> float:
     ratio, p = pressure / (1 - sin phi)."""
     if np.isnan(sines).any():
         return NAN
-    p = pressures / (1.0 - sines)
-    q = sines * p
     if through_origin:
-        return angle(float(p @ q / (p @ p)))
-    return angle(float(np.polynomial.polynomial.polyfit(p, q, 1)[1]))
+        return math.degrees(common_angle(np.column_stack([pressures, np.arcsin(sines)])))
+    p = pressures / (1.0 - sines)
+    return angle(float(np.polynomial.polynomial.polyfit(p, sines * p, 1)[1]))
 
 
 def averaged_curves(tests: Sequence[Test], points: int = 401) -> list[Test]:
@@ -275,9 +276,6 @@ def with_error(tests: Sequence[Test], definition: Definition) -> Value:
     whole = definition(tests)
     if len(seeds) < 2:
         return Value(whole, NAN, len(seeds))
-    without = np.array([definition([test for test in tests if test.seed != seed]) for seed in seeds])
-    without = without[np.isfinite(without)]
-    n = len(without)
-    if n < 2:
-        return Value(whole, NAN, n)
-    return Value(whole, float(np.sqrt((n - 1) / n * np.sum((without - without.mean()) ** 2))), n)
+    found = [definition([test for test in tests if test.seed != seed]) for seed in seeds]
+    without = [value for value in found if math.isfinite(value)]
+    return Value(whole, jackknife_error(without) if len(without) > 1 else NAN, len(without))

@@ -6,14 +6,14 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
-from voussoir_plots.style import save, use_style
+from voussoir_plots.style import CYCLE, save, use_style
 
 from .fit import Measured
 from .plan import ANGLES, BOX, SOILS, TARGETS, from_unit
 from .report import NAMES, SYMBOLS, ByName
 
-COLOURS = {"cps_d": "#0072B2", "cps_md": "#E69F00", "cpg_d": "#009E73"}  # of Okabe and Ito
-MARKERS = {"cps_d": "o", "cps_md": "s", "cpg_d": "^"}
+COLOURS = dict(zip(SOILS, CYCLE))
+MARKERS = dict(zip(SOILS, "os^"))
 
 
 def reached(usual: Measured, smooth: Measured, packings: int, path: Path) -> None:
@@ -35,7 +35,7 @@ def reached(usual: Measured, smooth: Measured, packings: int, path: Path) -> Non
         for axis, (y, target, arm) in zip(axes[:, column], rows, strict=True):
             points = axis.scatter(peak, y, c=thickness, norm=LogNorm(*BOX["thickness"]), cmap="viridis", s=36,
                                   marker=MARKERS[soil], edgecolors="0.3", linewidths=0.4)  # fmt: skip
-            axis.errorbar(wanted[0], target, xerr=scatter[0], yerr=arm, color="#D55E00", lw=2, capsize=4, zorder=5)
+            axis.errorbar(wanted[0], target, xerr=scatter[0], yerr=arm, color=CYCLE[3], lw=2, capsize=4, zorder=5)
         axes[0, column].set_title(NAMES[soil])
         axes[2, column].set_xlabel("peak angle φ_p [°]")
     for axis, label in zip(axes[:, 0], ("φ_p less φ_cs [°]", "ψ_max, each test, 2 % [°]", "ψ_max, averages, 4 % [°]")):

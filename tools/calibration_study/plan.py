@@ -5,11 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from voussoir_plots.soils import NAMES
+from voussoir_plots.table_two import STUDY
 
-SOILS = ("cps_d", "cps_md", "cpg_d")
+SOILS = tuple(name.lower() for name in NAMES.values())  # cps_d, cps_md, cpg_d, as in cases/soils
 ANGLES = ("peak", "critical", "dilatancy")
-# Table 2 of the study [degrees].
-TARGETS = {"cps_d": (39.1, 33.0, 14.0), "cps_md": (34.4, 32.7, 3.1), "cpg_d": (44.0, 33.7, 17.3)}
+TARGETS = {name.lower(): STUDY[soil] for soil, name in NAMES.items()}  # Table 2 of the study [degrees]
 # Axial strain at the peak [%]: appendix A puts 2 % before and 5 % after the peaks of the dense soils.
 PEAK_STRAIN = {"cps_d": (2.0, 5.0), "cpg_d": (2.0, 5.0)}
 # The rolling coefficients that Table 1 prints: one class of sand; sand, fine and coarse gravel.

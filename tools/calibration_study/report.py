@@ -8,7 +8,7 @@ from .fit import OBSERVABLES, Measured, Optimum, target_of
 from .plan import ANGLES, BOX, PEAK_STRAIN, SOILS, TARGETS, to_unit
 from .results import Angles
 
-NAMES = {"cps_d": "CPS_D", "cps_md": "CPS_MD", "cpg_d": "CPG_D"}
+NAMES = {soil: soil.upper() for soil in SOILS}
 SYMBOLS = {"peak": "φ_p", "critical": "φ_cs", "dilatancy": "ψ_max"}
 # The definitions that read smooth curves, as one does by eye from a figure.
 SMOOTH = {**USUAL, "critical": "line, 10 to 20 %", "dilatancy": "curves averaged first, 4 %"}

@@ -8,14 +8,13 @@ from functools import cache
 from pathlib import Path
 
 from voussoir_plots.result import Missing, Unreadable, check_format, reading
+from voussoir_plots.rve_size import MOST_SCATTER
 
 from .definitions import DEFINITIONS, VERSION, Test, Value, with_error
 from .plan import SOILS, Set
 from .runs import folder_of
 
-# A test counts up to here, as for the program (host/element_tests/strength.hpp, docs/range.md).
-MOST_SCATTER = 0.1  # of sigma_xx over the pressure
-MOST_OVERLAP = 0.06  # mean over the contacts, over r_i + r_j
+MOST_OVERLAP = 0.06  # mean over the contacts, over r_i + r_j, up to which the program counts a test (docs/range.md)
 COLUMNS = ("axial_strain", "lateral_strain", "volumetric_strain", "p", "q")
 _CURVE = re.compile(r"seed_(\d+)_([0-9.e+]+)_kPa")
 
@@ -65,15 +64,25 @@ def all_angles(tests: Sequence[Test]) -> Angles:
 
 def angles_of(folder: Path) -> Angles:
     """All definitions of one run; kept beside it, because the jackknife takes a while."""
-    cache, index = folder / "angles.json", folder / "run.h5"
-    if cache.exists() and index.exists() and cache.stat().st_mtime >= index.stat().st_mtime:
-        stored = json.loads(cache.read_text())
-        if isinstance(stored, dict) and stored.get("version") == VERSION:
-            return {kind: {name: Value(*v) for name, v in values.items()} for kind, values in stored["angles"].items()}
+    kept, index = folder / "angles.json", folder / "run.h5"
+    newer = kept.exists() and index.exists() and kept.stat().st_mtime >= index.stat().st_mtime
+    if newer and (stored := _stored(kept)):
+        return stored
     angles = all_angles(tests_of(folder))
-    stored = {k: {n: [v.mean, v.error, v.packings] for n, v in values.items()} for k, values in angles.items()}
-    cache.write_text(json.dumps({"version": VERSION, "angles": stored}))
+    told = {k: {n: [v.mean, v.error, v.packings] for n, v in values.items()} for k, values in angles.items()}
+    kept.write_text(json.dumps({"version": VERSION, "angles": told}))
     return angles
+
+
+def _stored(file: Path) -> Angles | None:
+    """None where the file is of another version or damaged, as by a call that was killed: it is made anew."""
+    try:
+        stored = json.loads(file.read_text())
+        if stored["version"] != VERSION:
+            return None
+        return {kind: {name: Value(*v) for name, v in values.items()} for kind, values in stored["angles"].items()}
+    except (AttributeError, KeyError, TypeError, ValueError):
+        return None
 
 
 @cache

@@ -28,6 +28,18 @@ def arguments(words: list[str] | None) -> argparse.Namespace:
     return given
 
 
+def strengths(folder: Path, found: list[runs.Variation], pressure: float) -> dict[str, strength.Strength]:
+    """The strength of the soil of each variation that has tests; tests that cannot be read are named and left out."""
+    soils = {}
+    for variation in found:
+        try:
+            if soil := strength.of_point(folder, variation.name, pressure):
+                soils[variation.name] = soil
+        except Missing as reason:
+            output.say(f"left out: {reason}", error=True)
+    return soils
+
+
 def work(given: argparse.Namespace) -> None:
     found = [] if given.folder is None else list(runs.variations(given.folder, given.sweep))
     full = runs.at_full_size(given.full)
@@ -36,8 +48,7 @@ def work(given: argparse.Namespace) -> None:
     output.make_folder(given.output)
     style.use_style()
     plt.rcParams["savefig.dpi"] = 100  # the figures are kept with the documents
-    soils = {v.name: soil for v in found if (soil := strength.of_point(given.folder, v.name, LOW_PRESSURE))}
-    higher = {v.name: soil for v in found if (soil := strength.of_point(given.folder, v.name, HIGH_PRESSURE))}
+    soils, higher = (strengths(given.folder, found, pressure) for pressure in (LOW_PRESSURE, HIGH_PRESSURE))
     output.write(given.output / "sensitivity.md", tables.document(found, full) + tables.strengths(found, soils, higher))
     if found:
         rows = [*found, full] if full.runs else found

@@ -7,21 +7,21 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from voussoir_plots.resolution import running_means
-from voussoir_plots.style import save
+from voussoir_plots.style import CYCLE, save
 
 from . import fits, places
 from .runs import LATE, Measured, Variation
 from .strength import Strength
 
-BLUE, ORANGE, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "0.45"  # of the set of Okabe and Ito
+BLUE, ORANGE, GREEN, GREY = CYCLE[0], CYCLE[3], CYCLE[2], "0.45"
 # The variations whose curves are drawn, with their labels.
 SHOWN = {
-    "beta_1": ("$\\beta$ = 1 (Table 1 read literally)", "#D55E00", "-"),
-    "thickness_0_05": ("t = 0.05 m", "#E69F00", "--"),
-    "base": ("base: $\\beta$ = 0.1, t = 0.1 m", "#000000", "-"),
-    "thickness_0_2": ("t = 0.2 m", "#56B4E9", "--"),
-    "friction_20": ("friction 20°", "#0072B2", "-."),
-    "consolidation_0_45": ("medium dense packing", "#CC79A7", ":"),
+    "beta_1": ("$\\beta$ = 1 (Table 1 read literally)", CYCLE[3], "-"),
+    "thickness_0_05": ("t = 0.05 m", CYCLE[1], "--"),
+    "base": ("base: $\\beta$ = 0.1, t = 0.1 m", CYCLE[6], "-"),
+    "thickness_0_2": ("t = 0.2 m", CYCLE[5], "--"),
+    "friction_20": ("friction 20°", CYCLE[0], "-."),
+    "consolidation_0_45": ("medium dense packing", CYCLE[4], ":"),
 }
 
 

@@ -12,8 +12,8 @@ from voussoir_plots.result import Missing, Result
 
 from . import fits, measures, places
 
-AC_HEIGHT = 2.0  # of Ac above the crown as the tools read it unless told otherwise, in D
-HIGHER = 2.25  # and the height (z/C = 0.25 at C/D = 3) at which it contracts until V_l = 15 %, in D
+AC_HEIGHT = 2.0  # above the crown, in D: where the tools took Ac before this comparison, which still reads it there
+HIGHER = 2.25  # where they take it since (z/C = 0.25 at C/D = 3): there it contracts until V_l = 15 %
 TUNNELS = "tunnels"  # grid of the sweep
 LATE = 0.12  # V_l until which a place must contract; trends.contracts_until allows 3 % below the 15 % of the study
 
@@ -75,11 +75,12 @@ class Measured:
 
     @cached_property
     def ac(self) -> measures.Contraction:
-        """Of the single Gauss point that the table of trends takes for Ac."""
-        found = [p for p in points.above_crown(self.result) if p.name == "Ac"]
-        if not found:
+        """Of the single Gauss point that is nearest to the axis at AC_HEIGHT."""
+        (diameter,) = self.result.need("diameter")
+        if AC_HEIGHT * diameter > self.result.cover:
             raise Missing(f"{self.folder}: the point Ac would lie above the surface")
-        volumetric = points.history(self.result, "gauss/volumetric_strain", found[0])
+        place = points.nearest(self.result, "Ac", 0.0, self.result.crown_height + AC_HEIGHT * diameter)
+        volumetric = points.history(self.result, "gauss/volumetric_strain", place)
         return measures.contraction(self.loss, volumetric)
 
     @cached_property

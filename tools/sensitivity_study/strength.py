@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from voussoir_plots.result import Missing, check_format, reading
+from voussoir_plots.result import RunIndex
+from voussoir_plots.small_samples import standard_error
 
 GRID = "strength"  # of the sweep
 COLUMNS = ("pressure", "valid", "peak_angle", "critical_angle", "peak_strain", "contraction")
@@ -30,31 +31,23 @@ def of_tests(columns: Mapping[str, np.ndarray], pressure: float) -> Strength | N
     count = int(inside.sum())
     if count < 2:
         return None
-    values = {name: columns[name][inside] for name in COLUMNS}
+    known = {name: columns[name][inside & np.isfinite(columns[name])] for name in COLUMNS}
 
-    def error(name: str) -> float:
-        return float(np.nanstd(values[name], ddof=1) / np.sqrt(count))
+    def mean(name: str) -> float:
+        return float(np.mean(known[name])) if len(known[name]) else float("nan")
 
     return Strength(
         count,
-        float(np.nanmean(values["peak_angle"])),
-        error("peak_angle"),
-        float(np.nanmean(values["critical_angle"])),
-        error("critical_angle"),
-        float(np.nanmean(values["peak_strain"])),
-        float(np.nanmean(values["contraction"])),
+        mean("peak_angle"),
+        standard_error(known["peak_angle"]),
+        mean("critical_angle"),
+        standard_error(known["critical_angle"]),
+        mean("peak_strain"),
+        mean("contraction"),
     )
 
 
 def of_point(folder: Path, name: str, pressure: float) -> Strength | None:
     """Of a point of the sweep; None where it has no tests."""
-    index = folder / GRID / name / "run.h5"
-    if not index.exists():
-        return None
-    with reading(index) as file:
-        check_format(file, index, "voussoir run")
-        if "strength" not in file.get("tables", {}):
-            raise Missing(f"{index} has no table strength")
-        table = file["tables/strength"]
-        columns = {column: table[column][()] for column in COLUMNS}
-    return of_tests(columns, pressure)
+    run = folder / GRID / name
+    return of_tests(RunIndex(run).table("strength", *COLUMNS), pressure) if (run / "run.h5").exists() else None

@@ -106,8 +106,26 @@ def _title(packing: Packing) -> str:
 
 
 def draw_rve(axis: Axes, snapshot: Snapshot) -> None:
+    inside = draw_grains(axis, snapshot, face="0.9", edge="0.6")
+    if len(snapshot["contact_i"]):
+        force = normal_forces(snapshot)
+        share = force / (force.mean() or 1.0)
+        order = np.argsort(share)
+        bars = branches_from(inside, snapshot, order)
+        colour = np.where(share >= STRONGEST, STRONGEST_FORCE, np.where(share >= STRONG, STRONG_FORCE, WEAK_FORCE))
+        axis.add_collection(LineCollection(bars, linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order]))
+    frame_cell(axis, snapshot["cell"])
+
+
+def branches_from(inside: np.ndarray, snapshot: Snapshot, chosen: np.ndarray) -> list[np.ndarray]:
+    """Lines from grain to grain of these contacts; `inside` are the places of the grains."""
+    start = inside[snapshot["contact_i"][chosen]]
+    return list(np.stack([start, start + snapshot["branch"][chosen]], axis=1))
+
+
+def draw_grains(axis: Axes, snapshot: Snapshot, face: str, edge: str) -> np.ndarray:
+    """Draws all grains and returns their places within the cell (grain, 2) [m], to which files pay no regard."""
     cell, position = snapshot["cell"], np.column_stack([snapshot["x"], snapshot["y"]])
-    # The grains are moved into the cell, because positions are stored without regard to it.
     inside = position - (cell @ np.floor(np.linalg.solve(cell, position.T))).T
     diameter = 2 * snapshot["radius"]
     axis.add_collection(
@@ -118,21 +136,15 @@ def draw_rve(axis: Axes, snapshot: Snapshot) -> None:
             units="xy",
             offsets=inside,
             offset_transform=axis.transData,
-            facecolors="0.9",
-            edgecolors="0.6",
+            facecolors=face,
+            edgecolors=edge,
             linewidths=0.3,
         )
     )
-    if len(snapshot["contact_i"]):
-        force = normal_forces(snapshot)
-        share = force / (force.mean() or 1.0)
-        start = inside[snapshot["contact_i"]]
-        bars = np.stack([start, start + snapshot["branch"]], axis=1)
-        order = np.argsort(share)
-        colour = np.where(share >= STRONGEST, STRONGEST_FORCE, np.where(share >= STRONG, STRONG_FORCE, WEAK_FORCE))
-        axis.add_collection(
-            LineCollection(list(bars[order]), linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order])
-        )
+    return inside
+
+
+def frame_cell(axis: Axes, cell: np.ndarray) -> None:
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) @ cell.T
     axis.plot(*corners.T, color="black", linewidth=0.8)
     axis.set_aspect("equal")

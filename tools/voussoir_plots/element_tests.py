@@ -11,10 +11,10 @@ import numpy as np
 
 from .result import Missing, RunIndex, Unreadable
 from .small_samples import jackknife, standard_error
+from .soils import NAMES
 
 STRENGTH = ("seed", "pressure", "peak_angle", "critical_angle", "dilatancy_angle", "peak_strain", "contraction")
 CURVE = ("axial_strain", "volumetric_strain", "p", "q")
-NAMES = {"dense sand": "CPS_D", "medium dense sand": "CPS_MD", "gravel": "CPG_D"}  # of the study
 
 
 @dataclass

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .result import GRAVEL_FROM, Missing, Snapshot, Unreadable, check_format, plain, reading
+from .result import Missing, Snapshot, Unreadable, check_format, plain, reading
+from .soils import soil_of
 from .units import quantity
 
 
@@ -59,10 +60,7 @@ class Packing:
     @property
     def soil(self) -> str:
         """ "gravel", "medium dense sand" or "dense sand", as for a run."""
-        if 2 * self.radius.max() > GRAVEL_FROM:
-            return "gravel"
-        loose = self.void_ratio > 0.22 or self.numbers.get("consolidation_friction", 0) > 0.1
-        return "medium dense sand" if loose else "dense sand"
+        return soil_of(2 * self.radius.max(), self.void_ratio, self.numbers.get("consolidation_friction", 0))
 
     @cached_property
     def moduli(self) -> np.ndarray:

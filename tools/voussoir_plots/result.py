@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 
 from .settings import Settings
+from .soils import soil_of
 from .units import quantity
 
 FORMAT_VERSION = 1  # of io/FORMAT.md
@@ -22,7 +23,6 @@ KINDS = (
 )
 
 LENGTHS = ("surface_y", "diameter", "axis_depth", "width", "height")  # of the geometry, which must be positive
-GRAVEL_FROM = 10e-3  # [m]: a soil with larger grains is gravel
 
 Snapshot = dict[str, np.ndarray]  # arrays of one RVE, by the names of io/FORMAT.md
 T = TypeVar("T")
@@ -144,10 +144,8 @@ class RunIndex:
         if self.case.get("material", "grains") != "grains":
             return "no grains"
         soil, packing = self.case.get("soil", {}), self.case.get("packing", {})
-        if any(largest > GRAVEL_FROM for largest in _lengths(soil.get("sizes", []))):
-            return "gravel"
-        loose = packing.get("void_ratio", 0) > 0.22 or packing.get("consolidation_friction", 0) > 0.1
-        return "medium dense sand" if loose else "dense sand"
+        largest = max(_lengths(soil.get("sizes", [])), default=0.0)
+        return soil_of(largest, packing.get("void_ratio", 0), packing.get("consolidation_friction", 0))
 
 
 class Result(RunIndex):
@@ -236,6 +234,10 @@ class Result(RunIndex):
         if name not in self._histories:
             self._histories[name] = np.array([i.field(name) for i in self.loss_increments])
         return self._histories[name]
+
+    def next_to(self, loss: float) -> Increment:
+        """The increment of the volume loss whose V_l is nearest to this one [-]."""
+        return self.loss_increments[int(np.argmin(np.abs(self.volume_loss - loss)))]
 
     def nearest(self, losses: Iterable[float]) -> list[Increment]:
         """The increments whose V_l > 0 lie nearest to the wanted ones [-], each of them once. An increment that is

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from .element_tests import NAMES, Series, Test, read
+from .element_tests import Series, Test, read
 from .result import Missing, remembered
 from .small_samples import variation, variation_interval
+from .soils import NAMES
 from .sweep import Sweep
 
 STRAINS = (0.01, 0.02, 0.05, 0.10, 0.20)  # axial [-]
@@ -44,7 +45,7 @@ def held_to(test: Test, strain: float) -> bool:
     if "stress_xx" not in test.curve:
         return test.valid
     near = np.abs(axial - strain) <= HELD_AROUND
-    # Tension is positive in the files, also of this column where they have a sign.
+    # Tension is positive in the files, compression in the pressure.
     off = np.abs(test.curve["stress_xx"][near]) / test.row["pressure"] - 1
     return bool(near.any() and np.sqrt(np.mean(off**2)) <= MOST_SCATTER)
 

@@ -19,8 +19,13 @@ def jackknife(groups: Sequence[np.ndarray], estimate: Callable[[np.ndarray], flo
     n = len(groups)
     if n < 2:
         return whole, math.nan
-    without = np.array([estimate(np.concatenate([*groups[:k], *groups[k + 1 :]])) for k in range(n)])
-    return whole, float(math.sqrt((n - 1) / n * np.sum((without - without.mean()) ** 2)))
+    return whole, jackknife_error([estimate(np.concatenate([*groups[:k], *groups[k + 1 :]])) for k in range(n)])
+
+
+def jackknife_error(without: Sequence[float]) -> float:
+    """The standard error of an estimate from its values without one group each."""
+    n = len(without)
+    return float(math.sqrt((n - 1) / n * np.sum((np.array(without) - np.mean(without)) ** 2)))
 
 
 def variation(values: np.ndarray) -> float:

@@ -36,7 +36,7 @@ class Sweep:
         for path in sorted(_run_folders(self.folder)):
             name = path.relative_to(self.folder).as_posix()
             try:
-                self.members.append(Member(name, path, _kind(path), axes.get(name, {})))
+                self.members.append(Member(name, path, kind_of(path), axes.get(name, {})))
             except Missing as reason:
                 self.left_out.append(reason)
         if not self.members:
@@ -60,7 +60,7 @@ class Sweep:
         return {name: {axis: row[k] for axis, row in values.items() if row[k]} for k, name in enumerate(names)}
 
 
-def _kind(folder: Path) -> str:
+def kind_of(folder: Path) -> str:
     """The kind of a run, without reading its tables."""
     index = folder / "run.h5"
     with reading(index) as file:

@@ -51,13 +51,14 @@ class SweepTable:
             self.input = str(plain(file["input"][()])) if "input" in file else ""
             columns = {name: [plain(v) for v in data[()]] for name, data in file["runs"].items()}
             count = len(columns["name"])
-            if any(len(values) != count for values in columns.values()):
-                raise Unreadable(f"{path} cannot be read: the columns of its runs have different lengths")
+            columns["exit_code"] = [int(code) for code in columns["exit_code"]]
             axes = {name: [str(plain(v)) for v in data[()]] for name, data in _group(file, "axes").items()}
             results = {name: np.asarray(data[()], dtype=float) for name, data in _group(file, "results").items()}
             self.units = {
                 name: str(plain(data.attrs.get("unit", "-"))) for name, data in _group(file, "results").items()
             }
+        if any(len(values) != count for part in (columns, axes, results) for values in part.values()):
+            raise Unreadable(f"{path} cannot be read: the columns of its runs have different lengths")
         return [_row(k, columns, axes, results) for k in range(count)]
 
     def points(self) -> dict[str, list[Run]]:
@@ -81,7 +82,7 @@ def _row(k: int, columns: dict[str, list], axes: dict[str, list[str]], results: 
     return Run(
         name=text("name"),
         status=text("status"),
-        exit_code=int(columns["exit_code"][k]),
+        exit_code=columns["exit_code"][k],
         reason=text("reason"),
         kind=text("kind"),
         grid=text("grid"),

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from . import output
-from .element_tests import NAMES, Series, labels
+from .element_tests import Series, labels
+from .soils import NAMES
 
 ANGLES = {
     "peak_angle": r"peak friction angle $\phi_p$",

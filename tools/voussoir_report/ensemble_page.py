@@ -1,5 +1,6 @@
 """The page of an ensemble: its mean and bands, and the member that represents it for the clicked points."""
 
+import csv
 from pathlib import Path
 
 import numpy as np
@@ -55,13 +56,12 @@ def _warnings(folder: Path, each: list[facts.Facts]) -> list[str]:
     """The members' warnings, each with the member's name, and members that are not reduced."""
     found = [f"{of.folder.name}: {line}" for of in each for line in facts.warnings(of)]
     lines = (folder / "members.csv").read_text().splitlines() if (folder / "members.csv").is_file() else []
-    head = lines[0].split(",") if lines else []
-    if {"name", "status", "reduced"} <= set(head):
-        for row in (line.split(",") for line in lines[1:]):
-            told = dict(zip(head, row))
-            if told["reduced"] != "1":
-                found.insert(0, f"{told['name']} is not in the means: {told['status']}.")
-    return found
+    left_out = [
+        f"{row['name']} is not in the means: {row['status']}."
+        for row in csv.DictReader(lines)
+        if {"name", "status", "reduced"} <= row.keys() and row["reduced"] != "1"
+    ]
+    return left_out + found
 
 
 def _representative(builder: Builder, group: Members) -> tuple[str, Result | None]:

@@ -6,7 +6,9 @@ from pathlib import Path
 from voussoir_plots import paper
 from voussoir_plots.result import Missing
 from voussoir_plots.settings import Settings
+from voussoir_plots.study import catalogue
 from voussoir_plots.study.data import Study, open_study
+from voussoir_plots.sweep import Sweep
 
 from .pictures import Picture
 
@@ -41,6 +43,14 @@ def study_of(folder: Path, settings: Settings) -> Study | None:
     """The tunnels of a folder, with which the sentences compare; None where there are none."""
     try:
         return open_study([folder], settings)
+    except Missing:
+        return None
+
+
+def study_of_sweep(sweep: Sweep) -> Study | None:
+    """The same for a sweep whose figures were drawn, and whose tunnels are read already."""
+    try:
+        return catalogue.study_of(sweep)
     except Missing:
         return None
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from voussoir_plots import points
 from voussoir_plots.catalogue import figures_of
-from voussoir_plots.result import Missing, Result
+from voussoir_plots.result import Missing, Result, RunIndex
 from voussoir_plots.source import Source
 
 from . import curves, element_curves, facts, ground, markup, paper_sentences, pictures
@@ -23,7 +23,7 @@ HINT = (
 def make(source: Source, folder: Path, only: list[str] | None = None) -> Builder:
     """The page of a run of any kind, or of packings."""
     of = facts.read(folder) if folder.is_dir() else facts.Facts(folder)
-    title = str(getattr(source.data, "case", {}).get("title", "")) if hasattr(source.data, "case") else ""
+    title = str(source.data.case.get("title", "")) if isinstance(source.data, RunIndex) else ""
     page = Page(f"{source.what.capitalize()}: {name_of(folder)}", subtitle(title, of))
     builder = Builder(page)
     page.warnings += facts.warnings(of)

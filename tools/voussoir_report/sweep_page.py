@@ -41,7 +41,7 @@ def make(sweep: Sweep, folder: Path, only: list[str] | None = None) -> Builder:
     builder.page.data |= {"sweep": _data(table, points, curves, grounds), "colourMaps": colour_maps()}
     _compare(builder, points, curves, grounds)
     drawn = pictures.draw_all(pictures.chosen(figures_of("a sweep"), only), sweep)
-    study = paper_sentences.study_of(folder, sweep.settings)
+    study = paper_sentences.study_of_sweep(sweep)
     paper_sentences.apply(drawn.pictures, study)
     builder.figures(drawn)
     if study is not None:

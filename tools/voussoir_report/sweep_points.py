@@ -112,10 +112,7 @@ def _of_tunnel(found: Curves, tunnel: Tunnel) -> None:
             continue
         at = tunnel.nearest(wanted)
         lines = [troughs.line_at(member, 0.0) for member in tunnel.members]
-        rows = [int(np.argmin(np.abs(member.volume_loss - at))) for member in tunnel.members]
-        values = [
-            line.settlement(member.loss_increments[row]) for line, member, row in zip(lines, tunnel.members, rows)
-        ]
+        values = [line.settlement(member.next_to(at)) for line, member in zip(lines, tunnel.members)]
         if len({len(value) for value in values}) > 1:
             raise Missing(f"the members of {tunnel.name} have different meshes")
         found[f"trough {100 * wanted:g}"] = [_curve(lines[0].x, of_members(values), 1e3)]

@@ -33,7 +33,7 @@ def arguments(words: list[str]) -> tuple[argparse.Namespace, list[str]]:
     where.add_argument("--slurm", action="store_true", help="each run is a job of Slurm")
     parser.add_argument("--threads", type=positive, default=1, help="most threads of a long run (default: 1)")
     parser.add_argument(
-        "--safety", type=float, default=2, help="factor on the estimates of memory and time (default: 2)"
+        "--safety", type=factor, default=2.0, help="factor on the estimates of memory and time (default: 2)"
     )
     parser.add_argument(
         "--take-over", action="store_true", help="take folders over that a lost machine has not given back"
@@ -46,6 +46,12 @@ def positive(text: str) -> int:
     if int(text) < 1:
         raise ValueError
     return int(text)
+
+
+def factor(text: str) -> float:
+    if not 0 < float(text) < float("inf"):
+        raise ValueError
+    return float(text)
 
 
 def program_of(given: str | None) -> str:

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from .. import output, paper
 from ..resolution import percent
-from ..result import Missing
+from ..result import remembered
+from ..sweep import Sweep
 from . import fields, initial, judging, microstructure, paths, settlements, stresses
 from .data import Study, Tunnel, open_study
 
@@ -91,17 +91,17 @@ def _figures(study: Study) -> list[str]:
     return lines
 
 
-def _of_sweep(name: str, sweep: Any, path: Path) -> None:
-    """The same for a sweep that is opened already (`..sweep`): its study is opened once and kept with it."""
-    kept = sweep.__dict__
-    if not any(member.kind == "tunnel" for member in sweep.members):
-        raise Missing("the sweep has no tunnel")
-    if "_study" not in kept:
-        kept["_study"] = open_study([sweep.folder], sweep.settings)
-    {**STUDY_FIGURES, "study.md": write}[name](kept["_study"], path)
+def study_of(sweep: Sweep) -> Study:
+    """The study of a sweep's tunnels, which is opened once and kept with the sweep."""
+    sweep.of_kind("tunnel")
+    return remembered(sweep, "study", lambda: open_study([sweep.folder], sweep.settings))
+
+
+def _of_sweep(name: str, sweep: Sweep, path: Path) -> None:
+    {**STUDY_FIGURES, "study.md": write}[name](study_of(sweep), path)
 
 
 # For the catalogue of what a sweep holds.
-OF_SWEEP: dict[str, Callable[[Any, Path], None]] = {
+OF_SWEEP: dict[str, Callable[[Sweep, Path], None]] = {
     name: partial(_of_sweep, name) for name in (*STUDY_FIGURES, "study.md")
 }

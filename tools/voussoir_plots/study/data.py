@@ -12,9 +12,10 @@ from ..ensemble import INDEX, Bands
 from ..resolution import percent
 from ..result import Missing, Result, Unreadable, plain, reading
 from ..settings import Settings
+from ..soils import NAMES
+from ..sweep import kind_of
 from .bands import Number, number, of_members
 
-SOILS = {"dense sand": "CPS_D", "medium dense sand": "CPS_MD", "gravel": "CPG_D"}  # the paper's names
 SAME_LOSS = 1e-6  # two V_l that are nearer than this are one state [-]
 SAME_COVER = 0.01  # the same for C/D [-]
 
@@ -39,7 +40,7 @@ class Tunnel:
     @property
     def code(self) -> str:
         """The paper's name of the soil."""
-        return SOILS.get(self.soil, self.soil)
+        return NAMES.get(self.soil, self.soil)
 
     @cached_property
     def cover_ratio(self) -> float:
@@ -100,7 +101,7 @@ class Study:
 
     def __init__(self, tunnels: Sequence[Tunnel], left_out: Sequence[Missing] = ()) -> None:
         self.tunnels = sorted(
-            tunnels, key=lambda t: (list(SOILS).index(t.soil) if t.soil in SOILS else 9, t.cover_ratio)
+            tunnels, key=lambda t: (list(NAMES).index(t.soil) if t.soil in NAMES else 9, t.cover_ratio)
         )
         self.left_out = list(left_out)
         if not self.tunnels:
@@ -133,7 +134,7 @@ class Study:
         covers = [t.cover_ratio for t in self.tunnels]
 
         def beside(cover: float) -> list[Tunnel]:
-            return [t for t in self.tunnels if abs(t.cover_ratio - cover) < SAME_COVER and t.soil in SOILS]
+            return [t for t in self.tunnels if abs(t.cover_ratio - cover) < SAME_COVER and t.soil in NAMES]
 
         best = max(covers, key=lambda c: (len(beside(c)), abs(c - 3.0) < SAME_COVER))
         if not beside(best):
@@ -145,7 +146,7 @@ class Study:
         for tunnel in self.soils():
             if tunnel.soil == name:
                 return tunnel
-        raise Missing(f"there is no tunnel in {name} ({SOILS[name]}) at the cover of the other soils")
+        raise Missing(f"there is no tunnel in {name} ({NAMES[name]}) at the cover of the other soils")
 
 
 def open_study(folders: Sequence[Path], settings: Settings | None = None) -> Study:
@@ -212,8 +213,7 @@ def _kind(point: Path) -> str:
     for run in [point, *sorted(point.glob("member_*"))]:
         if (run / "run.h5").exists():
             try:
-                with reading(run / "run.h5") as file:
-                    return str(plain(file["provenance"].attrs["case_kind"]))
+                return kind_of(run)
             except Missing:
                 return "tunnel"
     return ""

@@ -46,7 +46,7 @@ def grid(tunnels: Sequence[Tunnel], losses: Sequence[float]) -> list[list[Cell]]
     rows = []
     for tunnel in tunnels:
         result = tunnel.representative
-        found = [result.loss_increments[int(np.argmin(np.abs(result.volume_loss - loss)))] for loss in wanted]
+        found = [result.next_to(loss) for loss in wanted]
         rows.append([Cell(tunnel, result, increment) for increment in found])
     return rows
 

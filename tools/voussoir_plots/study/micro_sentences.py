@@ -7,16 +7,16 @@ from functools import partial
 import numpy as np
 
 from .. import chains as networks
-from .. import points, tensors, trends
+from .. import points, trends
 from ..resolution import percent
 from ..result import Missing, Result
 from .bands import Number, all_hold, exceeds, number
 from .data import Study
-from .microstructure import NEAR, NETWORK_LOSS, arch_points, fabric_at, nearest_snapshot, strong_contacts, strong_share
+from .microstructure import NETWORK_LOSS, arch_points, fabric_at, near_aa, strong_contacts, strong_share
 from .paths import STRONG, at_point, followed, point, ratio_at, strong_at
 from .sentences import Claim, each, says
 from .settlements import wanted_losses
-from .stresses import directions, mean_difference
+from .stresses import directions, mean_axis, mean_difference
 
 
 def fabric(study: Study) -> str:
@@ -30,7 +30,7 @@ def fabric(study: Study) -> str:
     for name in ("A", "B", "C"):
         both = [[found(member, name, when) for member in tunnel.members] for when in (0, 1)]
         before, after = (number([a for a, _ in one]) for one in both)
-        axes = [_mean_axis([angle for _, angle in one]) for one in both]
+        axes = [float(np.degrees(mean_axis(np.array([angle for _, angle in one])))) for one in both]
         turned[name] = (before, after, axes[1])
         parts.append(f"{name}: a from {before} to {after}, direction from {axes[0]:.0f}° to {axes[1]:.0f}°")
     return says(
@@ -44,11 +44,6 @@ def fabric(study: Study) -> str:
         (30 < abs(turned["B"][2]) < 75, "contacts turn at B"),
         (abs(turned["C"][2]) > 60, "contacts stay vertical at C"),
     )
-
-
-def _mean_axis(angles: list[float]) -> float:
-    """The mean of directions without an arrow [deg], in (-90, 90]."""
-    return float(np.degrees(tensors.axis_angle(0.5 * np.angle(np.mean(np.exp(2j * np.array(angles)))))))
 
 
 def rotation(study: Study) -> str:
@@ -237,9 +232,7 @@ def strong_networks(study: Study) -> str:
 def _strong(member: Result, which: int) -> float:
     """Of the RVE that was written near Aa: the share of its grains in the strong network (0) and in its strongest part
     (1), and the share of the strong contacts within 45° of the horizontal (2)."""
-    (diameter,) = member.need("diameter")
-    increment = member.loss_increments[int(np.argmin(np.abs(member.volume_loss - NETWORK_LOSS)))]
-    name = nearest_snapshot(member, point(member, "Aa").position, NEAR * diameter)[1]
+    increment, name = near_aa(member)
     if name is None:
         raise Missing("no RVE near Aa was written grain by grain (output.rves)")
     snapshot = increment.snapshot(name)

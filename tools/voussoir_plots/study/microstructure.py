@@ -8,14 +8,14 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.collections import LineCollection
 from matplotlib.projections.polar import PolarAxes
 
 from .. import chains, panels, points
 from ..resolution import percent
 from ..result import Increment, Missing, Result, Snapshot
 from ..style import CYCLE, STRONG_FORCE, STRONGEST_FORCE
-from .data import Study, Tunnel
+from .data import Study
 from .drawing import about_members, finish, noted
 from .paths import point
 
@@ -163,7 +163,7 @@ def draw_chains(study: Study, path: Path) -> None:
 
 def draw_strong(study: Study, path: Path) -> None:
     """Figure 24: the strong networks C1 and C2 at Aa by soil."""
-    found = [(tunnel, *_at_aa(tunnel)) for tunnel in study.soils()]
+    found = [(tunnel, *near_aa(tunnel.representative)) for tunnel in study.soils()]
     shown = [(tunnel, increment, name) for tunnel, increment, name in found if name is not None]
     if not shown:
         raise Missing("no RVE near Aa was written grain by grain (output.rves)")
@@ -185,12 +185,10 @@ def draw_strong(study: Study, path: Path) -> None:
     finish(figure, path, about_members([tunnel for tunnel, _, _ in shown]))
 
 
-def _at_aa(tunnel: Tunnel) -> tuple[Increment, str | None]:
-    """The state of the representative member next to V_l = 10 %, and the RVE that was written near Aa."""
-    result = tunnel.representative
+def near_aa(result: Result) -> tuple[Increment, str | None]:
+    """The state of a run next to V_l = 10 %, and the RVE that was written near Aa."""
     (diameter,) = result.need("diameter")
-    increment = result.loss_increments[int(np.argmin(np.abs(result.volume_loss - NETWORK_LOSS)))]
-    return increment, nearest_snapshot(result, point(result, "Aa").position, NEAR * diameter)[1]
+    return result.next_to(NETWORK_LOSS), nearest_snapshot(result, point(result, "Aa").position, NEAR * diameter)[1]
 
 
 def strong_contacts(snapshot: Snapshot, least: float) -> np.ndarray:
@@ -208,31 +206,8 @@ def strong_share(snapshot: Snapshot, least: float) -> float:
 
 def draw_network(axis: Axes, snapshot: Snapshot) -> None:
     """The strong contacts alone, over faint grains."""
-    cell, position = snapshot["cell"], np.column_stack([snapshot["x"], snapshot["y"]])
-    inside = position - (cell @ np.floor(np.linalg.solve(cell, position.T))).T
-    wide = 2 * snapshot["radius"]
-    axis.add_collection(
-        EllipseCollection(
-            wide,
-            wide,
-            np.zeros_like(wide),
-            units="xy",
-            offsets=inside,
-            offset_transform=axis.transData,
-            facecolors="0.96",
-            edgecolors="0.8",
-            linewidths=0.3,
-        )
-    )
+    inside = chains.draw_grains(axis, snapshot, face="0.96", edge="0.8")
     for least, colour, thick in ((chains.STRONG, STRONG_FORCE, 1.6), (chains.STRONGEST, STRONGEST_FORCE, 3.6)):
-        chosen = strong_contacts(snapshot, least)
-        start = inside[snapshot["contact_i"][chosen]]
-        bars = np.stack([start, start + snapshot["branch"][chosen]], axis=1)
-        axis.add_collection(LineCollection(list(bars), colors=colour, linewidths=thick, capstyle="round"))
-    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) @ cell.T
-    axis.plot(*corners.T, color="black", linewidth=0.8)
-    axis.set_aspect("equal")
-    axis.grid(False)
-    axis.set_xticks([])
-    axis.set_yticks([])
-    axis.autoscale_view()
+        bars = chains.branches_from(inside, snapshot, strong_contacts(snapshot, least))
+        axis.add_collection(LineCollection(bars, colors=colour, linewidths=thick, capstyle="round"))
+    chains.frame_cell(axis, snapshot["cell"])

@@ -86,7 +86,7 @@ def initial(study: Study) -> str:
 def active_height(member: Result, loss: float) -> float:
     """The height above the crown over C up to which the ground on the axis settles by half of the crown's settlement or
     more [-]; nodes between the crown and the surface are interpolated."""
-    increment = member.loss_increments[int(np.argmin(np.abs(member.volume_loss - loss)))]
+    increment = member.next_to(loss)
     x, y = member.coordinates.T
     axis = np.flatnonzero((np.abs(x) < 1e-9) & (y >= member.crown_height - 1e-9))
     axis = axis[np.argsort(y[axis])]
@@ -125,7 +125,7 @@ def band_reach(member: Result, loss: float) -> float:
     """How far the shear band (eps_q from 5 % on) reaches above the crown, over C [-]."""
     (diameter,) = member.need("diameter")
     where = original_points(member)
-    increment = member.loss_increments[int(np.argmin(np.abs(member.volume_loss - loss)))]
+    increment = member.next_to(loss)
     strain = increment.field("gauss/deviatoric_strain").ravel()
     height = (where[:, 1] - member.crown_height) / member.cover
     return max(trends.band_height(height, where[:, 0], strain, member.settings.aside * diameter, BAND))
@@ -334,7 +334,7 @@ def _change(member: Result, profile: Profile, near: float, loss: float, which: i
     """The mean of the horizontal (0) or vertical (1) stress where the place along the line is within `near` D, over the
     one before the loss [-]."""
     (diameter,) = member.need("diameter")
-    increment = member.loss_increments[int(np.argmin(np.abs(member.volume_loss - loss)))]
+    increment = member.next_to(loss)
     means = []
     for state in (member.start, increment):
         place, xx, yy = profile(member, state)

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
 
 from .. import points, q8, rotation, tensors
 from ..reaction import curve
@@ -40,10 +41,7 @@ def draw_reaction(study: Study, path: Path) -> None:
 def mean_stress(tunnel: Tunnel, loss: float) -> np.ndarray:
     """The stress tensor at the Gauss points, mean over the members (element, 4, 3) [Pa], tension positive. A tensor's
     components are averaged, so that its axes are those of the mean."""
-    found = []
-    for member in tunnel.members:
-        k = int(np.argmin(np.abs(member.volume_loss - loss)))
-        found.append(member.loss_increments[k].field("gauss/stress"))
+    found = [member.next_to(loss).field("gauss/stress") for member in tunnel.members]
     if any(len(one) != len(found[0]) for one in found):
         raise Missing(f"the members of {tunnel.name} have different meshes")
     return np.mean(found, axis=0)
@@ -68,15 +66,28 @@ def draw_changes(study: Study, path: Path) -> None:
     for column, loss in zip(axes.T, losses):
         stress = mean_stress(tunnel, loss)
         for axis, component in zip(column[:2], (0, 1)):
-            ratio = np.divide(
-                stress[..., component],
-                before[..., component],
-                out=np.ones(before.shape[:2]),
-                where=before[..., component] < 0,
-            )
-            drawn = _add_ratio(axis, result, ratio, norm)
+            drawn = _add_ratio(axis, result, _over(stress[..., component], before[..., component]), norm)
         _add_axes(column[2], result, stress)
         column[0].set_title(f"$V_l$ = {percent(loss)}", fontsize=11)
+    _label_changes(figure, axes, drawn)
+    figure.suptitle(f"Stresses around the tunnel, {tunnel.label}", fontsize=12)
+    shown = f"Stress tensors are means of {tunnel.count} members." if tunnel.count > 1 else ""
+    finish(
+        figure,
+        path,
+        shown,
+        "Drawn on the ground as it was before the loss. The length of an axis grows with the major principal stress "
+        "less the minor one over their sum; orange: more than 45° from the vertical.",
+        about_singles([tunnel]),
+    )
+
+
+def _over(stress: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """A stress over the one before the loss; 1 at points that were not compressed then."""
+    return np.divide(stress, before, out=np.ones(before.shape), where=before < 0)
+
+
+def _label_changes(figure: Figure, axes: np.ndarray, drawn: plt.cm.ScalarMappable) -> None:
     figure.colorbar(
         drawn,
         ax=axes,
@@ -91,16 +102,6 @@ def draw_changes(study: Study, path: Path) -> None:
         row[0].set_ylabel(f"{name}\nheight above the axis  $y/D$  [-]")
     for axis in axes[-1]:
         axis.set_xlabel("$x/D$  [-]")
-    figure.suptitle(f"Stresses around the tunnel, {tunnel.label}", fontsize=12)
-    shown = f"Stress tensors are means of {tunnel.count} members." if tunnel.count > 1 else ""
-    finish(
-        figure,
-        path,
-        shown,
-        "Drawn on the ground as it was before the loss. The length of an axis grows with the major principal stress "
-        "less the minor one over their sum; orange: more than 45° from the vertical.",
-        about_singles([tunnel]),
-    )
 
 
 def _scaled(result: Result, places: np.ndarray) -> np.ndarray:
@@ -193,7 +194,7 @@ def directions(tunnel: Tunnel, loss: float) -> tuple[np.ndarray, np.ndarray, np.
     stress, fabric = [], []
     (diameter,) = tunnel.members[0].need("diameter")
     for member in tunnel.members:
-        increment = member.loss_increments[int(np.argmin(np.abs(member.volume_loss - loss)))]
+        increment = member.next_to(loss)
         x, angle = rotation.stress_angles(member, increment)
         stress.append(angle)
         fabric.append(rotation.fabric_angles(member, increment))

@@ -1,0 +1,14 @@
+"""The study's soils: its names of them, and how a result's soil is told."""
+
+NAMES = {"dense sand": "CPS_D", "medium dense sand": "CPS_MD", "gravel": "CPG_D"}  # ours: the study's, in its order
+GRAVEL_FROM = 10e-3  # diameter [m]: a soil with larger grains is gravel
+LOOSE_FROM = 0.22  # 2D void ratio [-]: sand with a larger one is medium dense
+LOOSE_FRICTION_FROM = 0.1  # and so is sand that was consolidated with a larger friction [-]
+
+
+def soil_of(largest: float, void_ratio: float, consolidation_friction: float) -> str:
+    """One of NAMES, from the diameter of the largest grains [m] and from how a packing was made."""
+    if largest > GRAVEL_FROM:
+        return "gravel"
+    loose = void_ratio > LOOSE_FROM or consolidation_friction > LOOSE_FRICTION_FROM
+    return "medium dense sand" if loose else "dense sand"
