@@ -56,6 +56,12 @@ inline RveBatch clones(const reference::Rve& rve, std::size_t n) {
 
 inline EngineSettings in_double() { return {.precision = Precision::float64}; }
 
+/// The same with a lower limit of overlaps, which violent motions meet on their way.
+inline EngineSettings with_low_limit(EngineSettings settings) {
+  settings.overlap_limit = 0.3;
+  return settings;
+}
+
 inline std::vector<RveReport> run(RveBatch& batch, const std::vector<StrainRequest>& requests,
                                   const EngineSettings& settings) {
   std::vector<RveReport> reports(batch.size());

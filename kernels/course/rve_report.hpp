@@ -8,6 +8,10 @@
 
 namespace voussoir::kernels {
 
+/// Mean overlap / (r_i + r_j) of the contacts at the end beyond which an RVE is given up as crushed [-]: twice the
+/// largest one up to which stresses count as those of grains (docs/range.md).
+inline constexpr double mean_overlap_limit = 0.12;
+
 /// The part of a report that any course has, whether it was lost or not.
 template <class Drive>
 KOKKOS_INLINE_FUNCTION void begin_report(const RveCourse<Drive>& course, RveReport& report) {
@@ -40,7 +44,7 @@ KOKKOS_INLINE_FUNCTION void fill_report(const RveCourse<Drive>& course, const Ho
   for (int k = 0; k < 6; ++k) all += report.tangent[k];
   if (!finite || !std::isfinite(all) || !(volume > 0)) {
     report.status = RveStatus::not_finite;
-  } else if (!(report.largest_overlap <= settings.overlap_limit)) {
+  } else if (!(report.largest_overlap <= settings.overlap_limit && report.mean_overlap <= mean_overlap_limit)) {
     report.status = RveStatus::overlap_limit;
   } else if (report.contacts == 0) {
     report.status = RveStatus::open;

@@ -198,7 +198,8 @@ TEST_F(DeviceBlocks, EndsWithTheLanesStatuses) {
                                             general,
                                             {.f_rel = {1.0001, 0, 0, 1}, .strain_steps = 100, .hold_cap = 2000},
                                             general};
-  for (const auto& [settings, tolerance] : {std::pair{EngineSettings{}, roughly}, std::pair{in_double(), exactly}}) {
+  for (const auto& [settings, tolerance] :
+       {std::pair{with_low_limit({}), roughly}, std::pair{with_low_limit(in_double()), exactly}}) {
     const auto reports = expect_lanes_answers(make, requests, settings, tolerance);
     const RveStatus expected[] = {RveStatus::not_finite, RveStatus::not_finite,    RveStatus::overlap_limit,
                                   RveStatus::open,       RveStatus::overlap_limit, RveStatus::step_limit,

@@ -71,7 +71,7 @@ TEST_F(EngineExtremes, ExplodingAndCrushingMotionsEndWithAStatus) {
                             {.f_rel = {1, 50, 0, 1}, .strain_steps = 1, .hold_cap = 16},
                             {.f_rel = {1, 0, 0, 1}, .strain_steps = 0, .hold_cap = 0},
                             {.f_rel = {1.0001, 0, 0, 1}, .strain_steps = 100, .hold_cap = 10}},
-                           in_double());
+                           with_low_limit(in_double()));
   EXPECT_EQ(reports[0].status, RveStatus::open);
   EXPECT_EQ(reports[1].status, RveStatus::overlap_limit);
   EXPECT_EQ(reports[2].status, RveStatus::overlap_limit);
