@@ -61,7 +61,7 @@ check("it was made anew" in (two / "run.log").read_text(), "the log does not say
 for content in ("", "my notes\n"):
     (two / "run.lock").write_text(content)
     wait_until(lambda: f"process {first.pid}\n" in (two / "run.lock").read_text(), first, "text of the lock file")
-check("it has its text again" in (two / "run.log").read_text(), "the log does not say that the lock file was changed")
+wait_until(lambda: "it has its text again" in (two / "run.log").read_text(), first, "the line of the lock file's text")
 
 # kill -9, and the next run goes on.
 first.kill()
@@ -161,14 +161,15 @@ sweep.send_signal(signal.SIGTERM)
 sweep.communicate(timeout=60)
 check(sweep.returncode == 130, f"the sweep ended with {sweep.returncode}")
 
-# One of its runs is killed: the others run, and one line says which and why.
+# One of its runs is killed: the others run, one line says which and why, and the end names it again.
 sweep = start([*words, "--resume"])
 one = swept / "one/run.lock"
 wait_until(lambda: one.exists() and "process" in one.read_text(), sweep, "a lock of a run")
 os.kill(int(one.read_text().split("process ")[1].split()[0]), signal.SIGKILL)
 said = sweep.communicate(timeout=60)[1]
-check(sweep.returncode == 4 and said.count("\n") == 1, f"a killed run of a sweep: exit {sweep.returncode}: {said}")
+check(sweep.returncode == 4 and said.count("\n") == 3, f"a killed run of a sweep: exit {sweep.returncode}: {said}")
 check("swept/one was killed by SIGKILL; --resume goes on" in said, f"the line does not say what happened: {said}")
+check("1 of 2 runs did not end well:" in said and "one (killed by SIGKILL)" in said, f"the end of the sweep: {said}")
 
 
 # Packings: the second process waits for the first.

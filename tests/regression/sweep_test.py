@@ -154,14 +154,16 @@ for path, sentence in ((failing / "cover_ratio_1-tight", "choose another folder"
     check(sentence in sweep("elastic.toml", path, "--gather", code=2).stderr, f"--gather in {path}")
 
 # While another process holds the sweep, --only leaves its outcomes alone.
-with subprocess.Popen([PROGRAM, "sweep", "elastic.toml", "-o", "held", "--threads", "1"]) as holder:
-    while not Path("held/outcomes/cover_ratio_1-loose.json").exists() and holder.poll() is None:
+Path("long.toml").write_text(ELASTIC.split("[grid]", maxsplit=1)[0] + '[grid]\n"volume_loss.increments" = [2, 3000]\n')
+first = fresh("held") / "outcomes/increments_2.json"
+with subprocess.Popen([PROGRAM, "sweep", "long.toml", "-o", "held", "--threads", "1"]) as holder:
+    while not first.exists() and holder.poll() is None:
         time.sleep(0.02)
-    kept = Path("held/outcomes/cover_ratio_1-loose.json").read_text()
-    refused = sweep("elastic.toml", "held", "--only", "cover_ratio_1-loose", "--resume", code=None)
+    kept = first.read_text()
+    refused = sweep("long.toml", "held", "--only", "increments_2", "--resume", code=None)
     holder.terminate()
 check("is held by process" in refused.stderr and refused.returncode == 2, f"--only beside a sweep: {refused}")
-check(Path("held/outcomes/cover_ratio_1-loose.json").read_text() == kept, "--only has changed an outcome")
+check(first.read_text() == kept, "--only has changed an outcome")
 
 # What cannot be asked for.
 for options, sentence in (

@@ -19,6 +19,7 @@ from .parts import Builder, name_of
 from .sweep_points import CHARTS, Curves, Point
 
 STATES = ("unconverged increments", "cuts", "most RVEs at the step limit")
+NOT_RUN = -1  # exit code of a run that nothing has begun (io/FORMAT.md, "A sweep")
 REPORT = "report.html"  # of a point, to which the page links where it stands
 
 
@@ -64,7 +65,7 @@ def points_of(sweep: Sweep) -> list[Path]:
 def _subtitle(runs: Sequence[Run]) -> str:
     failed = sum(run.failed for run in runs)
     wall, steps = (float(np.nansum([run.cost.get(name, 0.0) for run in runs])) for name in ("wall_s", "particle_steps"))
-    told = f"{len(runs)} runs, {failed} failed"
+    told = f"{len(runs)} runs, {failed} of them did not end well"
     return told + (f" · {wall / 3600:.3g} h of wall time in all, {steps:.3g} particle steps" if wall else "")
 
 
@@ -78,7 +79,8 @@ def _alarms(builder: Builder, table: SweepTable) -> None:
     for run in table.runs:
         if run.failed:
             reason = f": {run.reason}" if run.reason else ""
-            builder.page.warnings.append(f"FAILED: {run.name} ({run.status}, exit status {run.exit_code}){reason}")
+            how = f"FAILED: {run.name} ({run.status}, exit status {run.exit_code}){reason}"
+            builder.page.warnings.append(f"{run.name} was not run" if run.exit_code == NOT_RUN else how)
 
 
 def _data(

@@ -10,7 +10,7 @@ from voussoir_plots.ensemble import Bands
 from voussoir_plots.result import Missing, Result, RunIndex
 from voussoir_plots.settings import Settings
 from voussoir_plots.study.bands import number, of_members
-from voussoir_plots.study.data import Tunnel
+from voussoir_plots.study.data import Tunnel, equally_far
 from voussoir_plots.sweep_table import Run, SweepTable
 
 from .pack import numbers
@@ -67,8 +67,8 @@ class Point:
         return told
 
     def members(self) -> list[Result]:
-        """The results of the point's runs on a mesh that have come to their volume loss; the faults keep the reasons
-        of the others."""
+        """The results of the point's runs on a mesh, of tunnels those that have come as far in their volume loss as the
+        farthest; the faults keep the reasons of the others."""
         found = []
         for run in self.runs:
             try:
@@ -78,7 +78,7 @@ class Point:
                 found.append(result)
             except Missing as reason:
                 self.faults.append(reason)
-        return found
+        return equally_far(found, self.faults) if self.kind == "tunnel" else found
 
     def curves(self, members: list[Result]) -> Curves:
         """All curves that the point's data allow."""
@@ -98,7 +98,8 @@ class Point:
 
 def _curve(x: np.ndarray, bands: Bands, factor: float = 1.0, note: str = "") -> dict[str, Any]:
     told: dict[str, Any] = {"x": numbers(x, 4), "y": numbers(factor * bands.mean, 4), "note": note}
-    if np.isfinite(bands.mean_half_width).any():
+    # Student's band of two members is nine times their deviation, and would hide all other curves.
+    if np.isfinite(bands.mean_half_width).any() and len(bands.members) > 2:
         told["band"] = numbers(factor * bands.mean_half_width, 3)
     return told
 

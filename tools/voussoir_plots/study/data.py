@@ -172,7 +172,7 @@ def _read(place: Path, settings: Settings | None, left_out: list[Missing]) -> Tu
             members.append(_tunnel(Result(run, settings)))
         except Missing as reason:
             left_out.append(_naming(run, reason))
-    members = _equally_far(members, left_out)
+    members = equally_far(members, left_out)
     return Tunnel(place.resolve().name, members) if members else None
 
 
@@ -241,7 +241,7 @@ def _tunnel(result: Result) -> Result:
     return result
 
 
-def _equally_far(members: Iterable[Result], left_out: list[Missing]) -> list[Result]:
+def equally_far(members: Iterable[Result], left_out: list[Missing]) -> list[Result]:
     """The members that reached the largest V_l that any of them reached: a mean must not mix them with shorter ones."""
     members = list(members)
     if not members:

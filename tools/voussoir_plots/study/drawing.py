@@ -42,10 +42,12 @@ def draw_bands(
     scale: float = 1.0,
     line: str = "-",
 ) -> None:
-    """The mean, the band of the mean and the members as thin lines; a single run is one line."""
+    """The mean, the band of the mean and the members as thin lines; a single run is one line. Two members have no band:
+    Student's of one degree of freedom is nine times their deviation, and would hide everything else."""
     mean, half = scale * bands.mean, np.abs(scale) * bands.mean_half_width
-    if len(bands.members) > 1:
+    if len(bands.members) > 2:
         axis.fill_between(x, mean - half, mean + half, color=colour, alpha=0.22, linewidth=0)
+    if len(bands.members) > 1:
         for member in bands.members:
             axis.plot(x, scale * member, color=colour, linewidth=0.4, alpha=0.7)
     axis.plot(x, mean, line, color=colour, linewidth=1.9, label=label)
@@ -76,6 +78,8 @@ def about_bands(tunnels: Sequence[Tunnel]) -> str:
             f"Thick line: mean of {members} members (draws of the packings); band: 95 % band of this mean; thin lines: "
             "the members."
         )
+        if any(t.count == 2 for t in many):
+            parts.append("Two members have no band.")
     return " ".join([*parts, about_singles(tunnels)]).strip()
 
 

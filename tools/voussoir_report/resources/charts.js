@@ -74,6 +74,10 @@ class Chart {
       x0 = Math.min(x0, 0);
       x1 = Math.max(x1, 0);
     }
+    if (spec.xnames) {  // room for the names of the first and the last place
+      x0 -= 0.5;
+      x1 += 0.5;
+    }
     if (!(x1 > x0)) {
       x0 = Number.isFinite(x0) ? x0 - 0.5 : 0;
       x1 = x0 + 1;
@@ -125,6 +129,7 @@ class Chart {
         for (const m of [1, 2, 5]) decades.push(m * 10 ** d);
       below = {at: decades.filter((v) => v >= limits.x0 * 0.999 && v <= limits.x1 * 1.001), step: null};
     }
+    if (this.spec.xnames) below = {at: Object.keys(this.spec.xnames).map(Number), step: null};
     for (const x of below.at) {
       parts.push(`<line class="grid" x1="${this.px(x)}" x2="${this.px(x)}" y1="${top}" y2="${bottom}"/>`);
       const text = this.spec.xnames ? this.spec.xnames[x] ?? "" : below.step ? tickText(x, below.step) : written(x, 3);

@@ -42,7 +42,7 @@ class SweepGroup {
         bar,
         element(
             "p", {class: "note"},
-            "Bars and bands: 95 % bands of the mean over a point's members or packings; none where there is one."),
+            "Bars and bands: 95 % bands of the mean over a point's members or packings; none where there is one; curves have none of two members."),
         this.charts, element("div", {class: "scroll"}, this.table));
     this.made = new Map();
     this.draw();
