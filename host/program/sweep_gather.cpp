@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t most_reason_bytes = 2000;  // it names files and folders, whose lengths differ from place to place
+
 /// A run of the plan with the end that was kept of it.
 ProcessRun ended_run(const PlannedRun& planned, const fs::path& folder) {
   ProcessRun run{.name = planned.name,
@@ -29,7 +31,7 @@ ProcessRun ended_run(const PlannedRun& planned, const fs::path& folder) {
                  .folder = folder / planned.name};
   if (const auto kept = io::read_outcome(outcome_path(folder, planned.name))) {
     run.end = end_of_code(kept->exit_code);
-    run.reason = io::in_one_line(kept->reason);
+    run.reason = io::in_one_line(kept->reason, most_reason_bytes);
   }
   return run;
 }

@@ -44,11 +44,18 @@ KOKKOS_INLINE_FUNCTION void fill_report(const RveCourse<Drive>& course, const Ho
   for (int k = 0; k < 6; ++k) all += report.tangent[k];
   if (!finite || !std::isfinite(all) || !(volume > 0)) {
     report.status = RveStatus::not_finite;
-  } else if (!(report.largest_overlap <= settings.overlap_limit && report.mean_overlap <= mean_overlap_limit)) {
+  } else if (!(report.largest_overlap <= settings.overlap_limit)) {
     report.status = RveStatus::overlap_limit;
   } else if (report.contacts == 0) {
     report.status = RveStatus::open;
   }
+}
+
+/// Gives up an RVE whose contacts overlap by too much on average. More contacts than a state has room for are told when
+/// they are stored. @param room for contacts in a state
+KOKKOS_INLINE_FUNCTION void give_up_crushed(RveReport& report, int room) {
+  if (!is_failure(report.status) && report.contacts <= room && report.mean_overlap > mean_overlap_limit)
+    report.status = RveStatus::overlap_limit;
 }
 
 }  // namespace voussoir::kernels

@@ -115,6 +115,7 @@ VOUSSOIR_COLD_FUNCTION void finish(const typename Run::Seat seat) {
   alone(run, [&] { begin_report(run.course(), report); });
   if (is_failure(report.status)) return;
   answer(run, cell);
+  alone(run, [&] { give_up_crushed(report, run.batch.states.contacts); });
   if (is_failure(report.status)) return;
   const double volume = report.cell_area * run.scales().thickness;
   if (!store(run, report.contacts, cell)) {

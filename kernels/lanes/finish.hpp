@@ -146,6 +146,7 @@ VOUSSOIR_OWN_SYMBOL void finish(Run& run, std::span<RveReport> reports) {
   for (std::size_t l = 0; l < Run::width; ++l) {
     if (run.lanes[l].rve < 0) continue;
     RveReport& report = answers[l];
+    give_up_crushed(report, run.batch->trial.contact_capacity());
     if (!is_failure(report.status) && !store(run, l, report)) report.status = RveStatus::neighbour_overflow;
     const auto rve = static_cast<std::size_t>(run.lanes[l].rve);
     stored[l] = !is_failure(report.status);
