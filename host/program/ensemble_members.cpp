@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "host/ensemble/csv.hpp"
 #include "host/ensemble/draws.hpp"

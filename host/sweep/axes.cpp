@@ -1,5 +1,7 @@
 #include "host/sweep/axes.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <cstddef>
 
 namespace voussoir::host {
@@ -41,10 +43,10 @@ std::vector<GridPoint> cross(const std::vector<AxisGroup>& groups) {
 Axis axis_of_key(const std::string& key, const std::vector<std::string>& values) {
   Axis axis{.name = key.substr(key.rfind('.') + 1), .points = {}};
   for (const std::string& value : values) {
-    axis.points.push_back({.name = axis.name + "_" + name_of_value(value),
+    axis.points.push_back({.name = fmt::format("{}_{}", axis.name, name_of_value(value)),
                            .value = without_quotes(value),
                            .case_file = {},
-                           .overrides = {key + "=" + value}});
+                           .overrides = {fmt::format("{}={}", key, value)}});
   }
   return axis;
 }
