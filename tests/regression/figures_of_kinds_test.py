@@ -1,25 +1,21 @@
 """Figures of packings, element tests, calibrations, probes and sweeps: each kind is known by its folder, known answers
 are found, and what cannot be read ends in one line."""
 
-import contextlib
 import csv
-import io
 import os
 import shutil
 import sys
 import unittest
 from pathlib import Path
-from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
 import figures
 import h5py
-import matplotlib.pyplot as plt
 import numpy as np
+from figure_calls import call, copy
 from program import command, run
-from voussoir_plots import calibration, element_tests, grading, probes, rve_size, small_samples, style, table_two
-from voussoir_plots.guard import run as guarded
+from voussoir_plots import calibration, element_tests, grading, probes, rve_size, small_samples, table_two
 from voussoir_plots.packings import Packing
 from voussoir_plots.result import Missing, RunIndex, Unreadable
 from voussoir_plots.sweep import Sweep
@@ -41,35 +37,6 @@ def setUpModule():
     search = ["calibrate.rounds=0", "calibrate.confirm_grains=100", "calibrate.confirm_seeds=[1, 2]"]
     few = ['calibrate.thickness=["0.1 m", "0.2 m"]', 'biaxial.pressures=["400 kPa"]', "biaxial.inertial_number=2e-3"]
     run(command("calibrate_cps_d", "runs/calibrate", [*TESTS, *search, *few, "biaxial.strain=4 %"]), code=None)
-
-
-def call(*words):
-    """(exit status, lines of the standard output, lines of the standard error); the pictures are small."""
-
-    def use_style():
-        style.use_style()
-        plt.rcParams.update({"savefig.dpi": 20, "savefig.bbox": None})
-
-    out, err = io.StringIO(), io.StringIO()
-    with (
-        contextlib.redirect_stdout(out),
-        contextlib.redirect_stderr(err),
-        mock.patch.object(sys, "argv", ["figures.py", *map(str, words)]),
-        mock.patch.object(figures, "use_style", use_style),
-    ):
-        status: int | str | None
-        try:
-            status = guarded(figures.main)
-        except SystemExit as end:  # of argparse
-            status = end.code
-    return status, out.getvalue().splitlines(), err.getvalue().splitlines()
-
-
-def copy(of, name):
-    folder = Path("runs") / name
-    shutil.rmtree(folder, ignore_errors=True)
-    shutil.copytree(Path("runs") / of, folder)
-    return folder
 
 
 def made_up_tests(folder, grains, stresses, pressure=100e3, case=""):
@@ -158,7 +125,7 @@ class KnownAnswers(unittest.TestCase):
             [[one.cov for one in row] for row in study.table], np.outer([0.2, 0.05, 0.12, 0.05], np.ones(5))
         )
         self.assertEqual((study.smallest(), study.smallest_from()), (200, 400))
-        status, out, err = call("sweep", "-o", "drawn")
+        status, out, err = call(figures, "sweep", "-o", "drawn")
         self.assertEqual((status, err), (0, []), out)
         self.assertIn("wrote drawn/rve_size_variation.png", out)
         self.assertIn("skipped table_2.md: sweep has no biaxial run with several pressures", out)
@@ -208,17 +175,19 @@ class Runs(unittest.TestCase):
             packing = Packing(path)
             self.assertAlmostEqual(packing.pressure() / packing.numbers["pressure"], 1, delta=2e-3)
         for words in (("packs",), files, (files[0], "packs")):
-            status, out, err = call(*words, "-o", "drawn", "--format", "svg")
+            status, out, err = call(figures, *words, "-o", "drawn", "--format", "svg")
             self.assertEqual((status, out, err), (0, ["wrote drawn/grading.svg", "wrote drawn/packings.svg"], []))
             self.assertIn(b"<svg", Path("drawn/grading.svg").read_bytes()[:2000])
 
     def test_element_tests(self):
-        status, out, err = call("runs/biaxial", "-o", "drawn", "--format", "pdf")
+        status, out, err = call(figures, "runs/biaxial", "-o", "drawn", "--format", "pdf")
         self.assertEqual((status, err, len(out)), (0, [], 4), out)
         self.assertEqual(Path("drawn/biaxial_curves.pdf").read_bytes()[:5], b"%PDF-")
         self.assertRegex(Path("drawn/table_2.md").read_text(), r"\*\*CPS_D, here\*\* \(100 grains\) \| \d")
         made_up_tests("runs/looser", 100, [1e5, 1e5], case="")
-        status, out, err = call("runs/biaxial", "runs/looser", "runs/probe", "-o", "drawn", "--only", "table_2")
+        status, out, err = call(
+            figures, "runs/biaxial", "runs/looser", "runs/probe", "-o", "drawn", "--only", "table_2"
+        )
         self.assertEqual((status, out, len(err)), (2, ["wrote drawn/table_2.md"], 1))
         self.assertIn("left out: runs/probe has no run.h5", err[0])
         self.assertIn("**CPS_D (looser), here**", Path("drawn/table_2.md").read_text())
@@ -237,13 +206,13 @@ class Runs(unittest.TestCase):
         self.assertAlmostEqual(probe.strain()[0] / 1e-5, 1, delta=1e-3)
         probe.rows = [row for row in probe.rows if row["probe"] != "rotation"]
         self.assertAlmostEqual(probe.strain()[0] / 1e-5, 1, delta=0.05)
-        status, out, err = call("runs/probe", "-o", "drawn")
+        status, out, err = call(figures, "runs/probe", "-o", "drawn")
         self.assertEqual((status, err), (0, []))
         self.assertEqual(out, ["wrote drawn/probe_responses.png", "wrote drawn/probe_path.png"])
 
     def test_calibration(self):
         """Observables that are quadratics of the logarithms of the parameters are found again."""
-        folder = copy("calibrate", "surface")
+        folder = copy("surface", "calibrate")
         with h5py.File(folder / "run.h5", "r+") as file:
             sets = file["tables/search"]
             a, b = np.log(sets["rolling_stiffness"][()]), np.log(sets["thickness"][()])
@@ -256,7 +225,7 @@ class Runs(unittest.TestCase):
         for one in search.observables:
             np.testing.assert_allclose(found[one.name], search.sets[one.name], rtol=1e-9)
         for name in ("surface", "calibrate"):
-            status, out, err = call(f"runs/{name}", "-o", "drawn")
+            status, out, err = call(figures, f"runs/{name}", "-o", "drawn")
             self.assertEqual((status, err), (0, []))
             self.assertRegex(out[0], "^wrote drawn/calibration.png|^skipped calibration.png: no set .* was usable")
 
@@ -270,7 +239,7 @@ class Runs(unittest.TestCase):
 
 class BadInput(unittest.TestCase):
     def assert_one_line(self, words, *paths):
-        status, out, err = call(*paths)
+        status, out, err = call(figures, *paths)
         self.assertEqual((status, out, len(err)), (2, [], 1), err)
         self.assertIn(words, err[0])
 
@@ -283,37 +252,37 @@ class BadInput(unittest.TestCase):
         self.assert_one_line("packing_1.h5 cannot be read: it is damaged", bad)
         self.assert_one_line('is no "voussoir packing"', "runs/biaxial/run.h5")
         shutil.copy(source, bad / "packing_2.h5")
-        status, out, err = call(bad)
+        status, out, err = call(figures, bad)
         self.assertEqual((status, len(out), len(err)), (2, 2, 1))
         with h5py.File(bad / "packing_2.h5", "r+") as file:
             del file["labels"].attrs["soil.modulus"]
-        status, out, _ = call(bad / "packing_2.h5")
+        status, out, _ = call(figures, bad / "packing_2.h5")
         self.assertEqual((status, out[0]), (0, "wrote bad/grading.png"))
         self.assertIn("skipped packings.png: bad/packing_2.h5 does not tell its soil", out[1])
         with h5py.File(bad / "packing_2.h5", "r+") as file:
             file["contact_j"][0] = 10**6
         self.assert_one_line("a contact has a grain that does not exist", bad / "packing_2.h5")
-        status, _, err = call(source, bad / "packing_2.h5")
+        status, _, err = call(figures, source, bad / "packing_2.h5")
         self.assertEqual(status, 2)
         self.assertIn("by -o", err[-1])
 
     def test_element_tests(self):
-        folder = copy("biaxial", "cut")
+        folder = copy("cut", "biaxial")
         with h5py.File(folder / "run.h5", "r+") as file:
             del file["tables/seed_2_200_kPa"]["q"]
         self.assert_one_line("the table seed_2_200_kPa has no column q", folder)
         with h5py.File(folder / "run.h5", "r+") as file:
             del file["tables/strength"]
         self.assert_one_line("has no table strength", folder)
-        folder = copy("biaxial", "invalid")
+        folder = copy("invalid", "biaxial")
         with h5py.File(folder / "run.h5", "r+") as file:
             file["tables/strength/valid"][...] = 0
-        status, out, err = call(folder, "-o", "drawn")
+        status, out, err = call(figures, folder, "-o", "drawn")
         self.assertEqual((status, err), (0, []), out)
         self.assertIn("skipped biaxial_curves.png: runs/invalid has no valid test", out)
 
     def test_probe(self):
-        folder = copy("probe", "headless")
+        folder = copy("headless", "probe")
         rows = list(csv.reader((folder / "probe.csv").read_text().splitlines()))
         for content, words in (
             ("", "has no column seed"),
@@ -322,22 +291,22 @@ class BadInput(unittest.TestCase):
         ):
             (folder / "probe.csv").write_text(content)
             self.assert_one_line(words, folder)
-        folder = copy("probe", "pathless")
+        folder = copy("pathless", "probe")
         (folder / "path.csv").write_bytes(b"\xff\xfe\x00")
-        status, out, err = call(folder, "-o", "drawn")
+        status, out, err = call(figures, folder, "-o", "drawn")
         self.assertEqual((status, len(err)), (2, 1))
         self.assertIn("path.csv cannot be read", err[0])
         self.assertIn("skipped probe_path.png: the probe had no path (path.csv)", out)
         rows[1][rows[0].index("change_xx_Pa")] = "much"
         (folder / "probe.csv").write_text("\n".join(",".join(row) for row in rows))
-        _, out, _ = call(folder, "-o", "drawn")
+        _, out, _ = call(figures, folder, "-o", "drawn")
         self.assertIn("skipped probe_responses.png: runs/pathless: a row of the probe has no number change_xx_Pa", out)
 
     def test_calibration(self):
-        folder = copy("calibrate", "unfinished")
+        folder = copy("unfinished", "calibrate")
         with h5py.File(folder / "run.h5", "r+") as file:
             del file["tables"]
-        status, out, err = call(folder, "-o", "drawn")
+        status, out, err = call(figures, folder, "-o", "drawn")
         self.assertEqual((status, err), (0, []))
         self.assertIn("run.h5 has no table search", out[0])
 
@@ -350,7 +319,7 @@ class BadInput(unittest.TestCase):
         Path("nothing/a/run.h5").write_bytes(b"half")
         self.assert_one_line("nothing/a/run.h5 cannot be read", "nothing")
         made_up_tests("nothing/b", 100, [1e5, 1e5])
-        status, out, err = call("nothing", "-o", "drawn", "--only", "rve_size")
+        status, out, err = call(figures, "nothing", "-o", "drawn", "--only", "rve_size")
         self.assertEqual((status, len(err)), (2, 1))
         self.assertIn("skipped rve_size.md: nothing has no biaxial runs that differ in packing.grains alone", out[0])
         Path("nothing/sweep.h5").write_bytes(b"half")
@@ -358,10 +327,10 @@ class BadInput(unittest.TestCase):
 
     def test_kinds_of_figures(self):
         self.assertRaises(Missing, RunIndex, "runs/none")
-        status, out, _ = call("runs/biaxial", "-o", "drawn", "--only", "void_ratio")
+        status, out, _ = call(figures, "runs/biaxial", "-o", "drawn", "--only", "void_ratio")
         self.assertEqual((status, out), (0, ["skipped void_ratio: it is no figure of biaxial tests"]))
         self.assert_one_line("runs of tunnels, and this is a calibration", "runs/calibrate", "--trends")
-        status, _, err = call("runs/biaxial", "--format", "gif")
+        status, _, err = call(figures, "runs/biaxial", "--format", "gif")
         self.assertEqual(status, 2)
         self.assertIn("invalid choice: 'gif'", err[-1])
 

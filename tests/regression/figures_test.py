@@ -1,9 +1,7 @@
 """The figure scripts on short, coarse, interrupted and damaged runs: no traceback, each skipped figure says why, one
 figure that fails loses no other one, and the exit status tells what happened."""
 
-import contextlib
 import errno
-import io
 import json
 import os
 import resource
@@ -22,10 +20,10 @@ import compare_runs
 import compare_tunnels
 import figures
 import h5py
-import matplotlib.pyplot as plt
 import numpy as np
+from figure_calls import call, copy
 from program import PROGRAM, check, run, start_and_signal
-from voussoir_plots import guard, source, style, trend_table
+from voussoir_plots import source, trend_table
 from voussoir_plots.catalogue import FIGURES
 
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
@@ -64,32 +62,6 @@ def setUpModule():
     run(command("specimen.toml", "runs/specimen"))
     code = start_and_signal(command("tunnel.toml", "runs/stopped"), "runs/stopped/increments/0001.h5", signal.SIGUSR1)
     check(code == 130, f"the run was not stopped: exit {code}")
-
-
-def call(script, *words):
-    """(exit status, lines of the standard output, lines of the standard error) of a script in this process. The
-    pictures are small, since only their making counts."""
-
-    def use_style():
-        style.use_style()
-        plt.rcParams.update({"savefig.dpi": 20, "savefig.bbox": None})
-
-    out, err = io.StringIO(), io.StringIO()
-    with (
-        contextlib.redirect_stdout(out),
-        contextlib.redirect_stderr(err),
-        mock.patch.object(sys, "argv", [f"{script.__name__}.py", *map(str, words)]),
-        mock.patch.object(script, "use_style", use_style, create=True),
-    ):
-        status = guard.run(script.main)
-    return status, out.getvalue().splitlines(), err.getvalue().splitlines()
-
-
-def copy(name, of="coarse"):
-    folder = Path("runs") / name
-    shutil.rmtree(folder, ignore_errors=True)
-    shutil.copytree(Path("runs") / of, folder)
-    return folder
 
 
 class Runs(unittest.TestCase):

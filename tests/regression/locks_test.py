@@ -9,11 +9,10 @@ import shutil
 import signal
 import socket
 import subprocess
-import time
 from functools import partial
 from pathlib import Path
 
-from program import PROGRAM, ROOT, check, command, fresh, run
+from program import PROGRAM, ROOT, check, command, fresh, run, wait_until
 
 SMALL = ["ground.mesh_size_opening=2.5 m", "ground.mesh_size_far=8 m", "volume_loss.total=1 %"]
 LONG = [*SMALL, "volume_loss.increments=3000"]
@@ -23,14 +22,6 @@ CASE = "tunnel_elastic"
 
 def start(words):
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-def wait_until(holds, process, what):
-    deadline = time.monotonic() + 120
-    while not holds():
-        check(process.poll() is None, f"the run ended with {process.returncode} before {what}")
-        check(time.monotonic() < deadline, f"no {what} within two minutes")
-        time.sleep(0.005)
 
 
 def expect_refusal(words, *fragments):

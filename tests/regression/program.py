@@ -51,14 +51,19 @@ def run(words, code=0, timeout=280):
     return done
 
 
+def wait_until(holds, process, what):
+    """Waits until `holds` does, which it must do within two minutes and before the process ends."""
+    deadline = time.monotonic() + 120
+    while not holds():
+        check(process.poll() is None, f"the process ended with {process.returncode} before there was {what}")
+        check(time.monotonic() < deadline, f"there was no {what} within two minutes")
+        time.sleep(0.002)
+
+
 def start_and_signal(words, wait_for, signal):
     """Starts a run, waits until a file exists, sends a signal; returns the exit code."""
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    deadline = time.monotonic() + 120
-    while not Path(wait_for).exists():
-        check(process.poll() is None, f"the run ended before {wait_for} appeared")
-        check(time.monotonic() < deadline, f"{wait_for} did not appear within two minutes")
-        time.sleep(0.002)
+    wait_until(Path(wait_for).exists, process, wait_for)
     process.send_signal(signal)
     return process.wait(timeout=120)
 

@@ -8,7 +8,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import h5py
@@ -71,14 +70,6 @@ def end(process, code, log, timeout=900):
     check(process.returncode == code, f"{log}: exit {process.returncode} instead of {code}:\n{said[-3000:]}")
     check("Traceback" not in said, f"{log} has a traceback:\n{said[-3000:]}")
     return said
-
-
-def wait_for(holds, process, what):
-    deadline = time.monotonic() + 120
-    while not holds():
-        check(process.poll() is None, f"the workflow ended with {process.returncode} before there was {what}")
-        check(time.monotonic() < deadline, f"there was no {what} within two minutes")
-        time.sleep(0.01)
 
 
 def process_of(lock):

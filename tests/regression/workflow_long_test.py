@@ -5,7 +5,7 @@ named."""
 import os
 import signal
 
-from program import PROGRAM, ROOT, check, fresh, run
+from program import PROGRAM, ROOT, check, fresh, run, wait_until
 from tiny_sweep import (
     DEPTHS,
     DRAWS,
@@ -18,7 +18,6 @@ from tiny_sweep import (
     outcomes,
     process_of,
     start,
-    wait_for,
     write_sweep,
 )
 
@@ -43,7 +42,7 @@ def check_whole(folder, said):
 killed = fresh("killed")
 words = by_workflow(SWEEP, killed, "--cores", "2")
 first = start(words, "killed.log")
-wait_for(lambda: len(outcomes(killed)) >= 3, first, "third outcome")
+wait_until(lambda: len(outcomes(killed)) >= 3, first, "third outcome")
 kill(first, killed, all_jobs=True)
 check(len(outcomes(killed)) < 10, f"killed too late: {outcomes(killed)}")
 check_whole(killed, end(start(words, "resumed.log"), 3, "resumed.log"))
@@ -52,7 +51,7 @@ check_whole(killed, end(start(words, "resumed.log"), 3, "resumed.log"))
 stopped = fresh("stopped")
 words = by_workflow(SWEEP, stopped, "--cores", "2")
 first = start(words, "stopped.log")
-wait_for(lambda: len(outcomes(stopped)) >= 3, first, "third outcome")
+wait_until(lambda: len(outcomes(stopped)) >= 3, first, "third outcome")
 first.send_signal(signal.SIGTERM)
 said = end(first, 130, "stopped.log")
 check("the same call goes on" in said, said)
@@ -65,7 +64,7 @@ environment = {"SLURM_STUB": str(slurm), "PATH": f"{ROOT / 'tests/regression/slu
 cluster = fresh("cluster")
 words = by_workflow(SWEEP, cluster, "--slurm", "--jobs", "4", "--slurm-init-seconds-before-status-checks", "1")
 first = start(words, "cluster.log", **environment)
-wait_for(lambda: len(outcomes(cluster)) >= 2, first, "second outcome")
+wait_until(lambda: len(outcomes(cluster)) >= 2, first, "second outcome")
 check(process_of(cluster / ".workflow/lock") is not None, "no Snakemake holds the folder")
 kill(first, cluster, all_jobs=False)
 said = end(start(words, "cluster_again.log", **environment), 3, "cluster_again.log")

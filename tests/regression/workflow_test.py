@@ -6,7 +6,7 @@ import os
 import signal
 from pathlib import Path
 
-from program import PROGRAM, check, fresh, run
+from program import PROGRAM, check, fresh, run, wait_until
 from tiny_sweep import (
     DEPTHS,
     by_workflow,
@@ -17,7 +17,6 @@ from tiny_sweep import (
     outcomes,
     process_of,
     start,
-    wait_for,
     write_sweep,
 )
 
@@ -46,14 +45,14 @@ check("file/.workflow: Not a directory" in done.stderr and done.stderr.count("\n
 swept = fresh("swept")
 first = start(by_workflow(SWEEP, swept, "--cores", "1"), "first.log")
 locks = [swept / f"tunnels/{name}/run.lock" for name in ("near", "middle")]
-wait_for(lambda: any(process_of(lock) for lock in locks), first, "run")
+wait_until(lambda: any(process_of(lock) for lock in locks), first, "run")
 kill(first, swept, all_jobs=False)
 survivor = next(process_of(lock) for lock in locks if process_of(lock))
 os.kill(survivor, signal.SIGSTOP)
 lock_text = next(lock.read_text() for lock in locks if process_of(lock))
 check(len(outcomes(swept)) < 3, f"killed too late: {outcomes(swept)}")
 second = start(by_workflow(SWEEP, swept, "--cores", "2"), "second.log")
-wait_for(lambda: "waits: " in Path("second.log").read_text(), second, "run that waits")
+wait_until(lambda: "waits: " in Path("second.log").read_text(), second, "run that waits")
 os.kill(survivor, signal.SIGCONT)
 said = end(second, 3, "second.log")
 check(f"{FAILED} (no equilibrium)" in said.splitlines()[-1], f"the failed run is not named at the end: {said[-500:]}")
