@@ -1,6 +1,6 @@
 #pragma once
 /// Results of an ensemble in a folder: fields/NNNN.h5 (the bands of the fields of one increment) and ensemble.h5
-/// (everything else, and links). FORMAT.md lists every dataset.
+/// (everything else, and links). docs/reference/files.md lists every dataset.
 
 #include <cstdint>
 #include <filesystem>

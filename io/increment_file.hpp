@@ -1,6 +1,6 @@
 #pragma once
-/// The HDF5 file of one increment, and its XDMF grid. FORMAT.md describes the contents. result_file.hpp is the
-/// interface for other folders.
+/// The HDF5 file of one increment, and its XDMF grid. docs/reference/files.md describes the contents. result_file.hpp
+/// is the interface for other folders.
 
 #include "io/result_file.hpp"
 

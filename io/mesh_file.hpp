@@ -23,8 +23,8 @@ struct StoredMesh {
   [[nodiscard]] std::size_t elements() const { return quads.size() / 4; }
 };
 
-/// Writes an HDF5 file (FORMAT.md) through a temporary name. Throws std::invalid_argument where the mesh is none,
-/// std::runtime_error where the file cannot be written.
+/// Writes an HDF5 file (docs/reference/files.md) through a temporary name. Throws std::invalid_argument where the mesh
+/// is none, std::runtime_error where the file cannot be written.
 void save_mesh(const std::filesystem::path& path, const StoredMesh& mesh);
 
 /// Reads a file of save_mesh. Throws std::runtime_error where the file is missing, damaged or no mesh, where its

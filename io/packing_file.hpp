@@ -28,8 +28,8 @@ struct Packing {
   [[nodiscard]] std::size_t contacts() const { return contact_i.size(); }
 };
 
-/// Writes an HDF5 file (FORMAT.md) through a temporary name. Throws std::invalid_argument when sizes disagree,
-/// std::runtime_error when the file cannot be written.
+/// Writes an HDF5 file (docs/reference/files.md) through a temporary name. Throws std::invalid_argument when sizes
+/// disagree, std::runtime_error when the file cannot be written.
 void save_packing(const std::filesystem::path& path, const Packing& packing);
 
 /// Reads a file of save_packing. Throws std::runtime_error where the file is missing, damaged or no packing, or where

@@ -1,6 +1,6 @@
 #pragma once
-/// The plain data of a run's results: mesh, provenance, fields, increments, tables, whole RVEs. FORMAT.md says how they
-/// stand in files; result_file.hpp writes and reads them.
+/// The plain data of a run's results: mesh, provenance, fields, increments, tables, whole RVEs. docs/reference/files.md
+/// says how they stand in files; result_file.hpp writes and reads them.
 
 #include <array>
 #include <cstdint>
@@ -49,7 +49,8 @@ enum class FieldLocation {
   rve       ///< (rve, components): RVEs that do not sit at Gauss points one to one
 };
 
-/// A named quantity, values in row order of the shapes above. Names and units that figures rely on: FORMAT.md.
+/// A named quantity, values in row order of the shapes above. Names and units that figures rely on:
+/// docs/reference/files.md.
 struct Field {
   std::string name = {};
   std::string unit = {};

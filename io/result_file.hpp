@@ -1,7 +1,8 @@
 #pragma once
 /// Results of a run in a folder: increments/NNNN.h5 (each immutable once its name exists), run.h5 (input, provenance,
-/// mesh, table of increments, links) and result.xdmf (for ParaView), both replaced by rename. FORMAT.md lists every
-/// dataset. A kill at any moment leaves the last finished increment readable; readers never block the writer.
+/// mesh, table of increments, links) and result.xdmf (for ParaView), both replaced by rename. docs/reference/files.md
+/// lists every dataset. A kill at any moment leaves the last finished increment readable; readers never block the
+/// writer.
 
 #include <filesystem>
 #include <optional>

@@ -1,5 +1,5 @@
 #pragma once
-/// The results of a sweep: sweep.h5, one row a run. FORMAT.md lists every dataset.
+/// The results of a sweep: sweep.h5, one row a run. docs/reference/files.md lists every dataset.
 
 #include <filesystem>
 #include <map>

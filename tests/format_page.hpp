@@ -1,5 +1,5 @@
 #pragma once
-/// The tables of io/FORMAT.md, for tests that compare the page with the tables of the program.
+/// The tables of docs/reference/files.md, for tests that compare the page with the tables of the program.
 
 #include <fstream>
 #include <map>
@@ -28,7 +28,7 @@ inline std::string unquoted(const std::string& name) { return name.substr(1, nam
 /// The rows of the page's table with this head, cell by cell.
 inline std::vector<std::vector<std::string>> rows_below(const std::string& head) {
   std::ostringstream page;
-  page << std::ifstream(std::string(VOUSSOIR_SOURCE_DIR) + "/io/FORMAT.md").rdbuf();
+  page << std::ifstream(std::string(VOUSSOIR_SOURCE_DIR) + "/docs/reference/files.md").rdbuf();
   const std::string text = page.str();
   std::vector<std::vector<std::string>> rows;
   const std::size_t at = text.find(head);
@@ -46,17 +46,17 @@ inline std::string disagreements(const Descriptions& page, const Descriptions& p
   std::string lines;
   for (const auto& [name, said] : page) {
     const auto found = program.find(name);
-    if (found == program.end()) lines.append(name).append(": io/FORMAT.md alone has it\n");
+    if (found == program.end()) lines.append(name).append(": docs/reference/files.md alone has it\n");
     if (found != program.end() && found->second != said)
       lines.append(name)
-          .append(": io/FORMAT.md says ")
+          .append(": docs/reference/files.md says ")
           .append(said)
           .append(", the program ")
           .append(found->second) += '\n';
   }
   for (const auto& [name, said] : program) {
     if (!page.contains(name))
-      lines.append(name).append(": io/FORMAT.md lacks it, the program says ").append(said) += '\n';
+      lines.append(name).append(": docs/reference/files.md lacks it, the program says ").append(said) += '\n';
   }
   return lines;
 }

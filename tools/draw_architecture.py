@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Draws docs/architecture.svg from the include table and the includes: tools/draw_architecture.py [--check]
+"""Draws docs/explanation/architecture.svg from the include table and the includes: tools/draw_architecture.py [--check]
 
 A box is a room, that is a sub-folder of host or kernels, or the whole of fem and io. The rows are the levels of the
 table ROOMS in tools/check_includes.py; an arrow points from a room to one that its files include. Arrows that follow
 from others are left out, except those of KEPT, and the arrows between two folders are drawn as one. An arrow to the
 next level goes straight; a longer one runs beside the boxes in a lane of its own and ends at the side of its target. An
 arrow in red points upwards or sideways, which the table does not allow. The texts beside the rooms of host are those of
-the table in docs/architecture.md. --check only compares the picture with the file, so that a test can notice an old
-picture.
+the table in docs/explanation/architecture.md. --check only compares the picture with the file, so that a test can notice an
+old picture.
 """
 
 import argparse
@@ -23,8 +23,8 @@ from check_includes import ROOMS
 from include_graph import FOLDERS, quotient, read_graph, reduced, room_of
 
 ROOT = Path(__file__).resolve().parent.parent
-FILE = ROOT / "docs/architecture.svg"
-PAGE = ROOT / "docs/architecture.md"
+FILE = ROOT / "docs/explanation/architecture.svg"
+PAGE = ROOT / "docs/explanation/architecture.md"
 BOX_WIDTH, BOX_HEIGHT, ROW, GAP, MARGIN = 144, 28, 58, 22, 34
 HEAD = 30  # height of a folder's title
 LANE = 16  # distance of two long arrows that run side by side

@@ -24,7 +24,7 @@ struct Curve {
 };
 
 /// Root mean squares over packings of 300 grains at 800, 300, 100, 30, 10 and 1 kPa of the study's sand: of extension
-/// (four packings), at 1 kPa of compression (four others; docs/trade.md).
+/// (four packings), at 1 kPa of compression (four others; docs/validation/trade.md).
 constexpr std::array<Curve, 6> curves{{{14.9, {0.00062, 0.00087, 0.0041, 0.0058, 0.0058}},
                                        {24.3, {0.00074, 0.0019, 0.0089, 0.0144, 0.0152}},
                                        {42.0, {0.00103, 0.0032, 0.0122, 0.0284, 0.0333}},
@@ -110,7 +110,8 @@ std::string accuracy_note(const EngineCase& engine, const SoilCase& soil) {
   std::string text = fmt::format("engine accuracy {:g} % of the mean stress:", 100 * accuracy);
   if (!soil.classes.empty() || !soil.sizes.empty())
     return text +
-           " the field expected_error shows where it cannot be met (docs/trade.md; measured on one class of grains)";
+           " the field expected_error shows where it cannot be met (docs/validation/trade.md; measured on one class of "
+           "grains)";
   const char* separator = " ";
   for (const double kpa : {1.0, 10.0, 100.0, 800.0}) {
     const AccuracyChoice choice = choose_inertial_number(accuracy, inertial_time_of(soil, 1e3 * kpa));
@@ -121,7 +122,7 @@ std::string accuracy_note(const EngineCase& engine, const SoilCase& soil) {
   }
   if (engine.hold_cap < EngineCase{}.hold_cap)
     text += fmt::format("; measured with holds of up to {} steps", EngineCase{}.hold_cap);
-  return text + " (docs/trade.md)";
+  return text + " (docs/validation/trade.md)";
 }
 
 }  // namespace voussoir::host

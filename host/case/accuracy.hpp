@@ -2,9 +2,9 @@
 /// `engine.accuracy`: from an error of the stress to the settings of the grain engine, by measured curves.
 ///
 /// The error is that of q/p along a path to 5 % of shear strain, root mean square over packings, with a margin for
-/// other paths (docs/trade.md, "Accuracy"). It follows the inertial number I. What I does at another pressure, modulus
-/// or thickness depends on one number, the inertial time sqrt(m/(p t)) [steps] (kernels/state/rve_batch.hpp), because
-/// this time is all that tells two scenes of equal grains apart.
+/// other paths (docs/validation/trade.md, "Accuracy"). It follows the inertial number I. What I does at another
+/// pressure, modulus or thickness depends on one number, the inertial time sqrt(m/(p t)) [steps]
+/// (kernels/state/rve_batch.hpp), because this time is all that tells two scenes of equal grains apart.
 
 #include "host/case/case.hpp"
 

@@ -83,7 +83,7 @@ using InstructionSetChoice = std::optional<kernels::InstructionSet>;
 enum class Backend { automatic, lanes, gpu };
 
 /// [engine] Speed and accuracy of the grain engine: a preset (engine.hpp), whose values single keys override.
-/// What each key costs and buys is measured in docs/trade.md. The defaults are the preset `standard`.
+/// What each key costs and buys is measured in docs/validation/trade.md. The defaults are the preset `standard`.
 struct EngineCase {
   std::string preset = "standard";  ///< fast, standard or reference; only its values are part of the fingerprint
   kernels::Precision precision = kernels::Precision::float32;  ///< value type of the pair loop
@@ -165,7 +165,7 @@ struct OutputCase {
   int every = 1;             ///< increments of a stage between two result files; the last one of a stage always has one
   int checkpoint_every = 1;  ///< increments of a stage between two checkpoints; the last increment of a stage, and one
                              ///< after which a run stops, always have one
-  std::vector<std::string> fields;                ///< names of the fields written (io/FORMAT.md); empty: all
+  std::vector<std::string> fields;                ///< names of the fields written (docs/reference/files.md); empty: all
   std::vector<std::int64_t> rves;                 ///< Gauss points whose whole RVE is written with each increment
   kernels::MicrostructureRequest microstructure;  ///< fields of the contact network; by default none
 };

@@ -16,7 +16,7 @@ namespace {
 
 struct Preset {
   EngineCase values;
-  const char* error;  ///< the measured error of the stress, see docs/trade.md
+  const char* error;  ///< the measured error of the stress, see docs/validation/trade.md
 };
 
 const std::array<Preset, 3>& presets() {
@@ -151,10 +151,10 @@ std::string engine_note(const EngineCase& engine, const SoilCase& soil) {
   if (engine.accuracy > 0)
     note = accuracy_note(engine, soil);
   else if (others.empty())
-    note += fmt::format(": {} (docs/trade.md)", preset.error);
+    note += fmt::format(": {} (docs/validation/trade.md)", preset.error);
   else
-    note += fmt::format(", with other values of {}: the measured error of the preset may not hold (docs/trade.md)",
-                        others);
+    note += fmt::format(
+        ", with other values of {}: the measured error of the preset may not hold (docs/validation/trade.md)", others);
   if (engine.defer > 0) {
     note += fmt::format(
         "; RVEs are deferred up to {:g} of p: the log says at the end of each stage how far they were off; in "

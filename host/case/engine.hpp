@@ -1,6 +1,6 @@
 #pragma once
-/// The table [engine], its presets with their measured errors (docs/trade.md, tools/trade), and the settings that the
-/// kernels take from it.
+/// The table [engine], its presets with their measured errors (docs/validation/trade.md, tools/trade), and the settings
+/// that the kernels take from it.
 
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
-/// The keys that a stored packing or state was made with, and their comparison with a case. io/FORMAT.md says where
-/// they are kept.
+/// The keys that a stored packing or state was made with, and their comparison with a case. docs/reference/files.md
+/// says where they are kept.
 
 #include <map>
 #include <string>

@@ -123,7 +123,7 @@ OutputCase read_output(const io::Table& table) {
   output.fields = table.texts("fields", std::vector<std::string>{});
   for (const std::string& name : output.fields) {
     if (find_result_field(name) == nullptr)
-      throw table.error("fields", "\"" + name + "\" is not a field, see io/FORMAT.md");
+      throw table.error("fields", "\"" + name + "\" is not a field, see docs/reference/files.md");
   }
   return output;
 }

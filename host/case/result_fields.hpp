@@ -1,10 +1,10 @@
 #pragma once
-/// The one table of the fields of result files (io/FORMAT.md). The record, the pool of RVEs, the mirrored batch, the
-/// estimate of storage and the check of `output.fields` all read it. A new field needs a row here and the line of code
-/// that computes its values; this line finds the row by its name when it is compiled. A value that has a sign or a
-/// direction needs its `Mirror`, or it is wrong at every second point, which answers as a mirror image. A value that is
-/// made of a number of kernels::RveReport must use one that `transfer_report` (material/rve_pool_state.cpp) stores, or
-/// it is 0 after a run has been resumed.
+/// The one table of the fields of result files (docs/reference/files.md). The record, the pool of RVEs, the mirrored
+/// batch, the estimate of storage and the check of `output.fields` all read it. A new field needs a row here and the
+/// line of code that computes its values; this line finds the row by its name when it is compiled. A value that has a
+/// sign or a direction needs its `Mirror`, or it is wrong at every second point, which answers as a mirror image. A
+/// value that is made of a number of kernels::RveReport must use one that `transfer_report`
+/// (material/rve_pool_state.cpp) stores, or it is 0 after a run has been resumed.
 
 #include <array>
 #include <stdexcept>

@@ -219,7 +219,7 @@ Outcome run_biaxial(const Case& input, const RunOptions& options) {
     std::fprintf(
         stderr,
         "biaxial: %td of %zu tests are invalid because the mean overlap of their contacts passed %.0f %% of r_i + "
-        "r_j, beyond which the contact law is not good for strengths (docs/range.md)\n",
+        "r_j, beyond which the contact law is not good for strengths (docs/explanation/range.md)\n",
         beyond, curves.size(), most_mean_overlap * 100.0);
   }
   if (curves.size() < wanted) {

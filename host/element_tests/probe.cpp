@@ -131,7 +131,7 @@ struct Doubts {
       std::fprintf(
           stderr,
           "probe: seed %lld: %d of %d %s have a mean overlap above %.0f %% of r_i + r_j, beyond which the contact "
-          "law is not good (docs/range.md)\n",
+          "law is not good (docs/explanation/range.md)\n",
           static_cast<long long>(rve.seed), beyond, rows, what, most_mean_overlap * 100.0);
     }
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// The tables of an ensemble as text: curves.csv and members.csv (io/FORMAT.md).
+/// The tables of an ensemble as text: curves.csv and members.csv (docs/reference/files.md).
 
 #include <string>
 #include <vector>

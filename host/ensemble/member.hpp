@@ -14,7 +14,7 @@
 namespace voussoir::host {
 
 /// The columns that an ensemble makes of the fields of a tunnel's volume loss, in addition to those of the members'
-/// own table. io/FORMAT.md describes them.
+/// own table. docs/reference/files.md describes them.
 inline constexpr std::array<const char*, 5> trough_columns{"trough_settlement", "trough_inflection", "trough_alpha",
                                                            "trough_width", "trough_misfit"};
 inline constexpr std::array<const char*, 2> reaction_columns{"ground_reaction", "least_ground_reaction"};

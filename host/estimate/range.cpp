@@ -72,7 +72,7 @@ Foretold foretell(const Case& input) {
   Foretold out;
   out.line = fmt::format(
       "mean stress {:.5g} kPa {}: kappa = {:.3g}, mean overlap about {:.2g} % of r_i + r_j (the contact "
-      "law is good for {:.0f} %, docs/range.md)",
+      "law is good for {:.0f} %, docs/explanation/range.md)",
       load.pressure * 1e-3, load.where, kappa, 100 * overlap, 100 * most_mean_overlap);
   constexpr double loose_ratio = 0.19;  // void ratio of a dense packing of coarse sand at little pressure
   const double pressed = foretold_overlap(stiffness_number(grains, load.packing));
@@ -81,7 +81,7 @@ Foretold foretell(const Case& input) {
     out.warnings.push_back(
         fmt::format("the mean stress of {:.5g} kPa {} is beyond what the contact law is good for: kappa "
                     "= {:.3g}, mean overlap about {:.2g} % of r_i + r_j; strengths from there are "
-                    "invalid (docs/range.md)",
+                    "invalid (docs/explanation/range.md)",
                     load.pressure * 1e-3, load.where, kappa, 100 * overlap));
   }
   if (left < least) {

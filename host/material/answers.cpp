@@ -13,8 +13,8 @@ namespace {
 
 /// Share of unbalanced ratio x pressure that appears as an error of the stress: the moment sum of random residual
 /// forces at positions uniform in the cell, 1/sqrt(12). This holds for grains at rest. The unbalanced ratio of an RVE
-/// that ended at the step limit does not tell how far its grains still have to move (docs/trade.md); such RVEs are
-/// counted instead.
+/// that ended at the step limit does not tell how far its grains still have to move (docs/validation/trade.md); such
+/// RVEs are counted instead.
 constexpr double noise_share = 0.29;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-/// How much the draw of the packings moves a tunnel's results: a measured table (docs/trust.md), so that nobody reads
-/// one run as exact.
+/// How much the draw of the packings moves a tunnel's results: a measured table (docs/validation/trust.md), so that
+/// nobody reads one run as exact.
 
 #include <string>
 

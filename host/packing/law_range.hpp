@@ -1,6 +1,6 @@
 #pragma once
-/// How far the contact law can be trusted: it treats overlaps as small. docs/range.md has the measurements behind the
-/// limits, and their sources.
+/// How far the contact law can be trusted: it treats overlaps as small. docs/explanation/range.md has the measurements
+/// behind the limits, and their sources.
 
 #include <string>
 
@@ -26,7 +26,8 @@ inline constexpr double most_single_overlap = 0.3;
 /// the force per length that a pressure [Pa] puts on a thickness. Overlaps over diameters go as 1/kappa.
 [[nodiscard]] double stiffness_number(const kernels::Packing& packing, double pressure);
 
-/// The mean overlap over r_i + r_j of a packing at rest under isotropic pressure [-], to 20 % (docs/range.md).
+/// The mean overlap over r_i + r_j of a packing at rest under isotropic pressure [-], to 20 %
+/// (docs/explanation/range.md).
 [[nodiscard]] double foretold_overlap(double kappa);
 
 /// The mean overlap in a test of strength, over that of an isotropic packing at the same mean stress [-]: sheared

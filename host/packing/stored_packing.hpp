@@ -1,6 +1,6 @@
 #pragma once
-/// One RVE as a packing file of io (FORMAT.md), with the histories of its contacts. An RVE that is read back has the
-/// same state, bit for bit.
+/// One RVE as a packing file of io (docs/reference/files.md), with the histories of its contacts. An RVE that is read
+/// back has the same state, bit for bit.
 
 #include <optional>
 #include <string>

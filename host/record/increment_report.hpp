@@ -1,7 +1,7 @@
 #pragma once
 /// The reports of an increment of a stage. They stay structs with named members until a result file is
 /// written; the tables below state the name and the unit of each column. A new column needs a member, a row in the
-/// table beside it, the line that sets the member, and its line in io/FORMAT.md.
+/// table beside it, the line that sets the member, and its line in docs/reference/files.md.
 ///
 /// An increment may consist of several converged steps, and of tries that were cut. What must be summed over them, or
 /// be the largest of them, goes through `StageRun::Effort` (host/stages/stage_run.hpp).

@@ -138,7 +138,7 @@ std::string range_line(const StageTotals& stage, std::size_t points) {
       "{}: in {} of {} increments RVEs were pressed beyond what the contact law is good for, up to {} of {}: their "
       "mean "
       "overlap passed {:.0f} % of r_i + r_j (the largest was {:.1f} %), or their void ratio fell below that of the "
-      "densest packing (docs/range.md)",
+      "densest packing (docs/explanation/range.md)",
       stage.stage, increments, beyond.size(), *std::max_element(beyond.begin(), beyond.end()), points,
       100 * most_mean_overlap, 100 * *std::max_element(stage.mean_overlap.begin(), stage.mean_overlap.end()));
 }

@@ -30,8 +30,9 @@ io::MeshData specimen_data(const fem::Mesh& mesh, const BiaxialBvpCase& test) {
   return data;
 }
 
-/// Table `gauss_histories` of io/FORMAT.md. It is gathered from the files of the increments, which a resumed run has
-/// all. Since a run may be resumed with other `output.fields`, a file may lack a field; its values are NaN then.
+/// Table `gauss_histories` of docs/reference/files.md. It is gathered from the files of the increments, which a resumed
+/// run has all. Since a run may be resumed with other `output.fields`, a file may lack a field; its values are NaN
+/// then.
 std::vector<io::TableColumn> gauss_histories(const std::filesystem::path& folder) {
   struct Source {
     const char* field;

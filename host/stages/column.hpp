@@ -30,14 +30,14 @@ struct ColumnResult {
 };
 
 /// Starts the column in options.folder, or goes on with it. The column has results and checkpoints of its own, the
-/// tables `k0` and `column_rows` of io/FORMAT.md, and k0.csv. `provenance` goes into its results.
+/// tables `k0` and `column_rows` of docs/reference/files.md, and k0.csv. `provenance` goes into its results.
 [[nodiscard]] ColumnResult measure_k0(const ColumnSetup& setup, const RunOptions& options,
                                       const io::Provenance& provenance, RunLog& log);
 
 /// The case kind "column": starts the column in options.folder, or goes on with it.
 [[nodiscard]] RunStatus run_column(const Case& input, const RunOptions& options);
 
-/// Table `k0` of io/FORMAT.md.
+/// Table `k0` of docs/reference/files.md.
 [[nodiscard]] std::vector<io::TableColumn> k0_columns(const K0Table& k0);
 
 /// One row of Gauss points of the column, averaged.
@@ -47,7 +47,7 @@ struct ColumnRow {
   double deflection = 0;  ///< angle of the principal axis from the vertical, signed [rad]
 };
 
-/// Table `column_rows` of io/FORMAT.md.
+/// Table `column_rows` of docs/reference/files.md.
 inline constexpr auto column_row_columns = std::to_array<Column<ColumnRow>>({
     {"vertical_stress", "Pa", &ColumnRow::vertical},
     {"ratio", "-", &ColumnRow::ratio},

@@ -44,7 +44,7 @@ struct GeostaticCheck {
 /// The check in one sentence for the log.
 [[nodiscard]] std::string describe(const GeostaticCheck& check);
 
-/// Table `geostatic_check` of io/FORMAT.md.
+/// Table `geostatic_check` of docs/reference/files.md.
 inline constexpr auto geostatic_columns = std::to_array<Column<GeostaticCheck>>({
     {"vertical_error", "Pa", &GeostaticCheck::vertical_error},
     {"vertical_ratio", "-", &GeostaticCheck::vertical_ratio},
@@ -57,7 +57,7 @@ inline constexpr auto geostatic_columns = std::to_array<Column<GeostaticCheck>>(
     {"deflection_deep", "rad", &GeostaticCheck::deflection_deep},
 });
 
-/// Table `geostatic_rows` of io/FORMAT.md.
+/// Table `geostatic_rows` of docs/reference/files.md.
 inline constexpr auto geostatic_row_columns = std::to_array<Column<GeostaticRow>>({
     {"depth", "m", &GeostaticRow::depth},
     {"vertical_stress", "Pa", &GeostaticRow::vertical},

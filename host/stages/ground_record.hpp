@@ -1,5 +1,5 @@
 #pragma once
-/// The ground in the form that result files have (io/FORMAT.md).
+/// The ground in the form that result files have (docs/reference/files.md).
 
 #include <vector>
 

@@ -18,7 +18,7 @@ struct OpeningCheck {
 };
 [[nodiscard]] OpeningCheck check_opening(const Ground& ground, const GroundCase& soil, const K0Table& k0);
 
-/// Table `opening_check` of io/FORMAT.md.
+/// Table `opening_check` of docs/reference/files.md.
 inline constexpr auto opening_columns = std::to_array<Column<OpeningCheck>>({
     {"difference", "N/m", &OpeningCheck::difference},
     {"relative", "-", &OpeningCheck::relative},

@@ -18,7 +18,7 @@ enum class RunStatus {
 };
 
 struct Stage {
-  std::string name;  ///< the stage's name in io/FORMAT.md
+  std::string name;  ///< the stage's name in docs/reference/files.md
   fem::Kinematics kinematics = fem::Kinematics::fixed_mesh;
   fem::LoadPath path;
   std::vector<double> targets;  ///< load parameters of all its increments, ascending from 0

@@ -11,7 +11,7 @@
 
 namespace voussoir::host {
 
-/// Table `draw_scatter` of io/FORMAT.md.
+/// Table `draw_scatter` of docs/reference/files.md.
 inline constexpr auto draw_scatter_columns = std::to_array<Column<DrawScatter>>({
     {"settlement", "-", &DrawScatter::settlement},
     {"reaction", "-", &DrawScatter::reaction},

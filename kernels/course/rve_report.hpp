@@ -9,7 +9,7 @@
 namespace voussoir::kernels {
 
 /// Mean overlap / (r_i + r_j) of the contacts at the end beyond which an RVE is given up as crushed [-]: 2.5 times the
-/// largest one up to which stresses count as those of grains (docs/range.md).
+/// largest one up to which stresses count as those of grains (docs/explanation/range.md).
 inline constexpr double mean_overlap_limit = 0.15;
 
 /// The part of a report that any course has, whether it was lost or not.

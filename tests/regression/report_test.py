@@ -64,7 +64,7 @@ def make_results():
 
 
 def write_sweep():
-    """sweep.h5 as `voussoir sweep` writes it (io/FORMAT.md)."""
+    """sweep.h5 as `voussoir sweep` writes it (docs/reference/files.md)."""
     names = [f"tunnels/cover_2/member_{k:03d}" for k in (0, 1)] + ["tunnels/cover_3", "tunnels/cover_9"]
     settlements = []
     for name in names[:3]:

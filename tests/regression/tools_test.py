@@ -26,13 +26,15 @@ class Architecture(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     def test_page_names_files_and_functions_that_exist(self):
-        page = (ROOT / "docs/architecture.md").read_text()
+        page = (ROOT / "docs/explanation/architecture.md").read_text()
         rows = re.findall(r"^\|.*\| `([\w/.]+)` \| `([\w()]+)` \|$", page, re.MULTILINE)
         self.assertGreater(len(rows), 20)
         for path, function in rows:
-            self.assertTrue((ROOT / path).is_file(), f"docs/architecture.md names {path}, which does not exist")
+            self.assertTrue(
+                (ROOT / path).is_file(), f"docs/explanation/architecture.md names {path}, which does not exist"
+            )
             found = re.search(rf"\b{re.escape(function)}\s*\(", (ROOT / path).read_text())
-            self.assertTrue(found, f"docs/architecture.md: {path} has no {function}")
+            self.assertTrue(found, f"docs/explanation/architecture.md: {path} has no {function}")
 
     def test_levels_and_circles(self):
         graph = {"a": set(), "b": {"a"}, "c": {"a", "b"}, "d": {"c", "e"}, "e": {"d"}}

@@ -14,7 +14,9 @@ from .definitions import DEFINITIONS, VERSION, Test, Value, with_error
 from .plan import SOILS, Set
 from .runs import folder_of
 
-MOST_OVERLAP = 0.06  # mean over the contacts, over r_i + r_j, up to which the program counts a test (docs/range.md)
+MOST_OVERLAP = (
+    0.06  # mean over the contacts, over r_i + r_j, up to which the program counts a test (docs/explanation/range.md)
+)
 COLUMNS = ("axial_strain", "lateral_strain", "volumetric_strain", "p", "q")
 _CURVE = re.compile(r"seed_(\d+)_([0-9.e+]+)_kPa")
 

@@ -1,4 +1,4 @@
-"""A probe's responses and tangents (probe.csv) and its path (path.csv); io/FORMAT.md describes the columns."""
+"""A probe's responses and tangents (probe.csv) and its path (path.csv); columns: docs/reference/files.md."""
 
 import csv
 from pathlib import Path

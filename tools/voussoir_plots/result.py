@@ -1,4 +1,4 @@
-"""A run's files as arrays. Dataset names and shapes: io/FORMAT.md."""
+"""A run's files as arrays. Dataset names and shapes: docs/reference/files.md."""
 
 import os
 import re
@@ -16,7 +16,7 @@ from .settings import Settings
 from .soils import soil_of
 from .units import quantity
 
-FORMAT_VERSION = 1  # of io/FORMAT.md
+FORMAT_VERSION = 1  # of docs/reference/files.md
 KINDS = (
     "figures are drawn of runs of the kinds tunnel, column, biaxial_bvp, biaxial, calibrate and probe, of packings "
     "(files or their folder), ensembles and sweeps"
@@ -24,7 +24,7 @@ KINDS = (
 
 LENGTHS = ("surface_y", "diameter", "axis_depth", "width", "height")  # of the geometry, which must be positive
 
-Snapshot = dict[str, np.ndarray]  # arrays of one RVE, by the names of io/FORMAT.md
+Snapshot = dict[str, np.ndarray]  # arrays of one RVE, by the names of docs/reference/files.md
 T = TypeVar("T")
 
 
@@ -93,7 +93,7 @@ class Increment:
         return values[..., 0] if values.shape[-1] == 1 else values
 
     def snapshot(self, name: str) -> Snapshot:
-        """Arrays of one RVE, by the names of io/FORMAT.md."""
+        """Arrays of one RVE, by the names of docs/reference/files.md."""
         if name not in self.snapshots:
             raise Missing(f"{self.path} has no snapshot {name}")
         with reading(self.path) as file:
@@ -185,8 +185,8 @@ class Result(RunIndex):
             return ""
         parts = [f"{said} by {100 * scatter[name][0]:.0f} %" for name, said in names.items()]
         return (
-            f"One draw of the packings: another one moves {', '.join(parts)} (standard deviations, docs/trust.md); "
-            "`voussoir ensemble` gives bands."
+            f"One draw of the packings: another one moves {', '.join(parts)} (standard deviations, "
+            "docs/validation/trust.md); `voussoir ensemble` gives bands."
         )
 
     def need(self, *names: str) -> list[float]:

@@ -1,4 +1,4 @@
-"""sweep.h5 (io/FORMAT.md): one row a run, with how it ended, its values of the axes, its cost and its results."""
+"""sweep.h5 (docs/reference/files.md): one row a run, with how it ended, its axes' values, cost and results."""
 
 import json
 from dataclasses import dataclass, field

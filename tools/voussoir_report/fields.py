@@ -10,7 +10,7 @@ from voussoir_plots import style
 KILOPASCAL = 1e-3
 DEGREE = 180 / np.pi
 
-# The status of an RVE by its number (io/FORMAT.md) and a colour of the Okabe-Ito set.
+# The status of an RVE by its number (docs/reference/files.md) and a colour of the Okabe-Ito set.
 STATUS = (
     ("at rest", "#d9e2ea"),
     ("step limit", "#E69F00"),

@@ -19,7 +19,7 @@ from .parts import Builder, name_of
 from .sweep_points import CHARTS, Curves, Point
 
 STATES = ("unconverged increments", "cuts", "most RVEs at the step limit")
-NOT_RUN = -1  # exit code of a run that nothing has begun (io/FORMAT.md, "A sweep")
+NOT_RUN = -1  # exit code of a run that nothing has begun (docs/reference/files.md, "A sweep")
 REPORT = "report.html"  # of a point, to which the page links where it stands
 
 

@@ -1,4 +1,5 @@
-// What an increment tells of itself: its columns against the list of io/FORMAT.md, and a report as a row of a file.
+// What an increment tells of itself: its columns against the list of docs/reference/files.md, and a report as a row of
+// a file.
 #include "host/record/increment_report.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +53,7 @@ TEST(IncrementColumns, AreThoseOfFormatMd) {
   EXPECT_EQ(disagreements(described, written), "");
 }
 
-/// FORMAT.md tells of the columns of a table in a sentence; each must at least be named there.
+/// docs/reference/files.md tells of the columns of a table in a sentence; each must at least be named there.
 template <class Report, std::size_t n>
 void expect_named(const std::string& table, const std::array<Column<Report>, n>& columns) {
   for (const auto& row : rows_below("| table | columns |")) {
@@ -62,7 +63,7 @@ void expect_named(const std::string& table, const std::array<Column<Report>, n>&
     }
     return;
   }
-  ADD_FAILURE() << "io/FORMAT.md has no table " << table;
+  ADD_FAILURE() << "docs/reference/files.md has no table " << table;
 }
 
 TEST(TableColumns, AreNamedInFormatMd) {

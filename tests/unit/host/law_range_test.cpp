@@ -44,7 +44,7 @@ TEST(LawRange, PackingsUpTo800KilopascalAreWithinIt) {
   EXPECT_GT(foretold_overlap(stiffness_number(crushed.packing, 1e7)), most_mean_overlap);
 }
 
-// The table of docs/range.md: mean overlap and void ratio at 1 and 5 MPa.
+// The table of docs/explanation/range.md: mean overlap and void ratio at 1 and 5 MPa.
 TEST(LawRange, IsForetoldAsMeasured) {
   EXPECT_NEAR(foretold_overlap(50.6), 0.0153, 0.001);
   EXPECT_NEAR(foretold_overlap(10.1), 0.0603, 0.003);

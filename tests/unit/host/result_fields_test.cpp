@@ -1,4 +1,5 @@
-// The table of fields against the fields that a run writes, of grains and without any, and against io/FORMAT.md.
+// The table of fields against the fields that a run writes, of grains and without any, and against
+// docs/reference/files.md.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-"""Means over the members of an ensemble with their bands, as `ensemble.h5` defines them (io/FORMAT.md)."""
+"""Means over the members of an ensemble with their bands, as `ensemble.h5` defines them (docs/reference/files.md)."""
 
 import functools
 from collections.abc import Iterable
