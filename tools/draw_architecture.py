@@ -6,8 +6,8 @@ table ROOMS in tools/check_includes.py; an arrow points from a room to one that 
 from others are left out, except those of KEPT, and the arrows between two folders are drawn as one. An arrow to the
 next level goes straight; a longer one runs beside the boxes in a lane of its own and ends at the side of its target. An
 arrow in red points upwards or sideways, which the table does not allow. The texts beside the rooms of host are those of
-the table in docs/explanation/architecture.md. --check only compares the picture with the file, so that a test can notice an
-old picture.
+the table in docs/explanation/architecture.md. --check only compares the picture with the file, so that a test can
+notice an old picture.
 """
 
 import argparse

@@ -1,5 +1,5 @@
-"""Packing files (docs/reference/files.md, "Packings"): grains, contacts, and the normal forces that the linear law makes
-of the overlaps (kernels/contact/linear_law.hpp)."""
+"""Packing files (docs/reference/files.md, "Packings"): grains, contacts, and the normal forces that the linear law
+makes of the overlaps (kernels/contact/linear_law.hpp)."""
 
 import re
 from collections.abc import Sequence
