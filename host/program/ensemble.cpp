@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/case/load_case.hpp"
@@ -69,12 +70,17 @@ Ensemble prepare(const fs::path& case_file, const EnsembleOptions& given) {
 /// Runs further members up to this number; returns how many of them came to their end.
 std::size_t run_members(Ensemble& ensemble, std::size_t up_to) {
   EnsembleMembers& members = ensemble.members;
-  const std::size_t before = members.runs.size();
+  const std::size_t before = members.runs.size(), finished_before = members.finished.size();
+  std::vector<ProcessRun> round;
   for (std::size_t k = before; k < up_to; ++k)
-    add_member(members, member_run(members, ensemble.case_file, ensemble.options.overrides, k), k);
-  run_processes(std::span(members.runs).subspan(before), ensemble.options.runs);
-  write_summary(members.runs, members.folder / "summary.csv");  // before anything can fail
-  return collect(members, before);
+    round.push_back(member_run(members, ensemble.case_file, ensemble.options.overrides, k));
+  run_processes(round, ensemble.options.runs);
+  for (std::size_t k = 0; k < round.size(); ++k) {
+    ReadRun read = read_run(round[k]);
+    add_member(members, std::move(round[k]), before + k, std::move(read));
+  }
+  write_summary(members);
+  return members.finished.size() - finished_before;
 }
 
 /// Runs all members, or adds members until the goal is reached. Returns the standard error that was reached.

@@ -22,11 +22,9 @@ namespace fs = std::filesystem;
 
 /// True where a run has results up to the planned end. A run that ends without equilibrium may have gone on beyond
 /// increments that did not converge: leaving it out would choose the members by their answers.
-bool has_all_increments(const ProcessRun& run, const Case& input) {
+bool has_all_increments(const ProcessRun& run, const Case& input, const MemberResults& results) {
   if (run.end.outcome == Outcome::done) return true;
-  const fs::path index = run.folder / "run.h5";
-  return run.end.outcome == Outcome::no_equilibrium && fs::exists(index) &&
-         is_at_end(input, io::read_increments(index));
+  return run.end.outcome == Outcome::no_equilibrium && is_at_end(input, results.increments);
 }
 
 std::vector<io::EnsembleMember> members_of(const EnsembleMembers& ensemble) {
@@ -121,19 +119,17 @@ ProcessRun member_run(const EnsembleMembers& ensemble, const fs::path& case_file
   return run;
 }
 
-void add_member(EnsembleMembers& ensemble, ProcessRun run, std::size_t member) {
+void add_member(EnsembleMembers& ensemble, ProcessRun run, std::size_t member, ReadRun read) {
+  const bool counts = read.results && has_all_increments(run, ensemble.input, *read.results);
+  if (counts) ensemble.finished.push_back(*std::move(read.results));
+  ensemble.reduced.push_back(counts);
+  ensemble.rows.push_back(std::move(read.row));
   ensemble.runs.push_back(std::move(run));
   ensemble.numbers.push_back(member);
 }
 
-std::size_t collect(EnsembleMembers& ensemble, std::size_t from) {
-  const std::size_t before = ensemble.finished.size();
-  for (std::size_t k = from; k < ensemble.runs.size(); ++k) {
-    const ProcessRun& run = ensemble.runs[k];
-    ensemble.reduced.push_back(!interrupted() && has_all_increments(run, ensemble.input));
-    if (ensemble.reduced.back()) ensemble.finished.push_back(read_member(run.folder));
-  }
-  return ensemble.finished.size() - before;
+void write_summary(const EnsembleMembers& ensemble) {
+  io::write_text(ensemble.folder / "summary.csv", io::summary_csv(ensemble.rows));
 }
 
 Outcome reduce_members(const EnsembleMembers& ensemble, std::optional<double> error, const RunLock& lock) {

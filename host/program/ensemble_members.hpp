@@ -12,6 +12,7 @@
 #include "host/ensemble/member.hpp"
 #include "host/program/ensemble_goal.hpp"
 #include "host/program/run_processes.hpp"
+#include "host/program/run_rows.hpp"
 #include "host/record/run_lock.hpp"
 
 namespace voussoir::host {
@@ -23,6 +24,7 @@ struct EnsembleMembers {
   std::string point = {};         ///< its point of a sweep, which sentences on standard error begin with
   std::optional<Goal> goal = {};  ///< of --until
   std::vector<ProcessRun> runs = {};
+  std::vector<io::SweepRow> rows = {};       ///< (run) of summary.csv
   std::vector<std::size_t> numbers = {};     ///< (run) which member it is; members that were not run are left out
   std::vector<bool> reduced = {};            ///< (run) its results are among `finished`
   std::vector<MemberResults> finished = {};  ///< in the order of the runs
@@ -32,11 +34,11 @@ struct EnsembleMembers {
 [[nodiscard]] ProcessRun member_run(const EnsembleMembers& ensemble, const std::filesystem::path& case_file,
                                     const std::vector<std::string>& overrides, std::size_t member);
 
-/// Adds the run of a member.
-void add_member(EnsembleMembers& ensemble, ProcessRun run, std::size_t member);
+/// Adds the run of a member that has ended, with what was read of it. Its results count if it came to its end.
+void add_member(EnsembleMembers& ensemble, ProcessRun run, std::size_t member, ReadRun read);
 
-/// Reads the results of the runs from number `from` on that came to their end. Returns how many of them did.
-std::size_t collect(EnsembleMembers& ensemble, std::size_t from);
+/// Writes summary.csv with one row for each run.
+void write_summary(const EnsembleMembers& ensemble);
 
 /// Names the members that did not end well and writes ensemble.h5, fields/, curves.csv and members.csv in place of an
 /// earlier reduction's. `error` is the standard error that --until reached. Returns the outcome of the ensemble but for

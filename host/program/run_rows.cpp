@@ -4,14 +4,14 @@
 #include <exception>
 
 #include "host/sweep/run_results.hpp"
-#include "io/atomic_file.hpp"
 
 namespace voussoir::host {
 
-io::SweepRow row_of(ProcessRun& run) {
-  io::SweepRow row;
+ReadRun read_run(ProcessRun& run) {
+  ReadRun read;
+  io::SweepRow& row = read.row;
   try {
-    if (run.end.outcome != Outcome::wrong_input) add_results(row, run.folder);
+    if (run.end.outcome != Outcome::wrong_input) read.results = add_results(row, run.folder);
   } catch (const std::exception& damage) {
     std::fprintf(stderr, "voussoir: the summary has no values of %s: %s\n", run.name.c_str(), damage.what());
     if (run.end.outcome == Outcome::done || run.end.outcome == Outcome::no_equilibrium) {
@@ -23,13 +23,7 @@ io::SweepRow row_of(ProcessRun& run) {
   row.status = name_of(run.end);
   row.exit_code = run.end.code;
   row.reason = run.reason;
-  return row;
-}
-
-void write_summary(std::span<ProcessRun> runs, const std::filesystem::path& file) {
-  std::vector<io::SweepRow> rows;
-  for (ProcessRun& run : runs) rows.push_back(row_of(run));
-  io::write_text(file, io::summary_csv(rows));
+  return read;
 }
 
 }  // namespace voussoir::host

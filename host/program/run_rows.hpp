@@ -1,21 +1,22 @@
 #pragma once
-/// The table of several runs: what summary.csv says of them.
+/// What is read of a run that has ended: its row of summary.csv, and what means over several runs are made of.
 
-#include <filesystem>
-#include <span>
-#include <vector>
+#include <optional>
 
+#include "host/ensemble/member.hpp"
 #include "host/program/run_processes.hpp"
 #include "io/sweep_file.hpp"
 
 namespace voussoir::host {
 
-/// The row of a run: how it ended, what it cost, its results. Where its files are damaged, one line on standard error
-/// says so, the row has no results, and a run that had come to its end counts as a machine failure: another try may
-/// succeed. A run that was refused (wrong input) has no results; what lies in its folder is not of this case.
-[[nodiscard]] io::SweepRow row_of(ProcessRun& run);
+struct ReadRun {
+  io::SweepRow row = {};
+  std::optional<MemberResults> results = {};  ///< of a run on a mesh whose files could be read
+};
 
-/// Writes summary.csv with one row for each run (row_of).
-void write_summary(std::span<ProcessRun> runs, const std::filesystem::path& file);
+/// Reads a run: how it ended, what it cost, its results. Where its files are damaged, one line on standard error says
+/// so, the row has no results, and a run that had come to its end counts as a machine failure: another try may succeed.
+/// A run that was refused (wrong input) has no results; what lies in its folder is not of this case.
+[[nodiscard]] ReadRun read_run(ProcessRun& run);
 
 }  // namespace voussoir::host

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "host/case/load_case.hpp"
@@ -52,39 +53,49 @@ void check_results(ProcessRun& run, const Case& input) {
   try {
     if (io::read_provenance(index).fingerprint == input.fingerprint) return;
   } catch (const std::exception&) {
-    return;  // row_of tells of the damage
+    return;  // read_run tells of the damage
   }
   fail(Outcome::wrong_input, "its folder holds results of another case than the sweep file now asks for");
 }
 
-/// Where the files of the run are not what its end promises, the end changes, see check_results and row_of.
-io::SweepRow planned_row(const PlannedRun& planned, ProcessRun& run) {
+/// Where the files of the run are not what its end promises, the end changes, see check_results and read_run.
+ReadRun read_planned(const PlannedRun& planned, ProcessRun& run) {
   const Case input = load_case(planned.case_file, planned.overrides);
   check_results(run, input);
-  io::SweepRow row = row_of(run);
+  ReadRun read = read_run(run);
+  io::SweepRow& row = read.row;
   row.kind = to_string(input.kind);
   row.grid = planned.grid;
   row.point = planned.point;
   row.axes = {planned.axes.begin(), planned.axes.end()};
-  return row;
+  return read;
 }
 
-/// Reduces the members of one point; the sweep's lock covers its folder. Returns whether an ensemble.h5 came of it.
-bool reduce_point(const PlannedEnsemble& planned, const std::vector<ProcessRun>& runs, const fs::path& folder,
-                  const RunLock& lock, const std::string& command) {
+/// The runs of a sweep in the order of its plan, with what was read of them.
+struct GatheredRuns {
+  std::vector<ProcessRun> runs;
+  std::vector<ReadRun> read;
+};
+
+/// Reduces the members of one point, whose results leave `gathered`; the sweep's lock covers the folder of the point.
+/// Returns whether an ensemble.h5 came of it.
+bool reduce_point(const PlannedEnsemble& planned, GatheredRuns& gathered, const fs::path& folder, const RunLock& lock,
+                  const std::string& command) {
   EnsembleMembers members{.input = load_case(planned.case_file, planned.overrides),
                           .folder = folder / planned.name,
                           .command = command,
                           .point = planned.name};
   for (std::size_t member = 0; member < planned.runs.size(); ++member) {
-    ProcessRun run = runs[planned.runs[member]];
-    run.name = run.folder.filename().string();
-    if (run.end.outcome && run.end.outcome != Outcome::interrupted) add_member(members, std::move(run), member);
+    ProcessRun run = gathered.runs[planned.runs[member]];
+    ReadRun read = std::move(gathered.read[planned.runs[member]]);
+    run.name = read.row.name = run.folder.filename().string();
+    read.row.axes.clear();  // the members of a point have the same place on every axis
+    if (run.end.outcome && run.end.outcome != Outcome::interrupted)
+      add_member(members, std::move(run), member, std::move(read));
   }
   if (members.runs.empty()) return false;
   fs::create_directories(members.folder);  // a member that could not start has not made it
-  collect(members, 0);
-  write_summary(members.runs, members.folder / "summary.csv");
+  write_summary(members);
   static_cast<void>(reduce_members(members, std::nullopt, lock));
   return fs::exists(members.folder / "ensemble.h5");
 }
@@ -110,20 +121,24 @@ void keep_outcome(const fs::path& folder, const ProcessRun& run) {
 }
 
 Outcome gather(const SweepPlan& plan, const fs::path& folder, const RunLock& lock, const std::string& command) {
-  std::vector<ProcessRun> runs;
+  GatheredRuns gathered;
   std::vector<RunEnd> ends;
   io::SweepData data{.input = plan.text, .runs = {}, .ensembles = {}};
   for (const PlannedRun& planned : plan.runs) {
-    runs.push_back(ended_run(planned, folder));
-    data.runs.push_back(planned_row(planned, runs.back()));
-    ends.push_back(runs.back().end);
+    ProcessRun run = ended_run(planned, folder);
+    ReadRun read = read_planned(planned, run);
+    data.runs.push_back(read.row);
+    ends.push_back(run.end);
+    if (planned.point == planned.name) read.results.reset();  // no means are made of a run that is alone
+    gathered.runs.push_back(std::move(run));
+    gathered.read.push_back(std::move(read));
   }
   io::write_text(folder / "summary.csv", io::summary_csv(data.runs));
   bool reduced = true;
   for (const PlannedEnsemble& ensemble : plan.ensembles) {
     if (interrupted()) break;
     try {
-      if (reduce_point(ensemble, runs, folder, lock, command)) data.ensembles.push_back(ensemble.name);
+      if (reduce_point(ensemble, gathered, folder, lock, command)) data.ensembles.push_back(ensemble.name);
     } catch (const std::exception& failure) {  // the other points and the tables are written all the same
       std::fprintf(stderr, "voussoir: %s has no means: %s\n", ensemble.name.c_str(), failure.what());
       reduced = false;
@@ -133,7 +148,7 @@ Outcome gather(const SweepPlan& plan, const fs::path& folder, const RunLock& loc
   io::write_sweep(folder / "sweep.h5", data);
   std::printf("summary: %s\n", (folder / "summary.csv").c_str());
   static_cast<void>(lost_output());
-  name_failed(runs);
+  name_failed(gathered.runs);
   if (!reduced) ends.push_back(end_of_code(exit_code(Outcome::machine_failure)));
   return interrupted() ? Outcome::interrupted : outcome_of(ends);
 }

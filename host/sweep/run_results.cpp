@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "host/ensemble/member.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -72,12 +71,13 @@ void add_strength(io::SweepRow& row, const Columns& table) {
 
 }  // namespace
 
-void add_results(io::SweepRow& row, const std::filesystem::path& folder) {
+std::optional<MemberResults> add_results(io::SweepRow& row, const std::filesystem::path& folder) {
   const std::filesystem::path index = folder / "run.h5";
-  if (!std::filesystem::exists(index)) return;
+  if (!std::filesystem::exists(index)) return std::nullopt;
   if (!io::read_increments(index).empty()) {
-    add_mesh_results(row, read_member(folder));
-    return;
+    MemberResults run = read_member(folder);
+    add_mesh_results(row, run);
+    return run;
   }
   const io::Tables tables = io::read_tables(index);
   if (const auto strength = tables.find("strength"); strength != tables.end())
@@ -87,6 +87,7 @@ void add_results(io::SweepRow& row, const std::filesystem::path& folder) {
       if (!column.values.empty()) row.results[column.name] = {column.values.front(), column.unit};
     }
   }
+  return std::nullopt;
 }
 
 }  // namespace voussoir::host

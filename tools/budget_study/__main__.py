@@ -16,9 +16,16 @@ PARTS = {
 }
 
 
+def part_of(name: str) -> str:
+    """A part as argparse takes it: `choices` would refuse the default, which is a list."""
+    if name not in PARTS:
+        raise argparse.ArgumentTypeError(f"is {name!r}, must be one of {', '.join(PARTS)}")
+    return name
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(prog="tools/budget", description=__doc__)
-    parser.add_argument("parts", nargs="*", default=["draws", "knobs"], choices=list(PARTS), metavar="PART",
+    parser.add_argument("parts", nargs="*", default=["draws", "knobs"], type=part_of, metavar="PART",
                         help=f"{', '.join(PARTS)} (draws knobs)")  # fmt: skip
     parser.add_argument(
         "-n", "--draws", type=int, help="number of draws (default: draws 24, draws_full and knobs 3, knobs_full 1)"
