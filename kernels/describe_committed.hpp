@@ -16,7 +16,7 @@ struct CommittedSummary {
 
 /// Describes every committed state of a batch, with the normal forces that the contact law gives. Where a device has
 /// the states, the device describes them, and they stay there. `out` has batch.size() entries.
-/// kernels/README.md, "Microstructure", has the cost.
+/// docs/measurements/engine_speed.md, "Microstructure", has the cost.
 void describe_committed(const RveBatch& batch, const MicrostructureRequest& wanted, std::span<CommittedSummary> out);
 
 }  // namespace voussoir::kernels

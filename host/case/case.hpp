@@ -144,7 +144,7 @@ struct VolumeLossCase {
 /// tangent_kind (engine.hpp) chooses.
 using TangentChoice = std::optional<kernels::TangentKind>;
 
-/// [newton] The criteria of convergence (fem/README.md), and how the solver reaches them.
+/// [newton] The criteria of convergence (docs/explanation/method.md), and how the solver reaches them.
 struct NewtonCase {
   double tolerance = 1.0e-3;               ///< bound of the free residual, relative to the external force [-]
   double displacement_tolerance = 1.0e-2;  ///< bound of the last correction, relative to the increment [-]
@@ -190,8 +190,8 @@ struct ProbeCase {
   double strain = 1.0e-4;   ///< size of each probe [-]
   int replicas = 1;  ///< copies of path and probes whose gradients differ by 1e-6 of their size; their answers scatter
                      ///< as chaotic motion makes them
-  TangentChoice tangent = kernels::TangentKind::contact;  ///< the tangent in the report (kernels/README.md,
-                                                          ///< "Static tangent"); a loading one is for `strain`
+  /// The tangent in the report (docs/explanation/tangents.md); a loading one is for `strain`.
+  TangentChoice tangent = kernels::TangentKind::contact;
   std::vector<PathSegment> path;
 };
 

@@ -14,9 +14,9 @@
 namespace voussoir::host {
 namespace {
 
-// Calibrated on the column `particle_steps` of run.h5. Relaxed increments (fem/README.md) have later evaluations of few
-// steps; the constants count evaluations of the full number of steps. With them the estimates are 0.95 of the work of
-// cases/tunnel_quick, 1.25 of that of cases/tunnel_cps_d_cd3 and 1.6 of that of cases/biaxial_bvp (2026-11-26).
+// Calibrated on the column `particle_steps` of run.h5. Relaxed increments (fem/relaxation.hpp) have later evaluations
+// of few steps; the constants count evaluations of the full number of steps. With them the estimates are 0.95 of the
+// work of cases/tunnel_quick, 1.25 of that of cases/tunnel_cps_d_cd3 and 1.6 of that of cases/biaxial_bvp (2026-11-26).
 // Packings whose equilibrium is harder to find take up to 1.5 times as much.
 constexpr double gravity_evaluations = 1.2;
 constexpr double loss_evaluations = 4.5;

@@ -1,5 +1,5 @@
 #pragma once
-/// One grain under the sum of its forces; kernels/README.md, "One step", 5.
+/// One grain under the sum of its forces; docs/explanation/engine.md, "Dynamic relaxation".
 
 #include "kernels/contact/pair_state.hpp"
 

@@ -37,7 +37,7 @@ KOKKOS_INLINE_FUNCTION Number harmonic_mean(Number a, Number b) {
   return a + b > 0 ? Number(2) * a * b / (a + b) : Number(0);
 }
 
-/// Constants of a contact of two grains of radii r1, r2 [m]; kernels/README.md, "One step", 3.
+/// Constants of a contact of two grains of radii r1, r2 [m]; docs/explanation/contact_law.md.
 template <class Number>
 KOKKOS_INLINE_FUNCTION PairConstantsOf<Number> combine(const GrainMaterialOf<Number>& m1, Number r1,
                                                        const GrainMaterialOf<Number>& m2, Number r2) {

@@ -1,5 +1,5 @@
 #pragma once
-/// One pair: its distances, the law's forces, and the action on both grains; kernels/README.md, "One step", 2 to 4.
+/// One pair: its distances, the law's forces, and the action on both grains; docs/explanation/contact_law.md.
 
 #include "kernels/contact/contact_law.hpp"
 #include "kernels/contact/pair_state.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-/// One step of a block's RVE, kernels/README.md "One step": all pairs at once, then all grains at once, with a barrier
+/// One step of a block's RVE (docs/explanation/engine.md): all pairs at once, then all grains at once, with a barrier
 /// after each.
 ///
 /// A pair is computed once, in the orientation i < j of the lanes, and leaves its action on both grains in fast memory;

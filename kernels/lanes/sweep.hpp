@@ -1,5 +1,5 @@
 #pragma once
-/// One step of all grains of a group: contacts, law, forces, integration; kernels/README.md, "One step".
+/// One step of all grains of a group: contacts, law, forces, integration; docs/explanation/contact_law.md, engine.md.
 ///
 /// The list holds every pair once, with i < j, and is sorted. Grain i gathers its force in registers and is integrated
 /// right after its last pair, since every pair (h, i) with h < i stands in an earlier row. The loop contains no wrap

@@ -1,12 +1,12 @@
 #pragma once
-/// Scaled masses: the inertia that a grain needs so that one step is stable for all sizes; kernels/README.md,
-/// "Mobilities". The law says how stiff a grain can be.
+/// Scaled masses: the inertia that a grain needs so that one step is stable for all sizes
+/// (docs/explanation/engine.md, "Time step and mass"). The law says how stiff a grain can be.
 
 #include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::kernels {
 
-inline constexpr double step_safety = 0.9;         ///< c of kernels/README.md "Mobilities"
+inline constexpr double step_safety = 0.9;         ///< c of docs/explanation/engine.md
 inline constexpr double assumed_neighbours = 6.0;  ///< contacts of one grain, for the bound on its stiffness
 
 /// Inverse mass or moment of inertia for which a step of 1 is stable under a row sum of stiffnesses. It

@@ -2,10 +2,10 @@
 /// The contacts of a group at rest as springs, whose stiffnesses are the law's, and the forces of these springs when
 /// grains move.
 ///
-/// Each contact is one symmetric operator: the stiffnesses k_n, k_t / y and k_r act on the changes of length of
-/// kernels/README.md, "One step", 3. The forces are the engine's own but for two differences of the order of overlap /
-/// diameter: the torque arms are r/y instead of r - delta/2, and the rotation of the forces already carried is left
-/// out.
+/// Each contact is one symmetric operator: the stiffnesses k_n, k_t / y and k_r act on the changes of length that
+/// docs/explanation/contact_law.md names. The forces are the engine's own but for two differences of the order of
+/// overlap / diameter: the torque arms are r/y instead of r - delta/2, and the rotation of the forces already carried
+/// is left out.
 
 #include <array>
 #include <vector>
@@ -105,7 +105,7 @@ KOKKOS_FORCEINLINE_FUNCTION void add_unit_strain(int a, const SpringLanes<V>& s,
   }
 }
 
-/// Changes of length of a contact's springs; kernels/README.md "One step", 3.
+/// Changes of length of a contact's springs, as the contact law counts them (docs/explanation/contact_law.md).
 template <class V>
 struct SpringStrain {
   V normal, sliding, rolling;

@@ -7,7 +7,7 @@ namespace voussoir::kernels {
 
 /// Whether a static tangent `d` [Pa] is at most as stiff as the contact tangent. In exact arithmetic every static
 /// tangent is softer; a stiffer one shows that rounding has spoilt the iterations. False for NaN. The slack covers the
-/// factor y (kernels/README.md, "Static tangent").
+/// factor y (docs/explanation/tangents.md).
 [[nodiscard]] KOKKOS_INLINE_FUNCTION bool is_softer(const double* d, const double* contact) {
   constexpr double slack = 1.05;
   return d[0] <= slack * contact[0] && d[3] <= slack * contact[3] && d[5] <= slack * contact[5];

@@ -42,7 +42,8 @@ Vec2 nearest_image(const Mat2& cell, const Mat2& inverse_cell, Vec2 difference) 
 
 double clamped(double value, double bound) { return std::max(-bound, std::min(value, bound)); }
 
-/// The law, kernels/README.md step 3, for one touching pair whose motion in this step is D, w and theta of `rve`.
+/// The law, docs/explanation/contact_law.md, for one touching pair whose motion in this step is D, w and theta of
+/// `rve`.
 Contact call_law(const Rve& rve, const Mat2& d, int i, int j, Vec2 branch, History& history) {
   const Material& material = rve.material;
   const double ri = rve.radii[i];

@@ -1,8 +1,8 @@
 #pragma once
 /// The oracle: one periodic packing, computed the plain way. Serial, double, every pair looked at in every step,
-/// positions advanced directly, real square roots. The equations are those of kernels/README.md; no line of kernels/ is
-/// used. Tension positive, Voigt order (xx, yy, xy) with engineering shear strain; velocities and spins are per step
-/// (dt = 1).
+/// positions advanced directly, real square roots. The equations are those of docs/explanation/contact_law.md and
+/// engine.md; no line of kernels/ is used. Tension positive, Voigt order (xx, yy, xy) with engineering shear strain;
+/// velocities and spins are per step (dt = 1).
 
 #include <array>
 #include <map>
@@ -63,7 +63,7 @@ struct PairStiffness {
 };
 PairStiffness pair_stiffness(const Material& material, double radius_i, double radius_j);
 
-/// a = dt^2/m [m/N] and a_r = dt^2/I [rad/(N m)] of a grain: mass scaling, kernels/README.md.
+/// a = dt^2/m [m/N] and a_r = dt^2/I [rad/(N m)] of a grain: mass scaling, docs/explanation/engine.md.
 struct Mobility {
   double translation, rotation;
 };

@@ -29,7 +29,7 @@ struct Spring {
   double length, ratio, radius_i, radius_j;
   int slides = 0, rolls = 0;  ///< sign of the force that follows its cap; 0: stuck
 
-  [[nodiscard]] Eigen::Matrix<double, 3, 6> strains() const {  // by (u_i, u_j), kernels/README.md "One step", 3
+  [[nodiscard]] Eigen::Matrix<double, 3, 6> strains() const {  // by (u_i, u_j), docs/explanation/contact_law.md
     const double nx = at.normal_x, ny = at.normal_y, y = ratio;
     Eigen::Matrix<double, 3, 6> b;
     b << -nx, -ny, 0, nx, ny, 0, y * ny, -y * nx, -radius_i, -y * ny, y * nx, -radius_j, 0, 0, -1, 0, 0, 1;
