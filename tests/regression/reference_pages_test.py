@@ -23,7 +23,7 @@ def check_made_parts():
     """What tools/reference_pages.py writes is what the pages hold."""
     tool = str(ROOT / "tools/reference_pages.py")
     done = run([sys.executable, tool, "--program", PROGRAM, "--check"], code=None)
-    check(done.returncode == 0, done.stderr)
+    check(done.returncode == 0, done.stderr.strip())
 
 
 def check_commands():
