@@ -3,7 +3,7 @@
 
 Runs and ensembles of tunnels that are named one by one, with the bands of members; study.md says which of the paper's
 figures has which file, and how our results compare. Of a sweep tools/figures.py draws the same.
-voussoir_plots/README.md describes it.
+docs/reference/figures.md describes it.
 """
 
 import argparse

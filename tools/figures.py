@@ -3,8 +3,8 @@
 [--only NAME ...] [more options: --help].
 
 Several files of packings are drawn together, and several runs of kind biaxial. A figure whose data are missing is
-skipped, and a line says why. docs/reference/files.md describes the data sets, voussoir_plots/README.md the figures and
-the exit status.
+skipped, and a line says why. docs/reference/files.md describes the data sets, docs/reference/figures.md the
+figures, docs/reference/exit_status.md the exit status.
 """
 
 import argparse

@@ -1,6 +1,6 @@
 #pragma once
-/// A sweep file: which runs it asks for, by which names, with which cases and overrides. host/README.md, "Sweeps",
-/// describes the file.
+/// A sweep file: which runs it asks for, by which names, with which cases and overrides.
+/// docs/how-to/sweep_on_a_cluster.md describes the file.
 
 #include <cstddef>
 #include <filesystem>

@@ -23,7 +23,7 @@ def write(result: Result, path: Path) -> None:
     about = (
         f"C/D = {result.cover / diameter:.3g}, D = {diameter:g} m, {result.soil}, {len(result.connectivity)} "
         f"elements; V_l to {percent(last)} in {len(result.loss_increments) - 1} increments. "
-        "The trends are those of the study (tools/voussoir_plots/README.md says how each is judged)."
+        "The trends are those of the study (docs/reference/figures.md says how each is judged)."
     )
     lines = [
         f"# Trends: {result.folder.resolve().name}",

@@ -1,7 +1,7 @@
 """Makes one HTML page of a run, an ensemble or a sweep: tools/report DIR [-o FILE.html].
 
 The page needs no server and no network. What a run lacks, the page and one line on the terminal tell; the exit status
-is that of the figure scripts (voussoir_plots/README.md).
+is that of the figure scripts (docs/reference/exit_status.md).
 """
 
 import argparse
