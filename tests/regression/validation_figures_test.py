@@ -1,0 +1,76 @@
+"""The pictures of docs/validation: a lattice of discs gives its closed form through the whole program, the error budget
+can be drawn, and what is missing is said in one line."""
+
+import os
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+
+from validation_figures import budget, lattice
+from validation_figures.program import Program
+
+ROOT = Path(os.environ["VOUSSOIR_ROOT"])
+PROGRAM = Path(os.environ["VOUSSOIR"])
+
+
+def call(*words):
+    command = [
+        sys.executable,
+        str(ROOT / "tools/validation_figures"),
+        *map(str, words),
+        "--runs",
+        "runs",
+        "-o",
+        "pictures",
+    ]
+    return subprocess.run(command, check=False, capture_output=True, text=True, timeout=120)
+
+
+class Lattice(unittest.TestCase):
+    def test_the_program_gives_the_closed_form(self):
+        lines = lattice.draw(Program(PROGRAM, Path("lattice_runs")), Path("lattice.png"))
+        self.assertEqual(len(lines), len(lattice.RATIOS))
+        self.assertTrue(Path("lattice.png").stat().st_size > 0)
+        for ratio in lattice.RATIOS:
+            found = lattice.answer(Path(f"lattice_runs/lattice_{ratio:g}"), ratio)
+            # 1e-6 is measured: the strain of the probes, over which the response is not straight.
+            self.assertLess(found.largest_difference(), 5e-6)
+            self.assertAlmostEqual(found.shear_equation_4 / (ratio * found.axial_equation_4 / 2), 1, 8)
+
+    def test_another_stiffness_would_be_seen(self):
+        lattice.draw(Program(PROGRAM, Path("lattice_runs")), Path("lattice.png"))
+        wrong = lattice.answer(Path("lattice_runs/lattice_0.5"), 0.51)
+        self.assertGreater(wrong.largest_difference(), 0.01)
+
+
+class Pictures(unittest.TestCase):
+    def test_the_budget_is_drawn_from_its_file(self):
+        done = call("error_budget")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(len(done.stdout.splitlines()), len(budget.rows()))
+        self.assertTrue(Path("pictures/error_budget.png").stat().st_size > 0)
+
+    def test_intervals_hold_their_values(self):
+        for row in budget.rows():
+            self.assertIn(row["kind"], budget.KINDS)
+            self.assertLessEqual(float(row["low"]), float(row["value"]))
+            self.assertLessEqual(float(row["value"]), float(row["high"]))
+
+    def test_numbers_of_the_budget_stand_on_the_page(self):
+        page = (ROOT / "docs/validation/trust.md").read_text()
+        for row in budget.rows():
+            text = row["value"] if row["kind"] == "draw" else f"{float(row['value']):+.1f} ±"
+            self.assertIn(text, page, row["source"])
+
+    def test_a_missing_program_is_one_line(self):
+        done = call("closed_forms_lattice", "--program", "no_such_program")
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(len(done.stderr.splitlines()), 1)
+        self.assertIn("no_such_program", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

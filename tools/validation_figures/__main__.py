@@ -1,0 +1,53 @@
+"""Draws the pictures of docs/validation from output of the program, and prints the numbers that the pages state."""
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+import matplotlib.pyplot as plt
+from voussoir_plots import output, style
+from voussoir_plots.result import Missing
+
+from validation_figures import budget, elastic_ground, lattice, yade_test
+from validation_figures.program import ROOT, Program, ProgramFailed
+
+FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
+    "closed_forms_ground": elastic_ground.draw,
+    "closed_forms_lattice": lattice.draw,
+    "yade_biaxial": yade_test.draw,
+    "error_budget": budget.draw,
+}
+
+
+def arguments(words: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="tools/validation", description=__doc__)
+    parser.add_argument("figure", nargs="*", choices=[[], *FIGURES], help=f"one or more of {', '.join(FIGURES)}; all")
+    parser.add_argument("--program", type=Path, default=ROOT / "build/openmp/host/voussoir")
+    parser.add_argument("--runs", type=Path, default=Path("out/validation"), help="the folder of the program's runs")
+    parser.add_argument("-o", "--output", type=Path, default=Path("out/validation"), help="the folder of the pictures")
+    return parser.parse_args(words)
+
+
+def main(words: list[str] | None = None) -> int:
+    given = arguments(words)
+    program = Program(given.program, given.runs)
+    style.use_style()
+    plt.rcParams["savefig.dpi"] = 100  # the pictures are kept with the documents
+    try:
+        output.make_folder(given.output)
+        for name in given.figure or FIGURES:
+            for line in FIGURES[name](program, given.output / f"{name}.png"):
+                output.say(f"{name}: {line}")
+    except (ProgramFailed, Missing) as reason:
+        output.say(f"tools/validation: {reason}", error=True)
+        return 2
+    except output.CannotWrite as reason:
+        output.say(f"tools/validation: {reason}", error=True)
+        return 4
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
