@@ -16,6 +16,7 @@ from . import (
     ensemble,
     fields,
     grading,
+    ground,
     panels,
     paths,
     probe_figures,
@@ -39,6 +40,7 @@ Figures = dict[str, Callable[[Any, Path], None]]
 
 # Of a tunnel; a column and a specimen have some of them.
 FIGURES: Figures = {
+    "ground.png": ground.draw,
     "settlement_troughs.png": troughs.draw,
     "trough_widths.png": widths.draw,
     "settlement_growth.png": settlements.draw,

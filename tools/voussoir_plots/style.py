@@ -9,6 +9,7 @@ import matplotlib
 import numpy as np
 from cycler import cycler
 from matplotlib.figure import Figure
+from PIL import Image
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -73,8 +74,9 @@ def set_note(text: str) -> None:
     _notes[:] = [text] if text else []
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Writes a figure in the format that the name of the file ends in, and closes it."""
+def save(figure: Figure, path: Path, few_colours: bool = False) -> None:
+    """Writes a figure in the format that the name of the file ends in, and closes it. `few_colours`: a PNG has at most
+    256 colours, and a third of the size."""
     for note in _notes:
         figure.draw_without_rendering()  # a layout that is computed moves the axes only then
         width, height = figure.get_size_inches()
@@ -85,4 +87,10 @@ def save(figure: Figure, path: Path) -> None:
     form = path.suffix.removeprefix(".")
     figure.savefig(picture, format=form, metadata=_WITHOUT_DATE[form])
     plt.close(figure)
-    write(path, picture.getvalue())
+    write(path, _with_palette(picture) if few_colours and form == "png" else picture.getvalue())
+
+
+def _with_palette(picture: io.BytesIO) -> bytes:
+    small = io.BytesIO()
+    Image.open(picture).convert("RGB").quantize(256).save(small, format="png", optimize=True)
+    return small.getvalue()
