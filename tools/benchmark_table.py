@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Markdown rows of a benchmark report, for tests/benchmark/README.md: tools/benchmark_table.py REPORT.json ...
+"""Markdown rows of a benchmark report, for docs/measurements/performance.md: tools/benchmark_table.py REPORT.json ...
 
 A report is the file of --benchmark_out=FILE. Each benchmark gets one row: contacts per grain, then in million the
 medians of particle-steps/s in float and double, and of contact-steps/s and listed-pair-steps/s in float. Each report

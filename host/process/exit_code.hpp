@@ -1,5 +1,5 @@
 #pragma once
-/// How the program ends: one table of outcomes and exit codes, which README.md and `voussoir --help` repeat, and the
+/// How the program ends: one table of outcomes and exit codes, which docs/reference/exit_status.md and `voussoir --help` repeat, and the
 /// one function that makes a code of an outcome. host/program/failure.hpp makes an outcome of an exception.
 
 #include <array>

@@ -13,7 +13,7 @@ namespace voussoir::host {
 namespace {
 
 /// Tolerance of the static tangents with which Newton iterates: they are off by 1 % at most, as their error is
-/// estimated. A smaller tolerance does not save evaluations (kernels/README.md, "Static tangent").
+/// estimated. A smaller tolerance does not save evaluations (docs/explanation/tangents.md).
 constexpr double newton_tangent_tolerance = 0.1;
 
 /// A pool with the chosen packings at the points.

@@ -21,6 +21,7 @@ FIGURES = [
     "trends.md",
 ]
 FIGURES_OF_GRAINS = [
+    "ground.png",
     "void_ratio.png",
     "grain_rotation.png",
     "localisation.png",

@@ -50,7 +50,7 @@ class Probe:
 
     def by_tangent(self, row: Row) -> np.ndarray:
         """The same by the tangent before the probe, for a strain of 1; the third strain is gamma_xy. To tangents other
-        than `loading` belongs what the strain makes of the stress itself (kernels/README.md, "Static tangent")."""
+        than `loading` belongs what the strain makes of the stress itself (docs/explanation/tangents.md)."""
         strained, sign = STRAINED[row["probe"]]
         further = 0 if row.get("tangent") == "loading" else carried(self.before(row), strained)
         return sign * (np.array([self._tangent(row, c, strained) for c in COMPONENTS]) + further)

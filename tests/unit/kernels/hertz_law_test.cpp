@@ -1,5 +1,5 @@
 // The engine with a law that is not linear and remembers nothing, against closed forms: the door for laws
-// (CONTRIBUTING.md, "Adding a contact law") is wide enough for more than the one that is used.
+// (docs/how-to/extend.md, "Adding a contact law") is wide enough for more than the one that is used.
 #include "tests/hertz_law.hpp"
 
 #include <gtest/gtest.h>
