@@ -1,17 +1,18 @@
 """tools/docs builds the site of all documents without a warning and in time: every page is in the navigation and in the
-index of the search, every formula is drawn and every link leads somewhere. A small tree with one fault of each kind shows
-that each is told."""
+index of the search, every formula is drawn and every link leads somewhere. A small tree with one fault of each kind
+shows that each is told."""
 
 import json
 import re
+import resource
 import sys
-import time
 from pathlib import Path
 
 from program import ROOT, check, fresh, run
 
 TOOL = ROOT / "tools/docs"
-LIMIT = 30  # seconds for the whole site
+LIMIT = 30  # seconds of a processor for the whole site: its build has one thread, and other tests run beside it
+HOST = "https://example.org"
 if not (ROOT / ".prefix/docs/bin/python").exists():
     print("skipped: the documents' Python packages are missing; tools/setup --docs or --test installs them")
     sys.exit(77)
@@ -78,8 +79,8 @@ def check_built_links():
         site,
         **{
             "a.html": '<p id="x"><a href="b.html#y">1</a> <a href="c.html">2</a> <a href="a.html#x">good</a>',
-            "b.html": '<script src="https://example.org/x.js"></script><a href="https://example.org">good</a><a href="../z">3</a>',
-            "c.css": "p { background: url(https://example.org/p.png) }",
+            "b.html": f'<script src="{HOST}/x.js"></script><a href="{HOST}">good</a><a href="../z">3</a>',
+            "c.css": f"p {{ background: url({HOST}/p.png) }}",
         },
     )
     words = "import sys; sys.path.insert(0, sys.argv[1]); from docs_site.check_site import check_site\n"
@@ -118,13 +119,19 @@ def check_formulas(site):
     return count
 
 
+def processor_time():
+    """What all ended children of this process have used [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 check_built_links()
 check_faults()
-start = time.monotonic()
+before = processor_time()
 done = run([str(TOOL), "-o", "site"])
-took = time.monotonic() - start
+took = processor_time() - before
 check(not done.stderr, f"warnings: {done.stderr}")
-check(took < LIMIT, f"the build took {took:.1f} s, which is more than {LIMIT} s")
+check(took < LIMIT, f"the build took {took:.1f} s of a processor, which is more than {LIMIT} s")
 site = Path("site")
 pages, formulas = check_pages(site), check_formulas(site)
-print(f"{pages} pages of docs with {formulas} formulas; {done.stdout.strip()}")
+print(f"{pages} pages of docs, {formulas} formulas, {took:.1f} s of a processor; {done.stdout.strip()}")

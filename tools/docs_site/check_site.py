@@ -35,10 +35,8 @@ def _check_reference(site: Path, file: Path, value: str, pages: dict[Path, _Page
         return "leads out of the site"
     if not target.is_file():
         return "leads to no file"
-    if parts.fragment and parts.fragment not in ("", "__codelineno-0") and target in pages:
-        anchor = unquote(parts.fragment)
-        if anchor not in pages[target].ids:
-            return "leads to no element of its page"
+    if parts.fragment and target in pages and unquote(parts.fragment) not in pages[target].ids:
+        return "leads to no element of its page"
     return ""
 
 
@@ -57,6 +55,6 @@ def check_site(site: Path) -> tuple[list[str], int]:
             if wrong:
                 problems.append(f"{file.relative_to(site)}: <{tag} {name}={value!r}> {wrong}")
     for file in site.rglob("*.css"):
-        for value in re.findall(r"url\(['\"]?((?:https?:)?//[^)'\"]+)", file.read_text()):
-            problems.append(f"{file.relative_to(site)}: {value} is asked for from a network")
+        loaded = re.findall(r"url\(['\"]?((?:https?:)?//[^)'\"]+)", file.read_text())
+        problems += [f"{file.relative_to(site)}: {value} is asked for from a network" for value in loaded]
     return problems, count

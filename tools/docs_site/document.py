@@ -1,7 +1,7 @@
 """One Markdown file: its headings, links and formulas, and its HTML.
 
-The dialect is CommonMark with tables, footnotes and formulas, as hosts of repositories draw it, so that a page looks the
-same in the repository and in the site. Anchors of headings follow the same rule as there.
+The dialect is CommonMark with tables, footnotes and formulas, as hosts of repositories draw it, so that a page looks
+the same in the repository and in the site. Anchors of headings follow the same rule as there.
 """
 
 import html

@@ -1,5 +1,5 @@
-"""What MkDocs calls while it builds the site: it draws the frame, the navigation and the index of the search; which pages
-there are and what stands in them comes from pages.py."""
+"""What MkDocs calls while it builds the site: MkDocs draws the frame, the navigation and the index of the search; which
+pages there are and what stands in them comes from pages.py."""
 
 from typing import Any
 
@@ -70,7 +70,7 @@ def _contents(site: Site, path: str) -> list[dict[str, Any]]:
     return tree
 
 
-def on_page_content(html: str, page: Page, config: MkDocsConfig, **_others: Any) -> str:
+def on_page_content(_html: str, page: Page, config: MkDocsConfig, **_others: Any) -> str:
     site, path = _site(config), page.file.src_uri
     page.toc = get_toc(_contents(site, path))
     return site.html(path)

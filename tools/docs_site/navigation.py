@@ -36,10 +36,9 @@ def _section(root: Path, documents: Mapping[str, Document], name: str, problems:
         problems.append(f"{index}: the index of its section is missing")
         return [*pages]
     order = [path for path in _linked(root, documents[index]) if path in pages]
-    for path in pages:
-        if path not in order:
-            problems.append(f"{index}: does not link the page {posixpath.relpath(path, folder)} of its section")
-    return [index, *order, *(path for path in pages if path not in order)]
+    left = [path for path in pages if path not in order]
+    problems += [f"{index}: does not link the page {posixpath.relpath(path, folder)} of its section" for path in left]
+    return [index, *order, *left]
 
 
 def _sources(paths: Sequence[str], folder: str) -> list[Item]:
