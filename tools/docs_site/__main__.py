@@ -19,6 +19,7 @@ from docs_site.pages import Site
 ROOT = Path(__file__).resolve().parent.parent.parent
 CONFIGURATION = Path(__file__).resolve().parent / "mkdocs.yml"
 NOT_FOR_FILES = ("404.html", "sitemap.xml", "sitemap.xml.gz")  # only a server shows them
+MOST_TOLD = 200  # problems; a fault of the frame is on every page
 FONT = "STIXTwoMath-Regular.ttf"
 
 
@@ -49,7 +50,7 @@ def draw(site: Site, output: Path) -> None:
         (output / name).unlink(missing_ok=True)
     # Browsers need a font with a table of mathematics for fractions, roots and large brackets.
     with importlib.resources.as_file(importlib.resources.files("ziamath.fonts") / FONT) as font:
-        shutil.copy(font, output / "stylesheets" / FONT)
+        shutil.copy(font, output / FONT)
 
 
 def main() -> int:
@@ -67,7 +68,7 @@ def main() -> int:
         site.problems.append(str(error))
     if not site.problems:  # a link that is wrong in the repository has been told already
         site.problems, links = check_site(given.output)
-    for problem in site.problems:
+    for problem in site.problems[:MOST_TOLD]:
         print(f"docs: {problem}", file=sys.stderr)
     if site.problems:
         print(f"tools/docs: {len(site.problems)} problems", file=sys.stderr)

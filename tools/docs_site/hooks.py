@@ -33,6 +33,8 @@ def on_config(config: MkDocsConfig) -> None:
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     site = _site(config)
+    for file in list(files.documentation_pages()):
+        files.remove(file)  # the README.md of assets/
     for path in site.pages:
         page = SitePage(path, None, config.site_dir, False, dest_uri=page_of(path))
         page.generated_by, page.content_string = "docs_site", ""

@@ -39,9 +39,12 @@ class Site:
     def html(self, path: str) -> str:
         if path in self.documents:
             return self.documents[path].html(lambda href: self._resolve(path, href))
-        name = posixpath.basename(path)
+        folder, name = posixpath.split(path)
+        about = ""
+        if posixpath.join(folder, "README.md") in self.documents:
+            about = f' · <a href="{self._resolve(path, "README.md")}">About its folder</a>'
         return (
-            f'<h1>{path}</h1>\n<p><a href="{name}" download>Save this file</a></p>\n'
+            f'<h1>{path}</h1>\n<p><a href="{name}" download>Save this file</a>{about}</p>\n'
             f"{code_block((self.root / path).read_text(), '', name)}"
         )
 
