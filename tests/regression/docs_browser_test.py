@@ -74,13 +74,12 @@ class Opened:
 
 
 def kinds_of_pages(site):
-    """The home page, the longest page, the one with most formulas, most cells, most pictures, and a text of a file."""
+    """The home page, those with most formulas, most cells, most pictures, most code, and the text of a file."""
     texts = {file: file.read_text() for file in site.rglob("*.html") if "source" not in file.parts}
-    signs = ("<math ", "<td", "<img ", '<div class="highlight">', "")
-    chosen = [max(texts, key=lambda file: texts[file].count(sign)) for sign in signs[:-1]]
-    longest = max(texts, key=lambda file: len(texts[file]))
+    signs = ("<math ", "<td", "<img ", '<div class="highlight">')
+    chosen = [max(texts, key=lambda file: texts[file].count(sign)) for sign in signs]
     shown = min((site / "source").rglob("*.toml.html"))
-    return list(dict.fromkeys([site / "index.html", *chosen, longest, shown, site / "source/index.html"]))
+    return list(dict.fromkeys([site / "index.html", *chosen, shown, site / "source/index.html"]))
 
 
 def search(opened, site):
