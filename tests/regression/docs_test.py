@@ -26,6 +26,14 @@ PAGE = r"""# A page
 ## Here
 
 The formula $\unknown{x}$, and a $ alone. A good one: $\frac{1}{2} \boldsymbol{\sigma}$.
+
+A **bold word **, a link ([[here](#here)](page.md)), a note[^1]. `good: ** ]( $ [^1]`
+
+| a | b |
+|---|---|
+| 1 | 2 |
+
+| 3 | 4 |
 """
 FAULTS = [
     "docs/tutorial/page.md:3: nothing.md: there is no such file",
@@ -36,6 +44,10 @@ FAULTS = [
     "docs/tutorial/page.md:3: gone.html: there is no such file",
     r"docs/tutorial/page.md:8: the formula '\\unknown{x}' is not understood",
     "docs/tutorial/page.md:8: a $ outside code neither begins nor ends a formula",
+    "docs/tutorial/page.md:10: a ** outside code neither begins nor ends bold text",
+    "docs/tutorial/page.md:10: a link is not understood",
+    "docs/tutorial/page.md:10: there is no such footnote",
+    "docs/tutorial/page.md:16: the row of a table stands outside its table",
     "docs/tutorial/README.md: does not link the page page.md of its section",
     "docs/tutorial/two.md: the page has 2 titles (# ...) instead of one",
     "docs/other/new.md: the folder is no section of the navigation",

@@ -23,6 +23,14 @@ from docs_site.formulas import FormulaError, mathml
 MATH = ("math_inline", "math_inline_double", "math_block")
 LINKS = {"link_open": "href", "image": "src"}
 OURS = {"made by": "Document"}  # marks HTML that does not stand in the file
+TABLE_ROW = re.compile(r"\|.*\|$", re.MULTILINE)
+# Signs of Markdown that a reader would see, because the parser has found no meaning for them.
+LEFT_OVER = {
+    "$": "a $ outside code neither begins nor ends a formula",
+    "](": "a link is not understood",
+    "**": "a ** outside code neither begins nor ends bold text",
+    "[^": "there is no such footnote",
+}
 HTML_LINK = re.compile(r'\b(href|src)="([^"]*)"')
 HTML_ANCHOR = re.compile(r'\b(?:id|name)="([^"]*)"')
 
@@ -128,8 +136,12 @@ class Document:
         elif token.type in ("html_inline", "html_block") and token.meta != OURS:
             self.links += [Link(line, found[1]) for found in HTML_LINK.findall(token.content)]
             self.anchors.update(HTML_ANCHOR.findall(token.content))
-        elif token.type == "text" and "$" in token.content and self.path.startswith("docs/"):
-            self._problem(line, "a $ outside code neither begins nor ends a formula")
+        elif token.type == "text":
+            for sign, sentence in LEFT_OVER.items():
+                if sign in token.content and (sign != "$" or self.path.startswith("docs/")):
+                    self._problem(line, sentence)
+        elif token.type == "inline" and TABLE_ROW.match(token.content):
+            self._problem(line, "the row of a table stands outside its table")
 
     def _convert(self, token: Token, line: int) -> None:
         display = token.type != "math_inline"
