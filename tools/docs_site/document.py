@@ -18,7 +18,7 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexers import get_lexer_by_name, get_lexer_for_filename
 from pygments.util import ClassNotFound
 
-from docs_site.formulas import FormulaError, mathml
+from docs_site.formulas import FormulaError, letters, mathml
 
 MATH = ("math_inline", "math_inline_double", "math_block")
 LINKS = {"link_open": "href", "image": "src"}
@@ -72,8 +72,18 @@ def _parser() -> MarkdownIt:
     return parser
 
 
-def _plain(tokens: Sequence[Token]) -> str:
+def _source_text(tokens: Sequence[Token]) -> str:
+    """The text of a heading with its formulas as they stand in the file, of which anchors are made."""
     return "".join(token.content for token in tokens if token.type in ("text", "code_inline", *MATH))
+
+
+def _shown_text(tokens: Sequence[Token]) -> str:
+    """The text of a heading as a reader sees it, after its formulas became MathML."""
+    return "".join(
+        letters(token.content) if token.meta == OURS else token.content
+        for token in tokens
+        if token.type in ("text", "code_inline") or token.meta == OURS
+    )
 
 
 class Document:
@@ -90,10 +100,11 @@ class Document:
         self._tokens = self._parser.parse(text, self._env)
         for index, token in enumerate(self._tokens):
             line = token.map[0] + 1 if token.map else 1
-            if token.type == "heading_open":
-                self._add_heading(token, self._tokens[index + 1])
+            source = _source_text(token.children or [])
             for part in [token, *(token.children or [])]:
                 self._read(part, line)
+            if index > 0 and self._tokens[index - 1].type == "heading_open":
+                self._add_heading(self._tokens[index - 1], token, source)
 
     @property
     def title(self) -> str:
@@ -102,6 +113,8 @@ class Document:
     def html(self, resolve: Callable[[str], str]) -> str:
         """The page's HTML; `resolve` turns the links of the repository into links of the site."""
         for token in self._tokens:
+            if [part.type for part in token.children or []] == ["image"]:
+                self._open_on_click(token)
             for part in [token, *(token.children or [])]:
                 if part.type in LINKS:
                     part.attrSet(LINKS[part.type], resolve(str(part.attrGet(LINKS[part.type]))))
@@ -109,19 +122,24 @@ class Document:
                     part.content = HTML_LINK.sub(lambda found: f'{found[1]}="{resolve(found[2])}"', part.content)
         return self._parser.renderer.render(self._tokens, self._parser.options, self._env)
 
+    def _open_on_click(self, paragraph: Token) -> None:
+        """A picture alone leads to its file, where a reader with a narrow screen can make it larger."""
+        picture = (paragraph.children or [])[0]
+        opening = Token("link_open", "a", 1, attrs={"href": str(picture.attrGet("src"))})
+        paragraph.children = [opening, picture, Token("link_close", "a", -1)]
+
     def _problem(self, line: int, sentence: str) -> None:
         self.problems.append(f"{self.path}:{line}: {sentence}")
 
-    def _add_heading(self, opening: Token, content: Token) -> None:
+    def _add_heading(self, opening: Token, content: Token, source: str) -> None:
         """Gives a heading its anchor: small letters, hyphens for blanks, no other signs, a number where it exists."""
-        text = _plain(content.children or [])
-        anchor = base = re.sub(r"[^\w\- ]", "", text.strip().lower()).replace(" ", "-")
+        anchor = base = re.sub(r"[^\w\- ]", "", source.strip().lower()).replace(" ", "-")
         number = 0
         while anchor in self.anchors:
             number += 1
             anchor = f"{base}-{number}"
         self.anchors.add(anchor)
-        self.headings.append(Heading(int(opening.tag[1]), anchor, text))
+        self.headings.append(Heading(int(opening.tag[1]), anchor, _shown_text(content.children or [])))
         opening.attrSet("id", anchor)
         if opening.tag != "h1":
             sign = f'<a class="headerlink" href="#{anchor}" title="Link to this section">¶</a>'

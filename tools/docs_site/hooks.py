@@ -1,6 +1,7 @@
 """What MkDocs calls while it builds the site: MkDocs draws the frame, the navigation and the index of the search; which
 pages there are and what stands in them comes from pages.py."""
 
+import html
 from typing import Any
 
 from mkdocs.config.defaults import MkDocsConfig
@@ -51,7 +52,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, **_others: Any) -> str:
     """Titles are asked for by the pages' own frames, so they are set before the first is drawn."""
     path = page.file.src_uri
-    page.meta["title"] = _site(config).title(path)
+    page.meta["title"] = html.escape(_site(config).title(path))
     if path not in _site(config).documents:
         page.meta["search"] = {"exclude": True}
     elif not path.startswith("docs/"):
@@ -64,7 +65,7 @@ def _contents(site: Site, path: str) -> list[dict[str, Any]]:
     tree: list[dict[str, Any]] = []
     open_ones: list[dict[str, Any]] = []
     for heading in site.documents[path].headings if path in site.documents else []:
-        token = {"level": heading.level, "id": heading.anchor, "name": heading.text, "children": []}
+        token = {"level": heading.level, "id": heading.anchor, "name": html.escape(heading.text), "children": []}
         while open_ones and open_ones[-1]["level"] >= heading.level:
             open_ones.pop()
         (open_ones[-1]["children"] if open_ones else tree).append(token)
