@@ -76,7 +76,7 @@ class Opened:
 def kinds_of_pages(site):
     """The home page, those with most formulas, most cells, most pictures, most code, and the text of a file."""
     texts = {file: file.read_text() for file in site.rglob("*.html") if "source" not in file.parts}
-    signs = ("<math ", "<td", "<img ", '<div class="highlight">')
+    signs = ("<math", "<td", "<img ", '<div class="highlight">')
     chosen = [max(texts, key=lambda file: texts[file].count(sign)) for sign in signs]
     shown = min((site / "source").rglob("*.toml.html"))
     return list(dict.fromkeys([site / "index.html", *chosen, shown, site / "source/index.html"]))
