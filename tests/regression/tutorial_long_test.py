@@ -3,7 +3,6 @@ as it is committed, and takes over its .prefix, so that tools/setup finds its wo
 
 import shutil
 import sys
-from pathlib import Path
 
 from program import ROOT, fresh
 from tutorial_pages import Reader, follow
@@ -19,7 +18,6 @@ def main():
         sys.exit(SKIPPED)
     folder = fresh("whole").absolute()
     folder.mkdir()
-    (folder / "voussoir").mkdir()
     reader = Reader(folder, whole=True)
     reader.environment |= {
         "GIT_CONFIG_COUNT": "1",
@@ -27,11 +25,8 @@ def main():
         "GIT_CONFIG_VALUE_0": ADDRESS,
         "VOUSSOIR_NO_PACKAGES": "1",
     }
-    (folder / "voussoir").rmdir()
     for page in PAGES:
         follow(ROOT / f"docs/tutorial/{page}.md", reader)
-        if not (Path(reader.folder) / ".prefix").exists():
-            (Path(reader.folder) / ".prefix").symlink_to((ROOT / ".prefix").resolve())
 
 
 if __name__ == "__main__":

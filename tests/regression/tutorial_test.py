@@ -2,7 +2,6 @@
 marks (README.md, "The tutorial"). tutorial_long_test.py runs the pages as they are written."""
 
 import time
-from pathlib import Path
 
 from program import PROGRAM, ROOT, fresh
 from tutorial_pages import Reader, follow
