@@ -15,6 +15,7 @@ from program import ROOT, check
 
 FENCE = re.compile(r"^```(\w*)\s*$")
 MARK = re.compile(r"<!-- test: (\w+)\s*(.*?)\s*-->\s*\Z", re.DOTALL)
+MARKS = {"", "checkout", "long", "instead", "add", "status", "file", "output"}
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
@@ -56,6 +57,7 @@ def blocks_of(page):
         mark = MARK.search("\n".join(before))
         text = "\n".join(lines[k + 1 : end]) + "\n"
         found.append(Block(fence[1], text, f"{page.name}:{k + 1}", *(mark.groups() if mark else ("", ""))))
+        check(found[-1].mark in MARKS, f"{found[-1].place}: a mark that no test knows: {found[-1].mark}")
         before, k = [], end + 1
     return found
 
