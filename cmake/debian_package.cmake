@@ -26,7 +26,6 @@ foreach(pair "voussoir;program" "voussoir-dev;development")
   list(POP_FRONT pair package)
   set(papers "${CMAKE_INSTALL_DATAROOTDIR}/doc/${package}")
   install(FILES "${changelog}.gz" cmake/debian/copyright DESTINATION "${papers}" COMPONENT ${pair})
-  install(FILES cmake/debian/overrides/${package} DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/lintian/overrides" COMPONENT ${pair})
 endforeach()
 
 set(CPACK_GENERATOR DEB)
@@ -50,17 +49,17 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/cmake/debi
     "${PROJECT_SOURCE_DIR}/cmake/debian/prerm")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "ground movement around tunnels, computed from grains
- Voussoir computes how the ground moves when a shallow tunnel is driven through
- coarse-grained soil. A finite-element mesh describes the ground, and at each of
- its Gauss points a packing of grains (discrete element method) answers in place
- of a constitutive law.")
+Voussoir computes how the ground moves when a shallow tunnel is driven
+through coarse-grained soil. A finite-element mesh describes the ground,
+and at each of its Gauss points a packing of grains (discrete element
+method) answers in place of a constitutive law.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME voussoir-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev, libfmt-dev, libhdf5-dev, g++")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake, voussoir")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "packings of grains as a material for other programs
- A static library with its headers and CMake package. A foreign finite-element
- program sends displacement gradients to packings of grains (discrete element
- method) and gets stresses and tangents from them.")
+A static library with its headers and CMake package. A foreign
+finite-element program sends displacement gradients to packings of grains
+(discrete element method) and gets stresses and tangents from them.")
 include(CPack)

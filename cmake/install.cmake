@@ -4,8 +4,9 @@ include(GNUInstallDirs)
 set(voussoir_share "${CMAKE_INSTALL_DATADIR}/voussoir")
 
 install(TARGETS voussoir RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
-if(NOT CMAKE_BUILD_WITH_INSTALL_RPATH)
+if(NOT CMAKE_BUILD_WITH_INSTALL_RPATH AND NOT VOUSSOIR_DEBIAN)
   # A shared library that the system does not find by itself, such as a user's own Kokkos, is found after installation, too.
+  # All libraries of a Debian package are the system's.
   set_target_properties(voussoir PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 endif()
 

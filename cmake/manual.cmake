@@ -1,4 +1,5 @@
-# The manual page is made from the program's own help, so that it cannot differ from it. Without help2man there is none.
+# The manual pages of the program are made from its own help, so that they cannot differ from it. Without help2man there are
+# none. The pages of the figures' commands only lead to their help, which needs the modules of Python.
 find_program(HELP2MAN help2man)
 if(HELP2MAN AND NOT CMAKE_CROSSCOMPILING)
   set(pages "")
@@ -21,7 +22,13 @@ if(HELP2MAN AND NOT CMAKE_CROSSCOMPILING)
     list(APPEND pages "${page}")
   endforeach()
   file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/man")
-  add_custom_target(manual ALL DEPENDS ${pages})
+  set(made_pages ${pages})
+  foreach(command voussoir-figures voussoir-report)
+    string(TOUPPER ${command} upper)
+    configure_file(cmake/voussoir_command.1.in "${PROJECT_BINARY_DIR}/man/${command}.1" @ONLY)
+    list(APPEND pages "${PROJECT_BINARY_DIR}/man/${command}.1")
+  endforeach()
+  add_custom_target(manual ALL DEPENDS ${made_pages})
   set(suffix "")
   if(VOUSSOIR_DEBIAN)  # whose manual pages are compressed
     find_program(GZIP gzip REQUIRED)

@@ -1,6 +1,7 @@
 """Reads a Dockerfile and prints its steps for a shell, one step a line and its parts apart by tabs:
 
-    stage NAME IMAGE | copy FROM TO | copy_from STAGE FROM TO | workdir FOLDER | user NAME | run COMMAND | entrypoint COMMAND
+    stage NAME IMAGE | copy FROM TO | copy_from STAGE FROM TO | workdir FOLDER | user NAME | run COMMAND
+    entrypoint COMMAND
 
 An instruction or an option that is not known ends the program, so that no step is left out unnoticed.
 """
