@@ -70,11 +70,11 @@ cmake -S /packages/consumer -B /tmp/consumer && cmake --build /tmp/consumer
 /tmp/consumer/consumer /packages/consumer/grains.toml /tmp/consumer_packings
 report "a program was built against voussoir-dev and passed its checks"
 
-apt-get -q -y purge voussoir voussoir-dev
+apt-get -q -y purge voussoir voussoir-dev cmake make
 apt-get -q -y autoremove --purge
 [[ -z "$(dpkg-query -W -f '${Package}\n' 'voussoir*' 2>/dev/null)" ]] || fail "dpkg still knows the packages"
 files >/tmp/files_after
 left=$(comm -13 /tmp/files_before /tmp/files_after)
 [[ -z "$(grep -i voussoir <<<"$left")" ]] || fail "the packages left files: $(grep -i voussoir <<<"$left")"
-report "removed: no file of voussoir is left; packages that came with it left $(grep -c . <<<"$left") files"
+report "removed: no file of voussoir is left; packages that came with it left $(grep -c . <<<"$left") files and folders"
 grep . <<<"$left" || true
