@@ -153,6 +153,7 @@ function(voussoir_add_wide_set set)
     COMMAND_EXPAND_LISTS VERBATIM COMMENT "Joining the lanes for ${set}")
   target_sources(voussoir_kernels PRIVATE "${object}")
   set_source_files_properties("${object}" PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  set_property(GLOBAL APPEND PROPERTY voussoir_joined_lanes "${object}")  # for a library that is made of these objects, too
   string(TOUPPER ${set} upper)
   target_compile_definitions(voussoir_kernels PRIVATE VOUSSOIR_HAS_${upper})
 endfunction()

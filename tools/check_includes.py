@@ -39,7 +39,7 @@ ROOMS = {
         ("case",),
         ("packing",),
         ("material",),
-        ("ranks",),
+        ("ranks", "library"),
         ("record",),
         ("stages", "element_tests"),
         ("estimate", "ensemble"),

@@ -20,7 +20,10 @@ try:
     from voussoir_plots.source import open_source
     from voussoir_plots.style import set_note, use_style
 except ModuleNotFoundError as missing:
-    print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
+    print(
+        f"Python has no module {missing.name}; in a checkout .prefix/venv/bin/python has it, after tools/setup",
+        file=sys.stderr,
+    )
     sys.exit(2)
 
 
@@ -47,7 +50,7 @@ def output_folder(arguments, parser):
 
 
 def options():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description="Draws the figures of a run, of packings, an ensemble or a sweep.")
     parser.add_argument(
         "results",
         type=Path,

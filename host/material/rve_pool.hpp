@@ -24,6 +24,9 @@ struct PoolOptions {
   int local_rank = 0;  ///< number of this process among those of its machine, which share its devices in turn
 };
 
+/// The options of a pool with whose tangents Newton iterates. They may be off by 1 %, as their error is estimated.
+[[nodiscard]] PoolOptions options_for_newton(const EngineCase& engine, TangentChoice tangent, double tangent_strain);
+
 class RvePool final : public fem::MaterialBatch, public SnapshotSource {
  public:
   /// One RVE at each point, with the state of the packing that the mix names for it.

@@ -54,7 +54,7 @@ std::optional<PackedRve> find(const SoilCase& soil, const PackingCase& recipe, s
 }
 
 PackingLock lock_of(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed, const PackingNote& note) {
-  return {io::packing_path(recipe.folder, io::fingerprint_of(recipe_text(soil, recipe, seed))), seed, note};
+  return {stored_path(soil, recipe, seed), seed, note};
 }
 
 /// True for a packing that cannot be one of grains. An older version may have stored such packings.
@@ -172,6 +172,10 @@ std::vector<PackedRve> packings_of_files(const SoilCase& soil, const PackingCase
 }
 
 }  // namespace
+
+std::filesystem::path stored_path(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed) {
+  return io::packing_path(recipe.folder, io::fingerprint_of(recipe_text(soil, recipe, seed)));
+}
 
 std::vector<std::int64_t> seeds_of(const PackingCase& recipe) {
   std::vector<std::int64_t> seeds = recipe.seeds;

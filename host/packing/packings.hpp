@@ -1,6 +1,7 @@
 #pragma once
 /// The packings of a case. They are made once and kept in the recipe's folder; the one with the least bias is chosen.
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ enum class Bias { measured, left };
 [[nodiscard]] std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& recipe,
                                                      std::span<const std::int64_t> seeds, const PackingNote& note = {},
                                                      Bias bias = Bias::measured);
+
+/// The file in the recipe's folder that holds the packing of a seed, or will hold it.
+[[nodiscard]] std::filesystem::path stored_path(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed);
 
 /// The seeds that a recipe names: `seeds`, or `candidates` seeds from `seed` on.
 [[nodiscard]] std::vector<std::int64_t> seeds_of(const PackingCase& recipe);

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "fem/linear_elastic.hpp"
-#include "host/case/engine.hpp"
 #include "host/case/result_fields.hpp"
 #include "host/material/mirrored_batch.hpp"
 #include "host/material/rve_pool.hpp"
@@ -12,21 +11,13 @@
 namespace voussoir::host {
 namespace {
 
-/// Tolerance of the static tangents with which Newton iterates: they are off by 1 % at most, as their error is
-/// estimated. A smaller tolerance does not save evaluations (docs/explanation/tangents.md).
-constexpr double newton_tangent_tolerance = 0.1;
-
 /// A pool with the chosen packings at the points.
 std::unique_ptr<fem::MaterialBatch> make_rve_pool(const MaterialCase& material, std::size_t n_points,
                                                   const PackingNote& note) {
   PackingMix mix = choose_packings(material.soil, material.packing, n_points, note);
-  PoolOptions options{.engine = material.engine,
-                      .tangent = tangent_kind(material.tangent),
-                      .tangent_strain = material.tangent_strain,
-                      .microstructure = material.microstructure,
-                      .local_rank = local_rank()};
-  // With a tolerance of a tenth, a loading tangent would hardly differ from the elastic tangent that it starts from.
-  if (options.tangent != kernels::TangentKind::loading) options.tangent_tolerance = newton_tangent_tolerance;
+  PoolOptions options = options_for_newton(material.engine, material.tangent, material.tangent_strain);
+  options.microstructure = material.microstructure;
+  options.local_rank = local_rank();
   if (rank_count() > 1) return make_rank_pool(std::move(mix), options, note);
   auto pool = std::make_unique<RvePool>(mix, options);
   if (note && !pool->device_sentence().empty()) note(pool->device_sentence());

@@ -7,7 +7,6 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.typing import ColorType
 
 from .element_tests import Series, Test, labels
 from .result import Missing
@@ -76,7 +75,7 @@ def draw_mean(
     tests: Sequence[Test],
     name: str,
     factor: float,
-    colour: ColorType,
+    colour: str,
     label: str,
     lines: bool = True,
 ) -> None:

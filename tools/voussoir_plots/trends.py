@@ -37,7 +37,7 @@ def fault(statement: str, error: Exception) -> Trend:
     return Trend(statement, "fault of the tool", f"{type(error).__name__}: {' '.join(str(error).split())}")
 
 
-def verdict(holds: bool | np.bool) -> str:
+def verdict(holds: bool | np.bool_) -> str:
     return SEEN if holds else NOT_SEEN
 
 
@@ -45,7 +45,7 @@ def not_reached(statement: str, wanted: float, last: float) -> Trend:
     return Trend(statement, NOT_REACHED, f"needs V_l = {percent(wanted)}, the run ends at {percent(last)}")
 
 
-def at_the_end(statement: str, holds: bool | np.bool, text: str, loss: np.ndarray) -> Trend:
+def at_the_end(statement: str, holds: bool | np.bool_, text: str, loss: np.ndarray) -> Trend:
     """A trend that a longer run may still break. If it holds in a run that ends before 20 %, nothing is known."""
     if holds and loss[-1] < 0.199:
         return Trend(statement, NOT_REACHED, f"the run ends at {percent(loss[-1])}; so far {text}")

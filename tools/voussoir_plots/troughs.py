@@ -62,7 +62,9 @@ class Trough:
         self.x, self.settlement = line.x, line.settlement(increment)
         self.fit = trough_fit.fit(self.x, self.settlement)
         self.depth = ratio * result.cover
-        self.area_ratio = 2 * np.trapezoid(self.settlement, self.x) / (self.loss * np.pi * diameter**2 / 4)
+        # NumPy's own function has another name in Debian 12's version.
+        area = np.sum(np.diff(self.x) * (self.settlement[1:] + self.settlement[:-1]) / 2)
+        self.area_ratio = 2 * area / (self.loss * np.pi * diameter**2 / 4)
         self.width = self.fit.inflection / (axis_depth - self.depth)  # K [-]
 
     def row(self) -> tuple[float, ...]:

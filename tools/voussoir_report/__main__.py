@@ -19,12 +19,18 @@ try:
     from voussoir_report import ensemble_page, run_page, sweep_page
     from voussoir_report.parts import Builder
 except ModuleNotFoundError as missing:
-    print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
+    print(
+        f"Python has no module {missing.name}; in a checkout .prefix/venv/bin/python has it, after tools/setup",
+        file=sys.stderr,
+    )
     sys.exit(2)
 
 
 def options() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="tools/report", description=(__doc__ or "").splitlines()[0])
+    # Where the page is installed, a command with a name of its own calls this module.
+    called = Path(sys.argv[0]).name
+    prog = "tools/report" if called == "__main__.py" else called
+    parser = argparse.ArgumentParser(prog=prog, description="Makes one HTML page of a run, an ensemble or a sweep.")
     parser.add_argument("result", type=Path, metavar="DIR", help="folder of a run, an ensemble, a sweep or packings")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="default: report.html in the folder")
     parser.add_argument(

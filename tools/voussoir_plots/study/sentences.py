@@ -25,7 +25,7 @@ from .settlements import SUBSURFACE, largest, normalised_trough, widths
 HIGH_STRESS, LOW_STRESS = 200e3, 20e3  # of K0 [Pa]
 
 
-Claim = tuple[bool | np.bool | None, str]  # whether our results show it (None: the members do not decide), and what
+Claim = tuple[bool | np.bool_ | None, str]  # whether our results show it (None: the members do not decide), and what
 
 
 def says(ours: str, *claims: Claim) -> str:
