@@ -1,6 +1,7 @@
 #pragma once
-/// How the program ends: one table of outcomes and exit codes, which docs/reference/exit_status.md and `voussoir --help` repeat, and the
-/// one function that makes a code of an outcome. host/program/failure.hpp makes an outcome of an exception.
+/// How the program ends: one table of outcomes and exit codes, which docs/reference/exit_status.md and `voussoir
+/// --help` repeat, and the one function that makes a code of an outcome. host/program/failure.hpp makes an outcome of
+/// an exception.
 
 #include <array>
 #include <stdexcept>
