@@ -46,9 +46,9 @@ void add_limits(Json& schema, const KeyInfo& info) {
 }
 
 Json text_schema(const std::string& pattern) {
-  return {{"type", "string"},
-          {"pattern", pattern.empty() ? any_text : fmt::format("^({})$", pattern)},
-          {"maxLength", most_letters}};
+  Json schema{{"type", "string"}, {"pattern", any_text}, {"maxLength", most_letters}};
+  if (!pattern.empty()) schema["allOf"] = Json::array({Json{{"pattern", fmt::format("^({})$", pattern)}}});
+  return schema;
 }
 
 /// The schema of one value.
@@ -82,7 +82,7 @@ Json value_schema(const KeyInfo& info) {
       schema = text_schema(info.pattern);
       break;
     case KeyType::value:
-      schema["type"] = {"number", "string", "boolean", "array"};
+      schema["type"] = {"number", "string", "boolean"};
       break;
     case KeyType::list_of_text:
       schema = {{"type", "array"}, {"minItems", 1}, {"items", {{"type", "string"}}}};
@@ -104,7 +104,9 @@ Json list_of(const Json& items, const KeyInfo& info) {
 /// One value, a list of them, or either.
 Json one_or_list(const Json& one, const KeyInfo& info) {
   if (!info.list) return one;
-  Json list = list_of(one, info);
+  Json entry = one;
+  if (info.type == KeyType::value) entry["type"].push_back("array");  // alone, an array is the list of the values
+  Json list = list_of(entry, info);
   return info.or_one ? Json{{"anyOf", {one, list}}} : list;
 }
 

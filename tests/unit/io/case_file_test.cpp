@@ -293,5 +293,53 @@ TEST(CaseFile, ChecksOfTheHostCarryThePlace) {
   EXPECT_TRUE(line.ends_with("case.toml:5: soil.weight: does not fit the radius")) << line;
 }
 
+TEST(CaseFile, ListsHaveLimitsOfTheirLength) {
+  const auto said = [](const std::string& text, const ListRule& rule) {
+    const CaseFile file = CaseFile::of_text(text, "case.toml");
+    try {
+      static_cast<void>(file.root().integers({"list", "A key."}, {}, {}, rule));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(said("list = [1, 2]", {.least = 2, .most = 2, .different = true}), "");
+  EXPECT_EQ(said("list = [1]", {.least = 2}), "case.toml:1: list: must have at least 2 entries, has 1");
+  EXPECT_EQ(said("list = []", {.least = 1}), "case.toml:1: list: must have at least 1 entry, has 0");
+  EXPECT_EQ(said("list = [1, 2]", {.most = 1}), "case.toml:1: list: must have at most 1 entry, has 2");
+  EXPECT_EQ(said("list = [1]", {.least = 4, .most = 4}), "case.toml:1: list: must have 4 entries, has 1");
+  EXPECT_EQ(said("list = [3, 3]", {.different = true}), "case.toml:1: list: names 3 twice");
+}
+
+TEST(CaseFile, TextsMatchTheirPattern) {
+  const TextRule rule{.pattern = "[a-z]+", .fault = "must be small letters"};
+  const CaseFile file = CaseFile::of_text("good = \"abc\"\nbad = \"abC\"", "case.toml");
+  EXPECT_EQ(file.root().text({"good", "A key."}, {}, rule), "abc");
+  EXPECT_EQ(file.root().optional_text({"none", "A key."}, rule), std::nullopt);
+  expect_throws<InputError>([&] { static_cast<void>(file.root().optional_text({"bad", "A key."}, rule)); },
+                            "case.toml:2: bad: must be small letters");
+}
+
+TEST(CaseFile, KeysAndTablesKeepTheirSentences) {
+  const CaseFile file = CaseFile::of_text("[[grid]]\n\"a.b\" = [1]\n[grid.soft]\nx = \"y=1\"", "case.toml");
+  for (const Table& grid : file.root().table_or_tables({"grid", "A grid."})) {
+    static_cast<void>(grid.values_as_toml({"\"TABLE.KEY\"", "An axis."}, "a.b"));
+    static_cast<void>(grid.named_table({"NAME", "A named axis."}, "soft").text_or_texts({"POINT", "A point."}, "x"));
+    EXPECT_EQ(grid.optional_integer({"members", "Runs."}), std::nullopt);
+  }
+  const std::vector<KeyInfo> keys = file.keys(), tables = file.tables();
+  ASSERT_EQ(keys.size(), 4U);
+  EXPECT_EQ(keys[0].key, "extends");
+  EXPECT_EQ(keys[1].key, "grid[].\"TABLE.KEY\"");
+  EXPECT_EQ(keys[2].key, "grid[].NAME.POINT");
+  EXPECT_EQ(keys[2].help, "A point.");
+  EXPECT_EQ(keys[3].key, "grid[].members");
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(tables[0].help, "A grid.");
+  EXPECT_EQ(tables[1].key, "grid[].NAME");
+  EXPECT_EQ(file.root().known_tables("grid").size(), 1U);
+  EXPECT_THROW(static_cast<void>(file.root().known_table("never_read")), std::logic_error);
+}
+
 }  // namespace
 }  // namespace voussoir::io
