@@ -17,7 +17,7 @@ constexpr const char* introduction =
 
 This page lists every key that the program reads, with its default, the values that it takes, and what it does to the
 result. It is made by `voussoir keys --markdown` from the program itself. `voussoir check CASE.toml` prints every key
-of one case with the value that it has there.
+of one case with the value that it has there. The [glossary](glossary.md) explains the words of the method.
 
 A case is a text file in the format [TOML](https://toml.io). Its key `kind` says what is computed; every other key has
 a default or may be left out, unless its default here is "must be given".
@@ -99,10 +99,8 @@ std::string wrapped(const std::string& text) {
 
 /// Names of pages become links, which work from docs/reference.
 std::string with_links(const std::string& text) {
-  static const std::regex here(R"(docs/reference/([a-z_]+)\.md)"), elsewhere(R"(docs/([a-z-]+)/([a-z_]+)\.md)"),
-      cases(R"(cases/([a-z_0-9]+)\b)");
-  const std::string linked = std::regex_replace(text, here, "[$&]($1.md)");
-  return std::regex_replace(std::regex_replace(linked, cases, "[$&](../../cases/$1/README.md)"), elsewhere,
+  static const std::regex pages(R"(docs/([a-z-]+)/([a-z_]+)\.md)"), cases(R"(cases/([a-z_0-9]+)\b)");
+  return std::regex_replace(std::regex_replace(text, cases, "[$&](../../cases/$1/README.md)"), pages,
                             "[$&](../$1/$2.md)");
 }
 
@@ -138,7 +136,7 @@ std::string type_of(const KeyInfo& info) {
     case KeyType::boolean:
       return "`true` or `false`";
     case KeyType::choice:
-      return (info.list ? "of " : "") + fmt::format("{}", fmt::join(as_codes(info.choices), ", "));
+      return fmt::format("{}", fmt::join(as_codes(info.choices), ", "));
     case KeyType::path:
       return "file";
     case KeyType::value:
@@ -178,9 +176,14 @@ std::string default_of(const ListedKey& listed) {
   return text;
 }
 
+/// "kind `a`", "kinds `a`, `b`".
+std::string kinds_in(const std::vector<std::string>& kinds) {
+  return fmt::format("kind{} {}", kinds.size() > 1 ? "s" : "", fmt::join(as_codes(kinds), ", "));
+}
+
 std::string kinds_note(const ListedKey& listed, const std::vector<std::string>& others) {
   if (listed.kinds == others) return "";
-  return fmt::format("Kind {} only. ", fmt::join(as_codes(listed.kinds), ", "));
+  return fmt::format("Only {}. ", kinds_in(listed.kinds));
 }
 
 /// The table of the keys in one table of the file; empty where it has none.
@@ -207,7 +210,7 @@ std::string section_of(const ListedKey& table, const KeyReference& reference) {
   std::string text = with_links(table.info.help);
   if (reference.kinds.size() > 1) {
     const bool all = table.kinds == reference.kinds;
-    text += all ? " All kinds use it." : fmt::format(" Used by kind {}.", fmt::join(as_codes(table.kinds), ", "));
+    text += all ? " All kinds use it." : fmt::format(" Used by {}.", kinds_in(table.kinds));
   }
   return fmt::format("### `{}`\n\n{}\n{}", heading_of(table.info), wrapped(text),
                      rows_of(as_parent(table.info), table.kinds, reference));

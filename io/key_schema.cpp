@@ -116,7 +116,7 @@ std::string description_of(const ListedKey& listed, const KeyReference& referenc
   for (const auto& [preset, value] : listed.other_defaults)
     text += fmt::format(" Default of the preset {}: {}.", preset, without_quotes(value));
   if (listed.kinds.size() < reference.kinds.size())
-    text += fmt::format(" Used by kind {}.", fmt::join(listed.kinds, ", "));
+    text += fmt::format(" Only kind {}.", fmt::join(listed.kinds, ", "));
   return text;
 }
 

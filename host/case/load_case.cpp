@@ -15,14 +15,13 @@
 #include "host/case/idle_keys.hpp"
 #include "host/case/mesh.hpp"
 #include "host/case/packing_origin.hpp"
+#include "host/case/tables.hpp"
 #include "io/case_file.hpp"
 #include "io/hash.hpp"
 #include "io/text_file.hpp"
 
 namespace voussoir::host {
 namespace {
-
-constexpr io::Key output_key{"output", "What is written, and how often."};
 
 CaseKind read_kind(const io::Table& root) {
   std::vector<std::string> names;
@@ -41,23 +40,14 @@ CaseKind read_kind(const io::Table& root) {
 
 /// Reads the tables of the grains. They are allowed with any material, so that one `--set` can change the material.
 void read_grain_tables(const io::Table& root, Case& input) {
-  input.soil = read_soil(
-      root.table({"soil", "Grains and their contacts. The defaults are the coarse sand of the paper's Table 1."}));
-  input.packing = read_packing(
-      root.table(
-          {"packing", "How the packings of the representative volume elements are made, or where they come from."}),
-      runs_on_a_mesh(input.kind));
-  input.engine = read_engine(root.table({"engine",
-                                         "Speed and accuracy with which the grains are moved. docs/validation/trade.md "
-                                         "measures what each key costs and buys."}),
-                             runs_on_a_mesh(input.kind));
+  input.soil = read_soil(root.table(tables::soil));
+  input.packing = read_packing(root.table(tables::packing), runs_on_a_mesh(input.kind));
+  input.engine = read_engine(root.table(tables::engine), runs_on_a_mesh(input.kind));
   if (input.engine.accuracy > 0 && (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate)) {
     throw root.known_table("engine").error(
         "accuracy", "is for RVEs that are strained in increments; tests have the rate of biaxial.inertial_number");
   }
-  if (input.kind == CaseKind::probe)
-    input.probe = read_probe(root.table(
-        {"probe", "Small strains that are put on one packing, each from the same state at the end of a strain path."}));
+  if (input.kind == CaseKind::probe) input.probe = read_probe(root.table(tables::probe));
   if (input.kind != CaseKind::probe && input.packing.has_state()) {
     throw root.known_table("packing").error(
         "file", "is a stored state: only kind = \"probe\" can start from it, all other kinds need isotropic pressure");
@@ -67,17 +57,10 @@ void read_grain_tables(const io::Table& root, Case& input) {
     throw root.known_table("packing").error("file", "names several files, but only kinds with a mesh mix packings");
   }
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) {
-    input.biaxial = read_biaxial(root.table({"biaxial",
-                                             "Drained biaxial tests on single packings: the vertical axis is "
-                                             "compressed, and the horizontal stress is held."}));
+    input.biaxial = read_biaxial(root.table(tables::biaxial));
   }
-  if (input.kind == CaseKind::biaxial) input.output.microstructure = read_microstructure(root.table(output_key));
-  if (input.kind == CaseKind::calibrate)
-    input.calibrate = read_calibrate(
-        root.table({"calibrate",
-                    "Search of the rolling resistance and the thickness with which the tests of `[biaxial]` show a "
-                    "wanted strength. Classes of grains keep their ratios to `[soil]`."}),
-        input.soil);
+  if (input.kind == CaseKind::biaxial) input.output.microstructure = read_microstructure(root.table(tables::output));
+  if (input.kind == CaseKind::calibrate) input.calibrate = read_calibrate(root.table(tables::calibrate), input.soil);
 }
 
 /// Reads the tables that every kind with a mesh has.
@@ -87,33 +70,18 @@ void read_mesh_tables(const io::Table& root, Case& input) {
                                             "of grains, or the linear elastic material of `[elastic]`."},
                                            {"grains", "linear_elastic"}, "grains");
   input.material = material == "grains" ? MaterialKind::grains : MaterialKind::linear_elastic;
-  input.elastic = read_elastic(root.table({"elastic",
-                                           "The linear elastic material that `material = \"linear_elastic\"` puts in "
-                                           "place of grains, to verify the finite elements without them."}));
-  input.newton = read_newton(
-      root.table({"newton", "How equilibrium of the mesh is found, and when it counts as found."}));
-  input.output = read_output(root.table(output_key));
-  if (input.kind == CaseKind::biaxial_bvp)
-    input.biaxial_bvp = read_biaxial_bvp(root.table(
-        {"biaxial_bvp",
-         "A drained biaxial test on a rectangle of elements: the top is moved down, and the sides bear a pressure."}));
+  input.elastic = read_elastic(root.table(tables::elastic));
+  input.newton = read_newton(root.table(tables::newton));
+  input.output = read_output(root.table(tables::output));
+  if (input.kind == CaseKind::biaxial_bvp) input.biaxial_bvp = read_biaxial_bvp(root.table(tables::biaxial_bvp));
 }
 
 void read_ground_tables(const io::Table& root, Case& input) {
   const bool with_tunnel = input.kind == CaseKind::tunnel;
-  input.ground = read_ground(
-      root.table({"ground", "The ground: half of it, since the vertical axis through the tunnel is one of symmetry."}),
-      with_tunnel);
-  input.column = read_column(
-      root.table({"column",
-                  "The oedometric column that measures the coefficient of earth pressure at rest K0 against the "
-                  "vertical stress. A tunnel takes its horizontal stress from it."}));
-  input.gravity = read_gravity(root.table(
-      {"gravity", "Increments of load in which the weight of the ground is put on the column and on the ground."}));
-  if (with_tunnel)
-    input.volume_loss = read_volume_loss(root.table(
-        {"volume_loss",
-         "The shrinking of the opening, which stands for the ground that is lost while a tunnel is driven."}));
+  input.ground = read_ground(root.table(tables::ground), with_tunnel);
+  input.column = read_column(root.table(tables::column));
+  input.gravity = read_gravity(root.table(tables::gravity));
+  if (with_tunnel) input.volume_loss = read_volume_loss(root.table(tables::volume_loss));
   if (std::abs(input.ground.surcharge - input.packing.pressure) > 1e-9 * input.packing.pressure) {
     throw root.known_table("ground").error("surcharge",
                                            "must equal packing.pressure: the ground starts at rest under it");

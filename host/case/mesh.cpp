@@ -110,10 +110,11 @@ VolumeLossCase read_volume_loss(const io::Table& table) {
       Dimension::none, loss.total, {.at_least = "1e-6", .at_most = "0.9"});
   read_integer(table, {"increments", "Number of equal increments in which the volume loss is reached."},
                loss.increments, {.at_least = 1, .at_most = 100000});
-  loss.geometry = table.choice({"geometry",
-                                "Whether the mesh moves with the ground while the volume is lost "
-                                "(`updated_lagrangian`), or strains and equilibrium stay those of the first mesh."},
-                               {"updated_lagrangian", "fixed_mesh"}, "updated_lagrangian") == "fixed_mesh"
+  loss.geometry = table.choice(
+                      {"geometry",
+                       "Whether the mesh moves with the ground while the volume is lost (`updated_lagrangian`), or "
+                       "strains and equilibrium are those of the undeformed mesh (`fixed_mesh`)."},
+                      {"updated_lagrangian", "fixed_mesh"}, "updated_lagrangian") == "fixed_mesh"
                       ? LossGeometry::fixed_mesh
                       : LossGeometry::updated_lagrangian;
   return loss;
@@ -129,7 +130,8 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
                 {.at_least = "0.01 mm", .at_most = "1 km"});
   read_integer(table, {"columns", "Number of elements across the specimen."}, test.columns,
                {.at_least = 1, .at_most = 1000});
-  read_integer(table, {"rows", "Number of elements along its height."}, test.rows, {.at_least = 1, .at_most = 1000});
+  read_integer(table, {"rows", "Number of elements along the height of the specimen."}, test.rows,
+               {.at_least = 1, .at_most = 1000});
   read_quantity(table, {"strain", "Displacement of the top at the end of the test, over the height."}, Dimension::none,
                 test.strain, {.at_least = "1e-6", .at_most = "0.5"});
   read_quantity(table,

@@ -67,7 +67,7 @@ TEST(KeyReference, ThePageHasASectionForEachTableAndLinks) {
             "| `depth` | `5 m` | length, 1 m to 9 m | Depth, \"D\"; "
             "[docs/validation/trade.md](../validation/trade.md) tells its price. |");
   expect_in(page, "| `kind` | must be given | `a`, `b` | What. |");
-  expect_in(page, "| `share` | empty list | list: number, 0 to 1; at most 3 entries | Kind `a` only. A share. |");
+  expect_in(page, "| `share` | empty list | list: number, 0 to 1; at most 3 entries | Only kind `a`. A share. |");
 }
 
 TEST(KeyReference, TheSchemaHasTypesLimitsAndWhatAKindRefuses) {
