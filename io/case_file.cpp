@@ -4,10 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
+#include <regex>
+#include <set>
 
 #include "io/case_node.hpp"
-#include "io/text_file.hpp"
+#include "io/case_value.hpp"
 
 namespace voussoir::io {
 
@@ -15,70 +16,15 @@ namespace {
 
 using Kind = CaseNode::Kind;
 
-constexpr std::size_t most_text_bytes = 1000;  ///< of a text, which is a name or a path
-constexpr std::size_t most_entries = 100'000;  ///< of an array; such a list of points or seeds is still read in a
-                                               ///< second
-
-[[noreturn]] void fail(const CaseNode& node, const std::string& sentence) {
-  throw InputError(node.place, node.key, sentence);
-}
-
-void expect(const CaseNode& node, Kind kind) {
-  if (node.kind != kind) {
-    fail(node, fmt::format("must be {}, is {}", kind_name(kind), kind_name(node.kind)));
-  }
-}
-
-/// The quantity as the user wrote it, to be parsed like a quantity in quotes.
-std::string written_quantity(const CaseNode& node, Dimension dimension) {
-  switch (node.kind) {
-    case Kind::text:
-      return std::get<std::string>(node.value);
-    case Kind::integer:
-      return fmt::format("{}", std::get<std::int64_t>(node.value));
-    case Kind::number:
-      return fmt::format("{}", std::get<double>(node.value));
-    default:
-      break;
-  }
-  const bool plain = dimension == Dimension::none;
-  fail(node,
-       fmt::format("must be {}, is {}",
-                   plain ? "a number" : "a quantity in quotes, such as \"1 " + std::string(si_unit(dimension)) + "\"",
-                   kind_name(node.kind)));
-}
-
-/// Reads one quantity in SI and compares it with its limits. A written -0 becomes 0.
-double checked_quantity(const CaseNode& node, const std::string& written, Dimension dimension,
-                        const QuantityRule& rule) {
-  double value = 0;
-  try {
-    value = parse_quantity(written, dimension);
-  } catch (const UnitError& error) {
-    fail(node, error.what());
-  }
-  if (rule.positive && !(value > 0)) {
-    fail(node, fmt::format("must be positive, is {}", in_one_line(written)));
-  }
-  if (rule.at_least && !(value >= parse_quantity(*rule.at_least, dimension))) {
-    fail(node, fmt::format("must be at least {}, is {}", *rule.at_least, in_one_line(written)));
-  }
-  if (rule.at_most && !(value <= parse_quantity(*rule.at_most, dimension))) {
-    fail(node, fmt::format("must be at most {}, is {}", *rule.at_most, in_one_line(written)));
-  }
-  return value + 0.0;
-}
-
-/// Twelve digits, because equal quantities in two units may differ in the last bit of a double, and no input is known
-/// more exactly.
-std::string significant(double in_si) {
-  return fmt::format("{:.12g}", in_si == 0 ? 0.0 : in_si);  // so that -0 is written as "0"
-}
-
 /// Notes what kind of value a key has. `as_toml` is its default; `required` says that it has none and must be given.
-KeyInfo& note(CaseNode& node, KeyType type, std::string as_toml, bool required, bool list = false) {
-  return node.info.emplace(
-      KeyInfo{.key = node.key, .type = type, .list = list, .fallback = std::move(as_toml), .required = required});
+KeyInfo& note(CaseNode& node, const Key& key, KeyType type, std::string as_toml = "", bool required = false,
+              bool list = false) {
+  return node.info.emplace(KeyInfo{.key = node.key,
+                                   .type = type,
+                                   .list = list,
+                                   .fallback = std::move(as_toml),
+                                   .required = required,
+                                   .help = std::string(key.help)});
 }
 
 KeyInfo& with_limits(KeyInfo& info, Dimension dimension, const QuantityRule& rule) {
@@ -86,6 +32,7 @@ KeyInfo& with_limits(KeyInfo& info, Dimension dimension, const QuantityRule& rul
   info.at_least = rule.at_least.value_or("");
   info.at_most = rule.at_most.value_or("");
   info.above_zero = rule.positive;
+  info.default_words = rule.default_words;
   return info;
 }
 
@@ -96,74 +43,39 @@ KeyInfo& with_limits(KeyInfo& info, const IntegerRule& rule) {
   if (rule.at_most) {
     info.at_most = fmt::format("{}", *rule.at_most);
   }
+  info.default_words = rule.default_words;
   return info;
 }
 
-/// A default as TOML: without quotes where it is a plain number.
-std::string quantity_as_toml(const std::string& written) {
-  const bool is_number = written.find_first_not_of("0123456789+-.eE") == std::string::npos;
-  return is_number ? written : toml_text(written);
+KeyInfo& with_limits(KeyInfo& info, const ListRule& rule) {
+  info.least_entries = rule.least;
+  info.most_entries = rule.most;
+  info.different = rule.different;
+  return info;
 }
 
-/// The fallback of a key that the user did not write; Table::take has refused such a key where there is none.
-template <class T>
-const T& given(const std::optional<T>& fallback) {
-  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): value() itself checks, and throws.
-  return fallback.value();
+/// The default of an array as TOML, of which `as_toml` writes an entry.
+template <class T, class AsToml>
+std::string list_as_toml(const std::optional<std::vector<T>>& fallback, AsToml as_toml) {
+  if (!fallback) return "";
+  std::vector<std::string> entries;
+  for (const T& entry : *fallback) entries.push_back(as_toml(entry));
+  return fmt::format("[{}]", fmt::join(entries, ", "));
 }
 
-/// Reads one quantity and notes it as TOML; `fallback` stands in for a node that the user did not write.
-double read_quantity(CaseNode& node, Dimension dimension, const QuantityRule& rule,
-                     const std::optional<std::string>& fallback) {
-  const std::string written = node.written ? written_quantity(node, dimension) : given(fallback);
-  const double value = checked_quantity(node, written, dimension, rule);
-  node.resolved = quantity_as_toml(written);
-  node.meaning = significant(value);
-  return value;
-}
-
-std::int64_t read_integer(CaseNode& node, const IntegerRule& rule, const std::optional<std::int64_t>& fallback) {
-  if (node.written) {
-    expect(node, Kind::integer);
-  }
-  const std::int64_t value = node.written ? std::get<std::int64_t>(node.value) : given(fallback);
-  if (rule.at_least && value < *rule.at_least) {
-    fail(node, fmt::format("must be at least {}, is {}", *rule.at_least, value));
-  }
-  if (rule.at_most && value > *rule.at_most) {
-    fail(node, fmt::format("must be at most {}, is {}", *rule.at_most, value));
-  }
-  node.resolved = fmt::format("{}", value);
-  node.meaning = node.resolved;
-  return value;
-}
-
-/// Reads a text. Control characters are refused: a text becomes a name of a file, or a part of a line of the log.
-std::string read_text(CaseNode& node, const std::optional<std::string>& fallback) {
-  if (node.written) {
-    expect(node, Kind::text);
-  }
-  const std::string value = node.written ? std::get<std::string>(node.value) : given(fallback);
-  if (std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; })) {
-    fail(node, fmt::format("must not hold control characters such as line breaks, is \"{}\"", in_one_line(value)));
-  }
-  if (value.size() > most_text_bytes) {
-    fail(node, fmt::format("must have at most {} bytes, has {}", most_text_bytes, value.size()));
-  }
-  node.resolved = toml_text(value);
-  node.meaning = node.resolved;
-  return value;
+/// Refuses a number of entries that is not within these limits; `limit` is the one that it is beyond.
+void refuse_count(const CaseNode& node, const KeyInfo& info, const char* bound, std::size_t limit) {
+  fail(node, fmt::format("must have {}{} {}, has {}", info.least_entries == info.most_entries ? "" : bound, limit,
+                         limit == 1 ? "entry" : "entries", node.children.size()));
 }
 
 /// Reads an array entry by entry: read_one(entry, default of this entry) -> value. `info` is the node's own.
 template <class T, class Default, class ReadOne>
-std::vector<T> read_array(CaseNode& node, KeyInfo& info, const std::optional<std::vector<Default>>& fallback,
+std::vector<T> read_array(CaseNode& node, const KeyInfo& info, const std::optional<std::vector<Default>>& fallback,
                           ReadOne read_one) {
   if (node.written) {
     expect(node, Kind::array);
-    if (node.children.size() > most_entries) {
-      fail(node, fmt::format("must have at most {} entries, has {}", most_entries, node.children.size()));
-    }
+    if (node.children.size() > info.most_entries) refuse_count(node, info, "at most ", info.most_entries);
   } else if (node.children.empty()) {
     for (std::size_t i = 0; i < given(fallback).size(); ++i) {
       node.add(fmt::format("[{}]", i), node.place);
@@ -172,17 +84,23 @@ std::vector<T> read_array(CaseNode& node, KeyInfo& info, const std::optional<std
   std::vector<T> values;
   std::vector<std::string> texts;
   std::vector<std::string> meanings;
+  std::set<std::string> known;
   for (const auto& entry : node.children) {
     entry->read = true;
     values.push_back(read_one(*entry, node.written ? std::optional<Default>{} : given(fallback).at(values.size())));
     texts.push_back(entry->resolved);
     meanings.push_back(entry->meaning);
+    if (info.different && !known.insert(entry->meaning).second)
+      fail(node, fmt::format("names {} twice", entry->resolved));
   }
+  if (node.written && values.size() < info.least_entries) refuse_count(node, info, "at least ", info.least_entries);
   node.resolved = fmt::format("[{}]", fmt::join(texts, ", "));
-  info.fallback = node.written ? "" : node.resolved;
-  info.most_entries = most_entries;
   node.meaning = fmt::format("[{}]", fmt::join(meanings, ", "));
   return values;
+}
+
+void expect_pattern(const CaseNode& node, const std::string& value, const TextRule& rule) {
+  if (!rule.pattern.empty() && !std::regex_match(value, std::regex(rule.pattern))) fail(node, rule.fault);
 }
 
 }  // namespace
@@ -211,23 +129,30 @@ CaseNode& Table::take(std::string_view key, bool has_fallback) const {
 
 bool Table::has(std::string_view key) const { return find(key) != nullptr; }
 
-double Table::quantity(std::string_view key, Dimension dimension, const QuantityRule& rule) const {
-  CaseNode& node = take(key, rule.fallback.has_value());
-  with_limits(note(node, KeyType::quantity, rule.fallback ? quantity_as_toml(*rule.fallback) : "", !rule.fallback),
+double Table::quantity(const Key& key, Dimension dimension, const QuantityRule& rule) const {
+  CaseNode& node = take(key.name, rule.fallback.has_value());
+  with_limits(note(node, key, KeyType::quantity, rule.fallback ? quantity_as_toml(*rule.fallback) : "", !rule.fallback),
               dimension, rule);
   return read_quantity(node, dimension, rule, rule.fallback);
 }
 
-std::int64_t Table::integer(std::string_view key, const IntegerRule& rule) const {
-  CaseNode& node = take(key, rule.fallback.has_value());
-  with_limits(note(node, KeyType::integer, rule.fallback ? fmt::format("{}", *rule.fallback) : "", !rule.fallback),
+std::int64_t Table::integer(const Key& key, const IntegerRule& rule) const {
+  CaseNode& node = take(key.name, rule.fallback.has_value());
+  with_limits(note(node, key, KeyType::integer, rule.fallback ? fmt::format("{}", *rule.fallback) : "", !rule.fallback),
               rule);
   return read_integer(node, rule, rule.fallback);
 }
 
-bool Table::boolean(std::string_view key, std::optional<bool> fallback) const {
-  CaseNode& node = take(key, fallback.has_value());
-  note(node, KeyType::boolean, fallback ? (*fallback ? "true" : "false") : "", !fallback);
+std::optional<std::int64_t> Table::optional_integer(const Key& key, const IntegerRule& rule) const {
+  CaseNode& node = take(key.name, true);
+  with_limits(note(node, key, KeyType::integer), rule);
+  if (!node.written) return std::nullopt;
+  return read_integer(node, rule, {});
+}
+
+bool Table::boolean(const Key& key, std::optional<bool> fallback) const {
+  CaseNode& node = take(key.name, fallback.has_value());
+  note(node, key, KeyType::boolean, fallback ? (*fallback ? "true" : "false") : "", !fallback);
   if (node.written) {
     expect(node, Kind::boolean);
   }
@@ -237,52 +162,46 @@ bool Table::boolean(std::string_view key, std::optional<bool> fallback) const {
   return value;
 }
 
-std::string Table::text(std::string_view key, const std::optional<std::string>& fallback) const {
-  CaseNode& node = take(key, fallback.has_value());
-  note(node, KeyType::text, fallback ? toml_text(*fallback) : "", !fallback);
-  return read_text(node, fallback);
-}
-
-std::string Table::choice(std::string_view key, const std::vector<std::string>& choices,
-                          const std::optional<std::string>& fallback) const {
-  CaseNode& node = take(key, fallback.has_value());
-  note(node, KeyType::choice, fallback ? toml_text(*fallback) : "", !fallback).choices = choices;
+std::string Table::text(const Key& key, const std::optional<std::string>& fallback, const TextRule& rule) const {
+  CaseNode& node = take(key.name, fallback.has_value());
+  KeyInfo& info = note(node, key, KeyType::text, fallback ? toml_text(*fallback) : "", !fallback);
+  info.pattern = rule.pattern;
+  info.default_words = rule.default_words;
   std::string value = read_text(node, fallback);
-  if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
-    fail(node, fmt::format("must be one of {}, is {}", fmt::join(choices, ", "),
-                           value.empty() ? "empty" : in_one_line(value)));
-  }
+  expect_pattern(node, value, rule);
   return value;
 }
 
-namespace {
-
-/// The path that a node names. A path that is written with --set is relative to `folder_of_case`.
-std::filesystem::path read_path(CaseNode& node, const std::filesystem::path& folder_of_case) {
-  const std::string written = read_text(node, {});
-  if (written.empty()) {
-    fail(node, "must be the name of a file, is empty");
-  }
-  const auto path = (node.place == "--set" ? folder_of_case : node.folder) / written;
-  const std::string fault = file_fault(path);
-  if (!fault.empty()) {
-    fail(node, fmt::format("{} {}", in_one_line(path.string()), fault));
-  }
-  return path;
+std::optional<std::string> Table::optional_text(const Key& key, const TextRule& rule) const {
+  CaseNode& node = take(key.name, true);
+  KeyInfo& info = note(node, key, KeyType::text);
+  info.pattern = rule.pattern;
+  info.default_words = rule.default_words;
+  if (!node.written) return std::nullopt;
+  std::string value = read_text(node, {});
+  expect_pattern(node, value, rule);
+  return value;
 }
 
-}  // namespace
+std::string Table::choice(const Key& key, const std::vector<std::string>& choices,
+                          const std::optional<std::string>& fallback) const {
+  CaseNode& node = take(key.name, fallback.has_value());
+  note(node, key, KeyType::choice, fallback ? toml_text(*fallback) : "", !fallback).choices = choices;
+  return read_choice(node, choices, fallback);
+}
 
-std::filesystem::path Table::path(std::string_view key) const {
-  CaseNode& node = take(key, false);
-  note(node, KeyType::path, "", true);
+std::optional<std::filesystem::path> Table::optional_path(const Key& key) const {
+  CaseNode& node = take(key.name, true);
+  note(node, key, KeyType::path);
+  if (!node.written) return std::nullopt;
   return read_path(node, state_->path.parent_path());
 }
 
-std::vector<std::filesystem::path> Table::optional_paths(std::string_view key) const {
-  CaseNode& node = take(key, true);
+std::vector<std::filesystem::path> Table::optional_paths(const Key& key) const {
+  CaseNode& node = take(key.name, true);
   const std::filesystem::path folder = state_->path.parent_path();
-  KeyInfo& info = note(node, KeyType::path, "", false, node.kind == Kind::array);
+  KeyInfo& info = with_limits(note(node, key, KeyType::path, "", false, true), ListRule{.least = 1});
+  info.or_one = true;
   if (!node.written) return {};
   if (node.kind != Kind::array) return {read_path(node, folder)};
   if (node.children.empty()) fail(node, "must name a file, is an empty list");
@@ -291,54 +210,44 @@ std::vector<std::filesystem::path> Table::optional_paths(std::string_view key) c
       [&](CaseNode& entry, const std::optional<std::string>&) { return read_path(entry, folder); });
 }
 
-std::vector<double> Table::quantities(std::string_view key, Dimension dimension, const QuantityRule& rule,
-                                      const std::optional<std::vector<std::string>>& fallback) const {
-  CaseNode& node = take(key, fallback.has_value());
-  KeyInfo& info = with_limits(note(node, KeyType::quantity, "", !fallback, true), dimension, rule);
+std::vector<double> Table::quantities(const Key& key, Dimension dimension, const QuantityRule& rule,
+                                      const std::optional<std::vector<std::string>>& fallback,
+                                      const ListRule& list) const {
+  CaseNode& node = take(key.name, fallback.has_value());
+  KeyInfo& info = note(node, key, KeyType::quantity, list_as_toml(fallback, quantity_as_toml), !fallback, true);
+  with_limits(with_limits(info, dimension, rule), list);
   return read_array<double>(node, info, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
     return read_quantity(entry, dimension, rule, entry_fallback);
   });
 }
 
-std::vector<std::int64_t> Table::integers(std::string_view key, const IntegerRule& rule,
-                                          const std::optional<std::vector<std::int64_t>>& fallback) const {
-  CaseNode& node = take(key, fallback.has_value());
-  KeyInfo& info = with_limits(note(node, KeyType::integer, "", !fallback, true), rule);
+std::vector<std::int64_t> Table::integers(const Key& key, const IntegerRule& rule,
+                                          const std::optional<std::vector<std::int64_t>>& fallback,
+                                          const ListRule& list) const {
+  CaseNode& node = take(key.name, fallback.has_value());
+  const auto as_toml = [](std::int64_t entry) { return fmt::format("{}", entry); };
+  KeyInfo& info = note(node, key, KeyType::integer, list_as_toml(fallback, as_toml), !fallback, true);
+  with_limits(with_limits(info, rule), list);
   return read_array<std::int64_t>(node, info, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
     return read_integer(entry, rule, entry_fallback);
   });
 }
 
-std::vector<std::string> Table::texts(std::string_view key,
-                                      const std::optional<std::vector<std::string>>& fallback) const {
-  CaseNode& node = take(key, fallback.has_value());
-  KeyInfo& info = note(node, KeyType::text, "", !fallback, true);
+std::vector<std::string> Table::texts(const Key& key, const std::optional<std::vector<std::string>>& fallback) const {
+  CaseNode& node = take(key.name, fallback.has_value());
+  KeyInfo& info = note(node, key, KeyType::text, list_as_toml(fallback, toml_text), !fallback, true);
+  with_limits(info, ListRule{});
   return read_array<std::string>(node, info, fallback, read_text);
 }
 
-Table Table::table(std::string_view key) const {
-  CaseNode& node = take(key, true);
-  if (node.written) {
-    expect(node, Kind::table);
-  }
-  node.kind = Kind::table;
-  return {state_, node};
-}
-
-std::vector<Table> Table::tables(std::string_view key) const {
-  std::vector<Table> all;
-  CaseNode* node = find(key);
-  if (node == nullptr) {
-    return all;
-  }
-  node->read = true;
-  expect(*node, Kind::array);
-  for (const auto& entry : node->children) {
-    expect(*entry, Kind::table);
-    entry->read = true;
-    all.push_back(Table(state_, *entry));
-  }
-  return all;
+std::vector<std::string> Table::chosen(const Key& key, const std::vector<std::string>& choices) const {
+  CaseNode& node = take(key.name, true);
+  KeyInfo& info = with_limits(note(node, key, KeyType::choice, "[]", false, true), ListRule{});
+  info.choices = choices;
+  return read_array<std::string>(node, info, std::optional(std::vector<std::string>{}),
+                                 [&](CaseNode& entry, const std::optional<std::string>& entry_fallback) {
+                                   return read_choice(entry, choices, entry_fallback);
+                                 });
 }
 
 InputError Table::error(std::string_view key, const std::string& sentence) const {

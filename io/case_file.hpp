@@ -3,8 +3,9 @@
 /// resolved case, with its defaults and overrides, can be printed and stored.
 ///
 ///     CaseFile file = CaseFile::load("case.toml", {"mesh.size=0.5 m"});
-///     Table ground = file.root().table("ground");
-///     double depth = ground.quantity("depth", Dimension::length, {.fallback = "35 m", .positive = true});
+///     Table ground = file.root().table({"ground", "The half domain of ground."});
+///     double depth = ground.quantity({"depth", "Depth of the base below the surface."}, Dimension::length,
+///                                    {.fallback = "35 m", .positive = true});
 ///     file.finish();  // unknown keys are reported here
 
 #include <cstdint>
@@ -18,23 +19,42 @@
 #include <vector>
 
 #include "io/input_error.hpp"
+#include "io/key.hpp"
 #include "io/key_info.hpp"
 #include "io/units.hpp"
 
 namespace voussoir::io {
 
-/// Limits of a quantity, written like the user's own values ("1 kPa"); without a fallback the key is required.
+/// Limits of a quantity, written like the user's own values ("1 kPa"); without a fallback the key is required. Lists of
+/// keys show `default_words` in place of the fallback, where the default follows from other keys.
 struct QuantityRule {
   std::optional<std::string> fallback = {};
   std::optional<std::string> at_least = {};
   std::optional<std::string> at_most = {};
   bool positive = false;
+  std::string default_words = {};
 };
 
 struct IntegerRule {
   std::optional<std::int64_t> fallback = {};
   std::optional<std::int64_t> at_least = {};
   std::optional<std::int64_t> at_most = {};
+  std::string default_words = {};
+};
+
+/// A text that the regular expression (ECMAScript) must match whole; `fault` completes "KEY: ..." where it does not.
+struct TextRule {
+  std::string pattern = {};
+  std::string fault = {};
+  std::string default_words = {};
+};
+
+inline constexpr std::size_t most_list_entries = 100'000;  ///< such a list of points or seeds is still read in a second
+
+struct ListRule {
+  std::size_t least = 0;
+  std::size_t most = most_list_entries;
+  bool different = false;  ///< no two entries are the same
 };
 
 struct CaseNode;   // a key of the file, its place, and the value that was read from it
@@ -48,47 +68,61 @@ class Table {
   [[nodiscard]] bool has(std::string_view key) const;
 
   /// The SI value of a text such as "5 mm"; Dimension::none takes plain numbers and "%".
-  [[nodiscard]] double quantity(std::string_view key, Dimension dimension, const QuantityRule& rule = {}) const;
-  [[nodiscard]] std::int64_t integer(std::string_view key, const IntegerRule& rule = {}) const;
-  [[nodiscard]] bool boolean(std::string_view key, std::optional<bool> fallback = {}) const;
-  [[nodiscard]] std::string text(std::string_view key, const std::optional<std::string>& fallback = {}) const;
+  [[nodiscard]] double quantity(const Key& key, Dimension dimension, const QuantityRule& rule = {}) const;
+  [[nodiscard]] std::int64_t integer(const Key& key, const IntegerRule& rule = {}) const;
+  /// An integer that may be left out; the rule's fallback is not used.
+  [[nodiscard]] std::optional<std::int64_t> optional_integer(const Key& key, const IntegerRule& rule = {}) const;
+  [[nodiscard]] bool boolean(const Key& key, std::optional<bool> fallback = {}) const;
+  [[nodiscard]] std::string text(const Key& key, const std::optional<std::string>& fallback = {},
+                                 const TextRule& rule = {}) const;
+  /// A text that may be left out.
+  [[nodiscard]] std::optional<std::string> optional_text(const Key& key, const TextRule& rule = {}) const;
   /// A text that is one of `choices`; the message of an error lists them.
-  [[nodiscard]] std::string choice(std::string_view key, const std::vector<std::string>& choices,
+  [[nodiscard]] std::string choice(const Key& key, const std::vector<std::string>& choices,
                                    const std::optional<std::string>& fallback = {}) const;
-  /// An existing file that can be read. The name is relative to the folder of the file that says it, with --set to that
-  /// of the case file.
-  [[nodiscard]] std::filesystem::path path(std::string_view key) const;
-  /// The same for a key that may be left out, and that names one file or has an array of names.
-  [[nodiscard]] std::vector<std::filesystem::path> optional_paths(std::string_view key) const;
+  /// An existing file that can be read, or none where the key is left out. The name is relative to the folder of the
+  /// file that says it, with --set to that of the case file.
+  [[nodiscard]] std::optional<std::filesystem::path> optional_path(const Key& key) const;
+  /// The same for a key that names one file or has an array of names.
+  [[nodiscard]] std::vector<std::filesystem::path> optional_paths(const Key& key) const;
 
-  /// Reads arrays. The limits of the rule hold for each entry; the rule's fallback is not used.
-  [[nodiscard]] std::vector<double> quantities(std::string_view key, Dimension dimension, const QuantityRule& rule = {},
+  /// Reads arrays. The limits of the rule hold for each entry; the rule's fallback is not used. The rule of the list
+  /// holds for what the user wrote.
+  [[nodiscard]] std::vector<double> quantities(const Key& key, Dimension dimension, const QuantityRule& rule = {},
+                                               const std::optional<std::vector<std::string>>& fallback = {},
+                                               const ListRule& list = {}) const;
+  [[nodiscard]] std::vector<std::int64_t> integers(const Key& key, const IntegerRule& rule = {},
+                                                   const std::optional<std::vector<std::int64_t>>& fallback = {},
+                                                   const ListRule& list = {}) const;
+  [[nodiscard]] std::vector<std::string> texts(const Key& key,
                                                const std::optional<std::vector<std::string>>& fallback = {}) const;
-  [[nodiscard]] std::vector<std::int64_t> integers(std::string_view key, const IntegerRule& rule = {},
-                                                   const std::optional<std::vector<std::int64_t>>& fallback = {}) const;
-  [[nodiscard]] std::vector<std::string> texts(std::string_view key,
-                                               const std::optional<std::vector<std::string>>& fallback = {}) const;
+  /// Texts each of which is one of `choices`; none where the key is left out.
+  [[nodiscard]] std::vector<std::string> chosen(const Key& key, const std::vector<std::string>& choices) const;
 
-  [[nodiscard]] Table table(std::string_view key) const;
+  [[nodiscard]] Table table(const Key& key) const;
   /// The [[key]] tables in the order of the file; empty where there are none.
-  [[nodiscard]] std::vector<Table> tables(std::string_view key) const;
+  [[nodiscard]] std::vector<Table> tables(const Key& key) const;
+  /// The same, where one [key] table may stand for an array of one.
+  [[nodiscard]] std::vector<Table> table_or_tables(const Key& key) const;
+  /// A table, or the tables of an array, that have been read before.
+  [[nodiscard]] Table known_table(std::string_view key) const;
+  [[nodiscard]] std::vector<Table> known_tables(std::string_view key) const;
 
   /// Declares that this key, which the program has read, does not count in this case: `reason` completes the sentence
   /// "KEY is not used: ...". The key may be a path ("relax_below", "class[0].modulus") or "" for the whole table. Only
   /// keys that the user wrote are reported (CaseFile::idle_keys).
   void declare_idle(std::string_view key, const std::string& reason) const;
 
-  /// The same, where one [key] table may stand for an array of one.
-  [[nodiscard]] std::vector<Table> table_or_tables(std::string_view key) const;
   /// The names of the keys that the file holds in this table, in its order, for tables whose keys the user names.
   [[nodiscard]] std::vector<std::string> names() const;
-  /// The entries of an array, or one value for an array of one, each as TOML: values that are handed on as overrides.
-  /// An entry is a number, a text, a boolean, or an array of these.
-  [[nodiscard]] std::vector<std::string> values_as_toml(std::string_view key) const;
-  /// A text, or an array of texts.
-  [[nodiscard]] std::vector<std::string> text_or_texts(std::string_view key) const;
+  /// Keys whose names the user chooses: `name` is the one in the file, for which the name of `key` stands in lists of
+  /// keys. values_as_toml: the entries of an array, or one value for an array of one, each as TOML, for values that are
+  /// handed on as overrides. An entry is a number, a text, a boolean, or an array of these.
+  [[nodiscard]] std::vector<std::string> values_as_toml(const Key& key, const std::string& name) const;
+  [[nodiscard]] std::vector<std::string> text_or_texts(const Key& key, const std::string& name) const;
+  [[nodiscard]] Table named_table(const Key& key, const std::string& name) const;
   /// An array of arrays of texts; none where the key is not written.
-  [[nodiscard]] std::vector<std::vector<std::string>> lists_of_texts(std::string_view key) const;
+  [[nodiscard]] std::vector<std::vector<std::string>> lists_of_texts(const Key& key) const;
   [[nodiscard]] bool is_table(std::string_view key) const;  ///< whether the file holds a table under the key
 
   /// "sweep.toml:12", where the key stands; the table's own place where the file does not hold the key.
@@ -102,6 +136,7 @@ class Table {
   Table(std::shared_ptr<CaseState> state, CaseNode& node) : state_(std::move(state)), node_(&node) {}
   [[nodiscard]] CaseNode* find(std::string_view key) const;
   [[nodiscard]] CaseNode& take(std::string_view key, bool has_fallback) const;
+  [[nodiscard]] CaseNode& take_named(const Key& key, const std::string& name) const;
   [[nodiscard]] std::string full_key(std::string_view key) const;
 
   std::shared_ptr<CaseState> state_;
@@ -130,6 +165,7 @@ class CaseFile {
 
   /// All keys read so far, with type, default and limits, in the order in which they were read first, table by table.
   [[nodiscard]] std::vector<KeyInfo> keys() const;
+  [[nodiscard]] std::vector<KeyInfo> tables() const;  ///< the same for tables
   /// One sentence for each reason of declare_idle that holds for keys which the user wrote: "newton.relax_near,
   /// newton.relax_attempts (case.toml:8): not used, because ...".
   [[nodiscard]] std::vector<std::string> idle_keys() const;

@@ -203,7 +203,8 @@ std::vector<std::string> extended_names(const toml::node& written, const std::st
   std::vector<std::string> names;
   const auto take = [&](const toml::node& entry) {
     if (!entry.is_string()) {
-      throw InputError(place, "extends", "must be the name of a case file, or an array of such names");
+      throw InputError(place, std::string(extends_key.name),
+                       "must be the name of a case file, or an array of such names");
     }
     names.push_back(entry.as_string()->get());
   };
@@ -223,19 +224,21 @@ void fill_from_file(CaseNode& root, const std::filesystem::path& path, int depth
   const auto folder = path.parent_path();
   auto parsed = parse_toml(read_whole(path), path.string());
   const Origin origin{path.string(), folder};
-  if (const toml::node* written = parsed.get("extends")) {
+  if (const toml::node* written = parsed.get(extends_key.name)) {
     const std::string place = origin.place(*written);
     for (const auto& name : extended_names(*written, place)) {
       const std::string fault = name.empty() ? "is no name of a file" : file_fault(folder / name);
       if (!fault.empty()) {
-        throw InputError(place, "extends", fmt::format("{} {}", in_one_line((folder / name).string()), fault));
+        throw InputError(place, std::string(extends_key.name),
+                         fmt::format("{} {}", in_one_line((folder / name).string()), fault));
       }
       if (depth == most_files) {
-        throw InputError(place, "extends", "the files extend one another in a circle, or more than eight deep");
+        throw InputError(place, std::string(extends_key.name),
+                         "the files extend one another in a circle, or more than eight deep");
       }
       fill_from_file(root, folder / name, depth + 1);
     }
-    parsed.erase("extends");
+    parsed.erase(extends_key.name);
   }
   fill(root, parsed, origin);
 }

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "io/key.hpp"
 #include "io/key_info.hpp"
 
 namespace voussoir::io {
@@ -29,7 +30,8 @@ struct CaseNode {
   std::string resolved = {};         ///< value as TOML, once read
   std::string meaning = {};          ///< value in SI, the same however it was written; the fingerprint is made of these
   std::string idle = {};             ///< why the key does not count in this case; empty where it counts
-  std::optional<KeyInfo> info = {};  ///< type and limits, once read as a value
+  std::optional<KeyInfo> info = {};  ///< type and limits, once read
+  std::string placeholder = {};      ///< stands for the name in lists of keys, where the user has chosen the name
 
   [[nodiscard]] CaseNode* find(std::string_view child_name);
   CaseNode& add(std::string child_name, std::string child_place);
@@ -39,6 +41,12 @@ struct CaseState {
   std::filesystem::path path;
   CaseNode root;
 };
+
+/// The key `extends`, which is used up while the file is read.
+inline constexpr Key extends_key{"extends",
+                                 "Another file of the same sort, or an array of them, whose keys this file takes over: "
+                                 "later ones go before earlier ones, and "
+                                 "the keys of this file before all. An array is taken over or replaced as a whole."};
 
 /// Reads the file over the files that it extends, and applies the overrides. Throws InputError.
 [[nodiscard]] std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path,

@@ -4,6 +4,7 @@
 
 #include "io/case_file.hpp"
 #include "io/case_node.hpp"
+#include "io/case_value.hpp"
 
 namespace voussoir::io {
 namespace {
@@ -35,16 +36,6 @@ std::string written_as_toml(CaseNode& node) {  // NOLINT(misc-no-recursion): as 
 
 }  // namespace
 
-bool Table::is_table(std::string_view key) const {
-  const CaseNode* node = find(key);
-  return node != nullptr && node->kind == Kind::table;
-}
-
-std::vector<Table> Table::table_or_tables(std::string_view key) const {
-  if (is_table(key)) return {table(key)};
-  return tables(key);
-}
-
 std::string Table::place(std::string_view key) const {
   const CaseNode* node = node_->find(key);
   return node != nullptr ? node->place : node_->place;
@@ -58,24 +49,55 @@ std::vector<std::string> Table::names() const {
   return names;
 }
 
-std::vector<std::string> Table::text_or_texts(std::string_view key) const {
-  const CaseNode* node = find(key);
-  if (node != nullptr && node->kind == Kind::array) return texts(key);
-  return {text(key)};
+CaseNode& Table::take_named(const Key& key, const std::string& name) const {
+  CaseNode& node = take(name, false);
+  node.placeholder = key.name;
+  return node;
 }
 
-std::vector<std::string> Table::values_as_toml(std::string_view key) const {
-  CaseNode& node = take(key, false);
+std::vector<std::string> Table::text_or_texts(const Key& key, const std::string& name) const {
+  CaseNode& node = take_named(key, name);
+  KeyInfo& info = node.info.emplace(KeyInfo{.key = node.key,
+                                            .type = KeyType::text,
+                                            .list = true,
+                                            .or_one = true,
+                                            .help = std::string(key.help),
+                                            .named_by_user = true});
+  info.most_entries = most_list_entries;
+  if (node.kind != Kind::array) return {read_text(node, {})};
+  std::vector<std::string> texts;
+  for (const auto& entry : node.children) {
+    entry->read = true;
+    texts.push_back(read_text(*entry, {}));
+  }
+  return texts;
+}
+
+std::vector<std::string> Table::values_as_toml(const Key& key, const std::string& name) const {
+  CaseNode& node = take_named(key, name);
+  node.info.emplace(KeyInfo{.key = node.key,
+                            .type = KeyType::value,
+                            .list = true,
+                            .or_one = true,
+                            .least_entries = 1,
+                            .help = std::string(key.help),
+                            .named_by_user = true});
   if (node.kind != Kind::array) return {written_as_toml(node)};
   std::vector<std::string> values;
   for (const auto& entry : node.children) values.push_back(written_as_toml(*entry));
   return values;
 }
 
-std::vector<std::vector<std::string>> Table::lists_of_texts(std::string_view key) const {
+std::vector<std::vector<std::string>> Table::lists_of_texts(const Key& key) const {
   std::vector<std::vector<std::string>> lists;
-  if (!has(key)) return lists;
-  CaseNode& node = take(key, false);
+  CaseNode& node = take(key.name, true);
+  node.info.emplace(KeyInfo{.key = node.key,
+                            .type = KeyType::list_of_text,
+                            .list = true,
+                            .least_entries = 1,
+                            .most_entries = most_list_entries,
+                            .help = std::string(key.help)});
+  if (!node.written) return lists;
   bool is_right = !node.children.empty();
   for (const auto& entry : node.children) {
     entry->read = true;
@@ -86,7 +108,7 @@ std::vector<std::vector<std::string>> Table::lists_of_texts(std::string_view key
     }
     is_right = is_right && !list.empty() && list.size() == entry->children.size();
   }
-  if (!is_right) throw error(key, R"(must be an array of arrays of texts, such as [["a", "b"]])");
+  if (!is_right) throw error(key.name, R"(must be an array of arrays of texts, such as [["a", "b"]])");
   return lists;
 }
 

@@ -10,28 +10,18 @@ namespace voussoir::io {
 
 namespace {
 
-/// "soil.class[3].size_to" -> "soil.class[].size_to".
-std::string without_index(const std::string& key) {
-  std::string out;
-  bool inside = false;
-  for (const char c : key) {
-    inside = inside && c != ']';
-    if (!inside) {
-      out += c;
-    }
-    inside = inside || c == '[';
-  }
-  return out;
-}
-
-void collect(const CaseNode& node, std::vector<KeyInfo>& keys) {
+/// Adds the keys, or the tables, below `node`, whose name is `prefix`.
+void collect(const CaseNode& node, const std::string& prefix, bool tables, std::vector<KeyInfo>& keys) {
   for (const auto& child : node.children) {
-    if (child->info) {
+    const bool is_entry = child->name.front() == '[';
+    const std::string& name = child->placeholder.empty() ? child->name : child->placeholder;
+    const std::string full = is_entry ? prefix + "[]" : prefix + (prefix.empty() ? "" : ".") + name;
+    const bool is_table = !child->info || child->info->type == KeyType::table;
+    if (child->info && is_table == tables) {
       keys.push_back(*child->info);
-      keys.back().key = without_index(child->key);
-    } else {
-      collect(*child, keys);
+      keys.back().key = full;
     }
+    if (is_table) collect(*child, full, tables, keys);
   }
 }
 
@@ -40,23 +30,6 @@ void collect_places(const CaseNode& node, std::map<std::string, std::string>& pl
     places[child->key] = child->place;
     collect_places(*child, places);
   }
-}
-
-/// A default without the quotes of TOML, which the quotes of a table would double.
-std::string unquoted(const std::string& text) {
-  return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
-}
-
-/// A field of comma-separated values.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return quoted + '"';
 }
 
 }  // namespace
@@ -75,14 +48,30 @@ std::string_view name_of(KeyType type) {
       return "choice";
     case KeyType::path:
       return "path";
+    case KeyType::value:
+      return "value";
+    case KeyType::list_of_text:
+      return "list of text";
+    case KeyType::table:
+      return "table";
   }
   return "value";
 }
 
 std::vector<KeyInfo> CaseFile::keys() const {
-  std::vector<KeyInfo> keys;
-  collect(state_->root, keys);
+  std::vector<KeyInfo> keys{{.key = std::string(extends_key.name),
+                             .type = KeyType::path,
+                             .list = true,
+                             .or_one = true,
+                             .help = std::string(extends_key.help)}};
+  collect(state_->root, "", false, keys);
   return keys;
+}
+
+std::vector<KeyInfo> CaseFile::tables() const {
+  std::vector<KeyInfo> tables;
+  collect(state_->root, "", true, tables);
+  return tables;
 }
 
 std::map<std::string, std::string> CaseFile::places() const {
@@ -91,17 +80,28 @@ std::map<std::string, std::string> CaseFile::places() const {
   return places;
 }
 
-std::string key_table(const std::vector<KeyInfo>& keys) {
-  std::string out = "key,type,dimension,default,at_least,at_most,choices\n";
-  for (const KeyInfo& info : keys) {
-    const bool measured = info.type == KeyType::quantity && info.dimension != Dimension::none;
-    const std::string least = info.at_least.empty() && info.above_zero ? "> 0" : info.at_least;
-    out += fmt::format("{},{}{},{},{},{},{},{}\n", info.key, info.list ? "list of " : "", name_of(info.type),
-                       measured ? dimension_name(info.dimension) : "",
-                       field(info.required ? "(required)" : unquoted(info.fallback)), field(least), field(info.at_most),
-                       fmt::join(info.choices, "|"));
+std::string without_quotes(const std::string& text) {
+  return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
+}
+
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) {
+    return text;
   }
-  return out;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return quoted + '"';
+}
+
+std::string key_table_line(const KeyInfo& info) {
+  const bool measured = info.type == KeyType::quantity && info.dimension != Dimension::none;
+  const std::string least = info.at_least.empty() && info.above_zero ? "> 0" : info.at_least;
+  const std::string fallback = info.default_words.empty() ? without_quotes(info.fallback) : info.default_words;
+  return fmt::format("{},{}{},{},{},{},{},{},{}", info.key, info.list ? "list of " : "", name_of(info.type),
+                     measured ? dimension_name(info.dimension) : "", csv_field(info.required ? "(required)" : fallback),
+                     csv_field(least), csv_field(info.at_most), fmt::join(info.choices, "|"), csv_field(info.help));
 }
 
 }  // namespace voussoir::io

@@ -31,8 +31,8 @@ SKIN = 0.08  # of the lists, over the mean diameter: the default of engine.skin
 MULTIPROCESSORS, CLOCK, ISSUED_A_CYCLE = 132, 1.98e9, 4
 REGISTERS_OF_SM, FAST_OF_SM, RESERVED, THREADS_OF_SM = 65536, 227 * 1024, 1024, 2048
 # What the prototype's variants used of the data stage of L1 and of the issue slots
-# (docs/measurements/gpu_prototype.md): 70 % and 53 % as it was designed; 91 % and 67 % at best, with 24 warps. Lists and
-# a look every 16 steps left it 0.84 of its rate.
+# (docs/measurements/gpu_prototype.md): 70 % and 53 % as it was designed; 91 % and 67 % at best, with 24 warps. Lists
+# and a look every 16 steps left it 0.84 of its rate.
 DESIGNED, BEST, WITH_LISTS = (0.70, 0.53), (0.91, 0.67), 0.84
 TEAM_INSTRUCTIONS, TEAM_WAVEFRONTS = 17.4, 28.7  # of a particle-step of the team kernel that this engine replaced
 # The plan Middle in float, as it is compiled by CUDA 13.0 for sm_90.

@@ -1,6 +1,6 @@
 #pragma once
 /// A case is all input of a run as typed, validated values in SI units. The case file (io/case_file.hpp) knows text,
-/// keys and units; this header says what the values mean. The default of each member is the default of its key.
+/// keys and units; the reader of a table says what its keys mean. The default of each member is the default of its key.
 
 #include <array>
 #include <cmath>
@@ -37,40 +37,40 @@ enum class GradingMeasure { number, area };
 
 /// [soil] The grains and their contacts.
 struct SoilCase {
-  double size_minimum = 2.0e-3;   ///< smallest grain diameter [m]
-  double size_maximum = 4.75e-3;  ///< largest grain diameter [m]
-  std::vector<double> sizes;      ///< grading curve: diameters, ascending [m]; empty: uniform by number in between
-  std::vector<double> passing;    ///< share of grains below each size, ascending from 0 to 1 [-]
-  GradingMeasure passing_by = GradingMeasure::area;  ///< shares of the grains' area (the mass in 2D) or of their number
-  std::vector<GrainClassCase> classes;               ///< by ascending size; empty: all grains are of one class
-  double modulus = 3.0e9;                            ///< contact modulus E [Pa]
+  double size_minimum = 2.0e-3;                      ///< [m]
+  double size_maximum = 4.75e-3;                     ///< [m]
+  std::vector<double> sizes;                         ///< [m]; empty: uniform by number in between
+  std::vector<double> passing;                       ///< share of grains below each size [-]
+  GradingMeasure passing_by = GradingMeasure::area;  ///< what `passing` counts
+  std::vector<GrainClassCase> classes;               ///< empty: all grains are of one class
+  double modulus = 3.0e9;                            ///< E [Pa]
   double stiffness_ratio = 0.5;                      ///< k_t / k_n [-]
-  double friction_angle = 0.43633231299858238;       ///< contact friction angle [rad], 25 deg
-  double rolling_stiffness = 1.0;  ///< beta, k_r = beta k_t r1 r2 [-]; 0 with rolling_limit = 0: no rolling resistance
-  double rolling_limit = 0.6;      ///< eta, |M| <= eta r f_n [-]
-  double damping = 0.3;            ///< local damping [-]
-  double density = 2650.0;         ///< grain density [kg/m3]
-  double thickness = 0.1;          ///< out-of-plane thickness t of an RVE [m]
+  double friction_angle = 0.43633231299858238;       ///< [rad], 25 deg
+  double rolling_stiffness = 1.0;                    ///< beta [-]
+  double rolling_limit = 0.6;                        ///< eta [-]
+  double damping = 0.3;                              ///< [-]
+  double density = 2650.0;                           ///< [kg/m3]
+  double thickness = 0.1;                            ///< t [m]
 };
 
 /// [packing] How the RVEs' packings are made.
 struct PackingCase {
-  int grains = 700;                 ///< grains of one RVE
+  int grains = 700;                 ///< of one RVE
   std::int64_t seed = 1;            ///< first seed; the candidates are seed, seed + 1, ...
-  std::vector<std::int64_t> seeds;  ///< the seeds to make (kind = pack); empty: seed and candidates name them
+  std::vector<std::int64_t> seeds;  ///< empty: seed and candidates name them
   int candidates = 1;    ///< number of seeds tried; the `variety` packings with the least |tau_xy|/sigma_yy are taken;
                          ///< without the key, as many as `variety`
   int variety = 1;       ///< number of different packings at the points of a mesh (packing/variety.hpp); without the
                          ///< key, as many as there are files
-  bool mirrored = true;  ///< every second Gauss point holds the packing's mirror image (mirrored_batch.hpp)
+  bool mirrored = true;  ///< mirrored_batch.hpp
   /// NAME_particles.csv of packings of another code, or one packing_*.h5; empty: packings are made from the recipe.
   /// Files have grains of their own: `grains`, seeds and density are not used then.
   std::vector<std::filesystem::path> files;
-  std::filesystem::path folder = "out/packings";  ///< where finished packings are kept and looked for
-  double consolidation_friction = 0.0;            ///< friction coefficient mu_t during consolidation [-]
-  bool consolidation_rolling = false;             ///< grains resist rolling during consolidation, too
+  std::filesystem::path folder = "out/packings";  ///< of finished packings
+  double consolidation_friction = 0.0;            ///< mu_t [-]
+  bool consolidation_rolling = false;             ///< during the consolidation
   double void_ratio = 0.0;  ///< wanted at `pressure` [-]; mu_t is searched for it; 0: consolidation_friction is mu_t
-  double pressure = 1.0e3;  ///< isotropic pressure of the finished packing [Pa]
+  double pressure = 1.0e3;  ///< isotropic [Pa]
 
   /// True where the run starts from a stored state of this program.
   [[nodiscard]] bool has_state() const { return !files.empty() && files.front().extension() == ".h5"; }
@@ -87,14 +87,14 @@ enum class Backend { automatic, lanes, gpu };
 struct EngineCase {
   std::string preset = "standard";  ///< fast, standard or reference; only its values are part of the fingerprint
   kernels::Precision precision = kernels::Precision::float32;  ///< value type of the pair loop
-  double inertial_number = 3.0e-4;                             ///< target inertial number of an increment [-]
-  double hold_tolerance = 1.0e-3;                              ///< unbalanced force ratio that ends the hold [-]
+  double inertial_number = 3.0e-4;                             ///< [-]
+  double hold_tolerance = 1.0e-3;                              ///< [-]
   Backend backend = Backend::automatic;                        ///< where the RVEs of a mesh are advanced
   InstructionSetChoice isa = {};                               ///< of the lanes; no bit of a result depends on it
-  int hold_cap = 4000;                                         ///< most steps of a hold
-  double skin = 0.1;                                           ///< neighbour skin over the mean grain diameter [-]
-  int minimum_steps = 20;                                      ///< fewest strain steps of an increment
-  int maximum_steps = 2000;                                    ///< most strain steps of an increment
+  int hold_cap = 4000;                                         ///< [steps]
+  double skin = 0.1;                                           ///< over the mean diameter [-]
+  int minimum_steps = 20;                                      ///< of straining
+  int maximum_steps = 2000;                                    ///< of straining
   /// Error of the stress over the pressure that is asked for, from which each RVE gets its inertial number [-]; 0: the
   /// numbers above count.
   double accuracy = 0;
@@ -104,13 +104,13 @@ struct EngineCase {
 /// [ground] The half domain: symmetry axis at x = 0, base at y = 0.
 struct GroundCase {
   double unit_weight = 20.0e3;     ///< gamma [N/m3]
-  double surcharge = 1.0e3;        ///< pressure on the surface [Pa]; must equal the RVEs' initial pressure
+  double surcharge = 1.0e3;        ///< [Pa]
   double width = 35.0;             ///< half width [m]
   double height = 35.0;            ///< [m]
-  double diameter = 5.0;           ///< tunnel diameter D [m]
+  double diameter = 5.0;           ///< D [m]
   double cover_ratio = 2.0;        ///< C/D [-]
-  double mesh_size_opening = 0.6;  ///< element size at the opening [m]
-  double mesh_size_far = 4.0;      ///< element size at the far boundary [m]
+  double mesh_size_opening = 0.6;  ///< [m]
+  double mesh_size_far = 4.0;      ///< [m]
 
   /// A file of `voussoir mesh`, which was made for a ground of these sizes; empty: Gmsh makes the mesh.
   std::filesystem::path mesh_file;
@@ -129,8 +129,8 @@ struct ColumnCase {
 
 /// [gravity] Load increments of the column and of the gravity stage.
 struct GravityCase {
-  double ratio = 1.5;          ///< growth of the base stress from one increment to the next [-]
-  double uniform_step = 0.05;  ///< load factor step at which the increments become uniform [-]
+  double ratio = 1.5;          ///< [-]
+  double uniform_step = 0.05;  ///< of the load factor [-]
 };
 
 /// [volume_loss]
@@ -146,18 +146,18 @@ using TangentChoice = std::optional<kernels::TangentKind>;
 
 /// [newton] The criteria of convergence (docs/explanation/method.md), and how the solver reaches them.
 struct NewtonCase {
-  double tolerance = 1.0e-3;               ///< bound of the free residual, relative to the external force [-]
-  double displacement_tolerance = 1.0e-2;  ///< bound of the last correction, relative to the increment [-]
+  double tolerance = 1.0e-3;               ///< of the residual [-]
+  double displacement_tolerance = 1.0e-2;  ///< of the last correction [-]
   int maximum_iterations = 40;
   int anderson_depth = 5;                  ///< 0: plain Newton
   TangentChoice tangent = {};              ///< tangent of the RVEs, computed once an increment
   double tangent_strain = 1.0e-6;          ///< the strain whose secants make a loading tangent [-]
-  double initial_tangent_fraction = 0.02;  ///< share of the stage's initial tangent added to the tangent [-]
-  double relax_below = 1.0;  ///< a failed step up to this share of a planned one is relaxed, a larger one cut [-]
-  int relax_attempts = 3;    ///< iterates from the committed state before an increment is relaxed
-  double relax_near = 0.4;   ///< these iterates end at once below this residual, relative as `tolerance` [-]
-  int relax_substeps = 100;  ///< most substeps of a relaxation; 0: no increment is relaxed
-  double smallest_cut = 1.0 / 64.0;  ///< smallest share of a planned step that cutting tries [-]
+  double initial_tangent_fraction = 0.02;  ///< [-]
+  double relax_below = 1.0;                ///< share of a planned step [-]
+  int relax_attempts = 3;                  ///< iterates from the committed state
+  double relax_near = 0.4;                 ///< residual, relative as `tolerance` [-]
+  int relax_substeps = 100;                ///< 0: no increment is relaxed
+  double smallest_cut = 1.0 / 64.0;        ///< share of a planned step [-]
 };
 
 /// [output]
@@ -165,9 +165,9 @@ struct OutputCase {
   int every = 1;             ///< increments of a stage between two result files; the last one of a stage always has one
   int checkpoint_every = 1;  ///< increments of a stage between two checkpoints; the last increment of a stage, and one
                              ///< after which a run stops, always have one
-  std::vector<std::string> fields;                ///< names of the fields written (docs/reference/files.md); empty: all
-  std::vector<std::int64_t> rves;                 ///< Gauss points whose whole RVE is written with each increment
-  kernels::MicrostructureRequest microstructure;  ///< fields of the contact network; by default none
+  std::vector<std::string> fields;                ///< names; empty: all
+  std::vector<std::int64_t> rves;                 ///< numbers of Gauss points
+  kernels::MicrostructureRequest microstructure;  ///< by default none
 };
 
 /// [elastic] The verification material.
@@ -186,8 +186,8 @@ struct PathSegment {
 
 /// [probe] Displacement gradients put on the packing at the path's end, each from the same state.
 struct ProbeCase {
-  double pressure = 1.0e5;  ///< isotropic pressure of the packing [Pa]
-  double strain = 1.0e-4;   ///< size of each probe [-]
+  double pressure = 1.0e5;  ///< [Pa]
+  double strain = 1.0e-4;   ///< [-]
   int replicas = 1;  ///< copies of path and probes whose gradients differ by 1e-6 of their size; their answers scatter
                      ///< as chaotic motion makes them
   /// The tangent in the report (docs/explanation/tangents.md); a loading one is for `strain`.
@@ -197,22 +197,22 @@ struct ProbeCase {
 
 /// [biaxial] Drained biaxial tests: y is compressed at a constant rate, sigma_xx is held.
 struct BiaxialCase {
-  std::vector<double> pressures = {1.0e5, 2.0e5, 4.0e5};  ///< confining pressures [Pa]
-  double strain = 0.20;                                   ///< logarithmic axial strain at the end [-]
-  double inertial_number = 1.0e-4;  ///< inertial number of the axial rate at the confining pressure [-]
-  double window = 0.01;             ///< axial strain over which curves are smoothed for strength and dilatancy [-]
-  int samples = 1000;               ///< points of a curve
+  std::vector<double> pressures = {1.0e5, 2.0e5, 4.0e5};  ///< [Pa]
+  double strain = 0.20;                                   ///< logarithmic [-]
+  double inertial_number = 1.0e-4;                        ///< [-]
+  double window = 0.01;                                   ///< of axial strain [-]
+  int samples = 1000;                                     ///< points of a curve
 };
 
 /// [biaxial_bvp] A biaxial test on a rectangle of elements (biaxial_bvp.hpp).
 struct BiaxialBvpCase {
-  double pressure = 1.0e5;      ///< pressure on the sides and of the packing [Pa]
+  double pressure = 1.0e5;      ///< [Pa]
   double width = 0.05;          ///< of the specimen [m]
   double height = 0.10;         ///< [m]
   int columns = 2;              ///< elements across
   int rows = 4;                 ///< elements upwards
-  double strain = 0.10;         ///< the top's displacement at the end, over the height [-]
-  double strain_step = 1.0e-3;  ///< the top's displacement in one increment, over the height [-]
+  double strain = 0.10;         ///< over the height [-]
+  double strain_step = 1.0e-3;  ///< over the height [-]
 
   [[nodiscard]] int increments() const { return static_cast<int>(std::lround(strain / strain_step)); }
 };
@@ -227,14 +227,14 @@ struct CalibrationTarget {
 /// Classes of grains keep their ratios to [soil].
 struct CalibrateCase {
   static constexpr double degree = std::numbers::pi / 180.0;  ///< [rad]
-  std::vector<double> rolling_stiffness;                      ///< beta: values of the first grid, ascending [-]
+  std::vector<double> rolling_stiffness;                      ///< beta [-]
   std::vector<double> rolling_limit;                          ///< eta [-]
   std::vector<double> thickness;                              ///< t [m]
-  int rounds = 2;  ///< refinements after the grid, each around the optimum of all tests so far
-  CalibrationTarget peak{39.1 * degree, 1.0 * degree};       ///< phi_p [rad]
-  CalibrationTarget critical{33.0 * degree, 1.0 * degree};   ///< phi_cs [rad]
-  CalibrationTarget dilatancy{14.0 * degree, 2.0 * degree};  ///< psi_max [rad]
-  double peak_strain_minimum = 0.02;  ///< limits of the axial strain at the peak, mean of the pressures [-]
+  int rounds = 2;                                             ///< of refinement
+  CalibrationTarget peak{39.1 * degree, 1.0 * degree};        ///< phi_p [rad]
+  CalibrationTarget critical{33.0 * degree, 1.0 * degree};    ///< phi_cs [rad]
+  CalibrationTarget dilatancy{14.0 * degree, 2.0 * degree};   ///< psi_max [rad]
+  double peak_strain_minimum = 0.02;                          ///< [-]
   double peak_strain_maximum = 0.05;
   double peak_strain_tolerance = 0.01;  ///< [-]
   int confirm_grains = 700;             ///< grains of the packings on which the optimum and [soil] as given are tested

@@ -14,8 +14,8 @@ namespace voussoir::host {
 /// there
 [[nodiscard]] EngineCase read_engine(const io::Table& table, bool on_a_mesh);
 
-/// The key `tangent`. Throws io::InputError.
-[[nodiscard]] TangentChoice read_tangent(const io::Table& table, TangentChoice otherwise);
+/// A key that chooses a tangent. Throws io::InputError.
+[[nodiscard]] TangentChoice read_tangent(const io::Table& table, const io::Key& key, TangentChoice otherwise);
 
 [[nodiscard]] std::vector<std::string> engine_preset_names();
 

@@ -6,6 +6,13 @@
 
 namespace voussoir::host {
 
+/// Keys that a grading curve replaces.
+inline constexpr io::Key size_minimum_key{
+    "size_minimum", "Smallest grain diameter of grains whose diameters are uniformly distributed by number."};
+inline constexpr io::Key size_maximum_key{"size_maximum",
+                                          "Largest grain diameter of grains whose diameters are uniformly distributed "
+                                          "by number, at most 40 times the smallest."};
+
 [[nodiscard]] SoilCase read_soil(const io::Table& table);
 /// @param on_a_mesh true for kinds with a mesh, where `variety` counts
 [[nodiscard]] PackingCase read_packing(const io::Table& table, bool on_a_mesh);

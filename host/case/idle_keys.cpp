@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "host/case/grains.hpp"
+
 namespace voussoir::host {
 
 namespace {
@@ -97,16 +99,16 @@ const std::vector<IdleRule>& rules() {
 
 /// A grading curve sets the smallest and the largest size, which are keys of their own without a curve.
 void declare_sizes(const io::Table& soil) {
-  for (const char* key : {"size_minimum", "size_maximum"}) {
-    if (!soil.has(key)) continue;
+  for (const io::Key& key : {size_minimum_key, size_maximum_key}) {
+    if (!soil.has(key.name)) continue;
     static_cast<void>(soil.quantity(key, io::Dimension::length));
-    soil.declare_idle(key, "soil.sizes has the smallest and the largest size");
+    soil.declare_idle(key.name, "soil.sizes has the smallest and the largest size");
   }
 }
 
 /// A number of [soil] is the default of the classes; where each class has its own, the number of [soil] has no grains.
 void declare_class_defaults(const io::Table& soil) {
-  const std::vector<io::Table> classes = soil.tables("class");
+  const std::vector<io::Table> classes = soil.known_tables("class");
   for (const char* key : {"modulus", "stiffness_ratio", "friction", "rolling_stiffness", "rolling_limit"}) {
     const bool everywhere = std::all_of(classes.begin(), classes.end(),
                                         [key](const io::Table& entry) { return entry.has(key); });
@@ -119,13 +121,13 @@ void declare_class_defaults(const io::Table& soil) {
 void declare_idle_keys(const io::Table& root, const Case& input) {
   for (const IdleRule& rule : rules()) {
     if (!rule.when(input)) continue;
-    const io::Table table = root.table(rule.table);
+    const io::Table table = root.known_table(rule.table);
     if (rule.keys.empty()) table.declare_idle("", rule.reason);
     for (const char* key : rule.keys) {
       if (table.has(key)) table.declare_idle(key, rule.reason);
     }
   }
-  const io::Table soil = root.table("soil");
+  const io::Table soil = root.known_table("soil");
   if (!input.soil.sizes.empty()) declare_sizes(soil);
   // A calibration searches parameters as factors of [soil], which therefore counts.
   if (input.kind != CaseKind::calibrate) declare_class_defaults(soil);

@@ -6,8 +6,8 @@
 namespace voussoir::host {
 
 /// Reads a key into `member`. Both throw io::InputError.
-void read_quantity(const io::Table& table, const char* key, io::Dimension dimension, double& member,
+void read_quantity(const io::Table& table, const io::Key& key, io::Dimension dimension, double& member,
                    io::QuantityRule rule = {});
-void read_integer(const io::Table& table, const char* key, int& member, io::IntegerRule rule);
+void read_integer(const io::Table& table, const io::Key& key, int& member, io::IntegerRule rule);
 
 }  // namespace voussoir::host

@@ -15,6 +15,7 @@
 #include "host/case/idle_keys.hpp"
 #include "host/case/mesh.hpp"
 #include "host/case/packing_origin.hpp"
+#include "host/case/tables.hpp"
 #include "io/case_file.hpp"
 #include "io/hash.hpp"
 #include "io/text_file.hpp"
@@ -25,7 +26,12 @@ namespace {
 CaseKind read_kind(const io::Table& root) {
   std::vector<std::string> names;
   for (const auto& [kind, name] : case_kind_names) names.emplace_back(name);
-  const std::string wanted = root.choice("kind", names);
+  const std::string wanted = root.choice(
+      {"kind",
+       "What the case computes: packings (`pack`), responses of one packing to small strains (`probe`), biaxial tests "
+       "on packings (`biaxial`) or on a mesh (`biaxial_bvp`), a search of the grains' parameters (`calibrate`), a "
+       "column for K0 (`column`), or a tunnel (`tunnel`)."},
+      names);
   for (const auto& [kind, name] : case_kind_names) {
     if (wanted == name) return kind;
   }
@@ -34,57 +40,61 @@ CaseKind read_kind(const io::Table& root) {
 
 /// Reads the tables of the grains. They are allowed with any material, so that one `--set` can change the material.
 void read_grain_tables(const io::Table& root, Case& input) {
-  input.soil = read_soil(root.table("soil"));
-  input.packing = read_packing(root.table("packing"), runs_on_a_mesh(input.kind));
-  input.engine = read_engine(root.table("engine"), runs_on_a_mesh(input.kind));
+  input.soil = read_soil(root.table(tables::soil));
+  input.packing = read_packing(root.table(tables::packing), runs_on_a_mesh(input.kind));
+  input.engine = read_engine(root.table(tables::engine), runs_on_a_mesh(input.kind));
   if (input.engine.accuracy > 0 && (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate)) {
-    throw root.table("engine").error(
+    throw root.known_table("engine").error(
         "accuracy", "is for RVEs that are strained in increments; tests have the rate of biaxial.inertial_number");
   }
-  if (input.kind == CaseKind::probe) input.probe = read_probe(root.table("probe"));
+  if (input.kind == CaseKind::probe) input.probe = read_probe(root.table(tables::probe));
   if (input.kind != CaseKind::probe && input.packing.has_state()) {
-    throw root.table("packing").error(
+    throw root.known_table("packing").error(
         "file", "is a stored state: only kind = \"probe\" can start from it, all other kinds need isotropic pressure");
   }
-  if (runs_on_a_mesh(input.kind)) check_variety(root.table("packing"), input.packing);
+  if (runs_on_a_mesh(input.kind)) check_variety(root.known_table("packing"), input.packing);
   if (!runs_on_a_mesh(input.kind) && input.packing.files.size() > 1) {
-    throw root.table("packing").error("file", "names several files, but only kinds with a mesh mix packings");
+    throw root.known_table("packing").error("file", "names several files, but only kinds with a mesh mix packings");
   }
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) {
-    input.biaxial = read_biaxial(root.table("biaxial"));
+    input.biaxial = read_biaxial(root.table(tables::biaxial));
   }
-  if (input.kind == CaseKind::biaxial) input.output.microstructure = read_microstructure(root.table("output"));
-  if (input.kind == CaseKind::calibrate) input.calibrate = read_calibrate(root.table("calibrate"), input.soil);
+  if (input.kind == CaseKind::biaxial) input.output.microstructure = read_microstructure(root.table(tables::output));
+  if (input.kind == CaseKind::calibrate) input.calibrate = read_calibrate(root.table(tables::calibrate), input.soil);
 }
 
 /// Reads the tables that every kind with a mesh has.
 void read_mesh_tables(const io::Table& root, Case& input) {
-  const std::string material = root.choice("material", {"grains", "linear_elastic"}, "grains");
+  const std::string material = root.choice({"material",
+                                            "What the points of the mesh are made of: representative volume elements "
+                                            "of grains, or the linear elastic material of `[elastic]`."},
+                                           {"grains", "linear_elastic"}, "grains");
   input.material = material == "grains" ? MaterialKind::grains : MaterialKind::linear_elastic;
-  input.elastic = read_elastic(root.table("elastic"));
-  input.newton = read_newton(root.table("newton"));
-  input.output = read_output(root.table("output"));
-  if (input.kind == CaseKind::biaxial_bvp) input.biaxial_bvp = read_biaxial_bvp(root.table("biaxial_bvp"));
+  input.elastic = read_elastic(root.table(tables::elastic));
+  input.newton = read_newton(root.table(tables::newton));
+  input.output = read_output(root.table(tables::output));
+  if (input.kind == CaseKind::biaxial_bvp) input.biaxial_bvp = read_biaxial_bvp(root.table(tables::biaxial_bvp));
 }
 
 void read_ground_tables(const io::Table& root, Case& input) {
   const bool with_tunnel = input.kind == CaseKind::tunnel;
-  input.ground = read_ground(root.table("ground"), with_tunnel);
-  input.column = read_column(root.table("column"));
-  input.gravity = read_gravity(root.table("gravity"));
-  if (with_tunnel) input.volume_loss = read_volume_loss(root.table("volume_loss"));
+  input.ground = read_ground(root.table(tables::ground), with_tunnel);
+  input.column = read_column(root.table(tables::column));
+  input.gravity = read_gravity(root.table(tables::gravity));
+  if (with_tunnel) input.volume_loss = read_volume_loss(root.table(tables::volume_loss));
   if (std::abs(input.ground.surcharge - input.packing.pressure) > 1e-9 * input.packing.pressure) {
-    throw root.table("ground").error("surcharge", "must equal packing.pressure: the ground starts at rest under it");
+    throw root.known_table("ground").error("surcharge",
+                                           "must equal packing.pressure: the ground starts at rest under it");
   }
   if (input.ground.surcharge > 0.5 * input.ground.unit_weight * input.ground.height) {
-    throw root.table("ground").error("surcharge", "is more than half the weight of the ground");
+    throw root.known_table("ground").error("surcharge", "is more than half the weight of the ground");
   }
 }
 
 /// Refuses a case that asks for something that a GPU does not compute.
 void check_gpu(const io::Table& root, const Case& input) {
   if (input.newton.tangent == kernels::TangentKind::loading)
-    throw root.table("newton").error("tangent", "\"loading\" is not computed by engine.backend = \"gpu\"");
+    throw root.known_table("newton").error("tangent", "\"loading\" is not computed by engine.backend = \"gpu\"");
 }
 
 std::string bytes_of(const std::filesystem::path& file) {
@@ -115,17 +125,13 @@ std::string default_title(const std::filesystem::path& file) {
 
 /// Reads the title, which names the folder of the results.
 std::string read_title(const io::Table& root, const std::filesystem::path& file) {
-  constexpr std::size_t longest = 200;  // of 255 bytes that the name of a file may have, the rest is for endings
-  std::string title = root.text("title", default_title(file));
-  if (title.empty()) throw root.error("title", "names the folder of the results: it must not be empty");
-  if (title.front() == '.' || title.find('/') != std::string::npos) {
-    throw root.error("title", "names the folder of the results: there must be no / in it and no dot at its beginning");
-  }
-  if (title.size() > longest) {
-    throw root.error("title", "names the folder of the results: it must have at most 200 bytes, but has " +
-                                  std::to_string(title.size()));
-  }
-  return title;
+  // Of 255 bytes that the name of a file may have, 200 are for the title and the rest for endings.
+  return root.text(
+      {"title", "Title of the run, which also names the folder of its results below `out`."}, default_title(file),
+      {.pattern = "[^./][^/]{0,199}",
+       .fault = "names the folder of the results: it must not be empty, there must be no / in it and no dot "
+                "at its beginning, and it must have at most 200 bytes",
+       .default_words = "the name of the case's folder, or of a file with another name than case.toml"});
 }
 
 /// Reads all tables of the kind of the case, whose keys are then known to the file.
@@ -158,15 +164,15 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   return input;
 }
 
-std::vector<io::KeyInfo> keys_of(CaseKind kind) {
+io::KeyList keys_of(CaseKind kind, const std::string& more) {
   std::string text = "kind = \"" + to_string(kind) + "\"\n";
   // One entry of each array of tables, and what cannot be left out: the values do not matter.
-  text += "[[soil.class]]\nsize_to = \"1 m\"\n";
+  text += "[[soil.class]]\nsize_to = \"1 m\"\n" + more;
   if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
   if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
   const io::CaseFile file = io::CaseFile::of_text(text, "keys of " + to_string(kind));
   static_cast<void>(read_case(file, "case.toml"));
-  return file.keys();
+  return {file.keys(), file.tables()};
 }
 
 }  // namespace voussoir::host

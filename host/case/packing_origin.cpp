@@ -20,14 +20,14 @@ constexpr std::size_t soil_prefix = 5;  ///< "soil."
 /// The error at the key's own place, where the case has this key.
 [[noreturn]] void refuse(const io::Table& root, const io::KeyDifference& difference, const std::string& maker) {
   const std::string key = difference.key.substr(soil_prefix);
-  throw root.table("soil").error(
+  throw root.known_table("soil").error(
       key, fmt::format("this case has {}, {} was made with {}", difference.ours, maker, difference.theirs));
 }
 
 void check_state(const io::Table& root, const std::filesystem::path& name, Case& input) {
   const io::Packing file = io::load_packing(name);
   const std::string maker = "the state in " + name.string();
-  const io::Table packing = root.table("packing");
+  const io::Table packing = root.known_table("packing");
   constexpr auto& names = kernels::PlainEngineLaw::history_names;
   const std::vector<std::string> ours(names.begin(), names.end());
   if (file.history_names != ours) {
@@ -61,14 +61,14 @@ void check_foreign_packing(const io::Table& root, const std::filesystem::path& n
   const std::string maker = "the packing in " + name.string();
   const auto length = [](double x) { return io::format_quantity(x, io::Dimension::length); };
   if (input.soil.thickness != file.thickness) {
-    if (root.table("soil").has("thickness")) {
-      throw root.table("soil").error(
+    if (root.known_table("soil").has("thickness")) {
+      throw root.known_table("soil").error(
           "thickness", fmt::format("this case has {}, {} was made with {}", length(input.soil.thickness), maker,
                                    length(file.thickness)));
     }
     const std::string first = input.packing.files.front().string();
     if (name != first) {  // the RVEs of a mesh share one thickness, since their stresses are forces over it
-      throw root.table("packing").error(
+      throw root.known_table("packing").error(
           "file", fmt::format("names packings of different thickness: {} in {} and {} in {}",
                               length(input.soil.thickness), first, length(file.thickness), name.string()));
     }
@@ -77,7 +77,8 @@ void check_foreign_packing(const io::Table& root, const std::filesystem::path& n
     input.soil.thickness = file.thickness;
   }
   if (input.kind == CaseKind::calibrate && !input.calibrate.thickness.empty()) {
-    throw root.table("calibrate").error("thickness", "cannot be searched: packing.file has a thickness of its own");
+    throw root.known_table("calibrate")
+        .error("thickness", "cannot be searched: packing.file has a thickness of its own");
   }
   for (const io::KeyDifference& d : differences(soil_keys(input.soil), soil_keys_of(file))) {
     // The sizes of the grains are those of the file, whatever curve the case gives.

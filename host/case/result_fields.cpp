@@ -21,12 +21,29 @@ kernels::MicrostructureRequest written_quantities(const OutputCase& output) {
   return written;
 }
 
+std::vector<std::string> result_field_names() {
+  std::vector<std::string> names;
+  for (const ResultField& field : result_field_table) names.emplace_back(field.name);
+  return names;
+}
+
+namespace {
+
+using Request = kernels::MicrostructureRequest;
+constexpr std::array<std::pair<const char*, bool Request::*>, 3> requests{
+    {{"fabric", &Request::fabric},
+     {"coordination", &Request::coordination},
+     {"strong_networks", &Request::strong_networks}}};
+
+}  // namespace
+
+std::vector<std::string> microstructure_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, member] : requests) names.emplace_back(name);
+  return names;
+}
+
 bool ask_for(std::string_view name, kernels::MicrostructureRequest& request) {
-  using Request = kernels::MicrostructureRequest;
-  constexpr std::array<std::pair<const char*, bool Request::*>, 3> requests{
-      {{"fabric", &Request::fabric},
-       {"coordination", &Request::coordination},
-       {"strong_networks", &Request::strong_networks}}};
   for (const auto& [known, member] : requests) {
     if (name != known) continue;
     request.*member = true;

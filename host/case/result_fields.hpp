@@ -115,8 +115,12 @@ struct OutputCase;
 /// What `output.microstructure` asks for, without the quantities of which `output.fields` keeps no field.
 [[nodiscard]] kernels::MicrostructureRequest written_quantities(const OutputCase& output);
 
-/// Adds the quantity that an entry of `output.microstructure` names to the request; false where there is no such
-/// quantity.
+[[nodiscard]] std::vector<std::string> result_field_names();
+
+/// What an entry of `output.microstructure` may be.
+[[nodiscard]] std::vector<std::string> microstructure_names();
+
+/// Adds the quantity that such an entry names to the request; false where there is no such quantity.
 [[nodiscard]] bool ask_for(std::string_view name, kernels::MicrostructureRequest& request);
 
 }  // namespace voussoir::host

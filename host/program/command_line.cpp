@@ -40,6 +40,8 @@ struct Arguments {
   bool list = false;
   bool json = false;
   bool gather = false;
+  bool markdown = false;
+  bool json_schema = false;
   std::string only;
 };
 
@@ -143,6 +145,22 @@ void describe_mesh(CLI::App& app, Arguments& a, Outcome& outcome) {
   mesh->callback([&a, &outcome] { outcome = command_mesh(a.file, a.overrides, a.output, a.replace); });
 }
 
+void describe_keys(CLI::App& app, Arguments& a, Outcome& outcome) {
+  CLI::App* keys = app.add_subcommand(
+      "keys", "print every key of case files and sweep files: type, default, limits, explanation, kinds that use it");
+  CLI::Option* kind = keys->add_option("kind", a.kind,
+                                       "only the keys of this kind of case; \"sweep\": those of sweep files");
+  CLI::Option* markdown = keys->add_flag("--markdown", a.markdown,
+                                         "print a page in Markdown in place of comma-separated values");
+  keys->add_flag("--json-schema", a.json_schema,
+                 "print a JSON schema, with which editors complete and check files; that of cases without a kind")
+      ->excludes(markdown);
+  keys->callback([&a, &outcome, kind] {
+    const KeyForm form = a.markdown ? KeyForm::page : (a.json_schema ? KeyForm::schema : KeyForm::table);
+    outcome = command_keys(kind->count() > 0 ? std::optional(a.kind) : std::nullopt, form);
+  });
+}
+
 /// Describes the commands with their options; `outcome` receives that of the command that was run.
 void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outcome& outcome) {
   app.require_subcommand(1);
@@ -172,9 +190,7 @@ void describe(CLI::App& app, Arguments& a, const std::string& command_text, Outc
   describe_ensemble(app, a, command_text, outcome);
   describe_mesh(app, a, outcome);
 
-  CLI::App* keys = app.add_subcommand("keys", "print all keys of a kind of case: type, default, limits");
-  keys->add_option("kind", a.kind, "kind of the case")->required();
-  keys->callback([&] { outcome = command_keys(a.kind); });
+  describe_keys(app, a, outcome);
 
   CLI::App* info = app.add_subcommand("info", "print where a result comes from, and its increments");
   CLI::Option_group* what = info->add_option_group("what");

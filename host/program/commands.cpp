@@ -119,15 +119,6 @@ Outcome command_mesh(const std::filesystem::path& case_file, const std::vector<s
       fmt::format("{}: {} elements, {} Gauss points\n", target.string(), mesh.elements(), 4 * mesh.elements()));
 }
 
-Outcome command_keys(const std::string& kind) {
-  for (const auto& [candidate, name] : case_kind_names) {
-    if (kind == name) return print_answer(io::key_table(keys_of(candidate)));
-  }
-  std::string names;
-  for (const auto& [candidate, name] : case_kind_names) names += (names.empty() ? "" : ", ") + std::string(name);
-  throw io::InputError("keys", "", "the kind must be one of " + names + ", is " + io::in_one_line(kind));
-}
-
 Outcome command_info(const std::filesystem::path& result_file) {
   std::string answer;
   try {  // for this command a file that cannot be read is wrong input

@@ -25,8 +25,12 @@ namespace voussoir::host {
 [[nodiscard]] Outcome command_mesh(const std::filesystem::path& case_file, const std::vector<std::string>& overrides,
                                    const std::filesystem::path& target, bool replace);
 
-/// `voussoir keys`: prints all keys of a kind with their types, defaults and limits.
-[[nodiscard]] Outcome command_keys(const std::string& kind);
+/// What `voussoir keys` prints: comma-separated values, a page in Markdown, or a JSON schema.
+enum class KeyForm { table, page, schema };
+
+/// `voussoir keys`: prints all keys of a kind of case, of sweep files ("sweep") or of all, with their types, defaults,
+/// limits and explanations.
+[[nodiscard]] Outcome command_keys(const std::optional<std::string>& kind, KeyForm form);
 
 /// `voussoir info`: prints where a result comes from, and its table of increments.
 [[nodiscard]] Outcome command_info(const std::filesystem::path& result_file);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <regex>
 #include <set>
 #include <string_view>
 
@@ -31,11 +32,9 @@ constexpr auto contains = [](const auto& list, const auto& one) {
 
 /// Says why a text cannot be the name of a run's folder and, without quotes, a field of summary.csv.
 std::string fault_of_name(const std::string& name) {
-  constexpr const char* allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-";
-  constexpr std::size_t longest = 200;
-  if (name.empty() || name.front() == '.' || name.find_first_not_of(allowed) != std::string::npos)
-    return "must consist of letters, digits and _ . - and must not begin with a dot";
-  if (name.size() > longest) return fmt::format("must have at most {} letters, has {}", longest, name.size());
+  constexpr std::size_t longest = 1000;  // of a text that std::regex, which calls itself for each letter, is given
+  static const std::regex allowed(name_rule.pattern);
+  if (name.size() > longest || !std::regex_match(name, allowed)) return name_rule.fault;
   return contains(taken_names, name) ? "is the name of a file that the sweep itself writes" : "";
 }
 
@@ -43,7 +42,11 @@ std::string fault_of_name(const std::string& name) {
 /// ground.cover_ratio = [2, 3] for a table [grid.ground].
 std::vector<std::string> texts_of_place(const io::Table& axis, const std::string& name) {
   try {
-    return axis.text_or_texts(name);
+    return axis.text_or_texts({"POINT",
+                               "A point of the axis, under the name that it gives to folders: an override "
+                               "`\"table.key=value\"`, the name of a case file that stands in place of `base`, or an "
+                               "array of these."},
+                              name);
   } catch (const io::InputError&) {
     throw axis.error(name,
                      "must be an override, the name of a case file, or an array of these; an axis of a key of the "
@@ -72,11 +75,19 @@ AxisPoint named_point(const io::Table& axis, const std::string& name, const fs::
 
 Axis axis_of(const io::Table& grid, const std::string& name, const fs::path& folder) {
   if (!grid.is_table(name)) {
-    const std::vector<std::string> values = grid.values_as_toml(name);
+    const std::vector<std::string> values = grid.values_as_toml(
+        {"\"TABLE.KEY\"",
+         "An axis: a key of the case in quotes, such as "
+         "`\"ground.cover_ratio\" = [2, 3, 4]`, and its values."},
+        name);
     if (values.empty()) throw grid.error(name, "has no values");
     return axis_of_key(name, values);
   }
-  const io::Table table = grid.table(name);
+  const io::Table table = grid.named_table(
+      {"NAME",
+       "An axis whose points have names, for what is more than the value of one key: "
+       "`NAME` heads its column in the tables of the results."},
+      name);
   Axis axis{.name = name, .points = {}};
   for (const std::string& point : table.names()) axis.points.push_back(named_point(table, point, folder));
   if (axis.points.empty()) throw grid.error(name, "has no points");
@@ -98,7 +109,10 @@ void expect_heading(const io::Table& grid, const std::string& key, const Axis& a
 /// The lists of `zip`, each a group of axes. An axis is in one of them at the most.
 std::vector<std::vector<std::string>> zips_of(const io::Table& grid) {
   const std::vector<std::string> axes = grid.names();
-  std::vector<std::vector<std::string>> zips = grid.lists_of_texts("zip");
+  std::vector<std::vector<std::string>> zips = grid.lists_of_texts(
+      {"zip",
+       "Groups of axes that advance together, such as `[[\"ground.cover_ratio\", \"ground.height\"]]`; the axes of a "
+       "group have equally many values. All other axes are crossed, each value with each."});
   std::set<std::string> found;
   for (const std::vector<std::string>& names : zips) {
     for (const std::string& name : names) {

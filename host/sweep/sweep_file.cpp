@@ -30,9 +30,58 @@ struct Common {
 };
 
 Common common_of(const io::Table& table, Common above) {
-  if (table.has("base")) above.base = table.path("base");
-  for (std::string& text : table.texts("set", std::vector<std::string>{})) above.overrides.push_back(std::move(text));
+  const auto base = table.optional_path(
+      {"base", "Case file of the runs, relative to this file; that of a grid or a run goes before that of the sweep."});
+  if (base) above.base = *base;
+  const io::Key set{
+      "set",
+      "Overrides of the case's keys, such as `[\"engine.preset=fast\"]`, as `--set` gives them; those of a "
+      "grid or a run are added to those of the sweep."};
+  for (std::string& text : table.texts(set, std::vector<std::string>{})) above.overrides.push_back(std::move(text));
   return above;
+}
+
+/// What a [grid] says beside its axes.
+struct GridHead {
+  Common common;
+  std::string name;
+  std::optional<std::int64_t> members;
+};
+
+GridHead read_grid(const io::Table& grid, const Common& above) {
+  GridHead head{.common = common_of(grid, above), .name = {}, .members = {}};
+  const io::Key name{"name", "Name of the grid, which is a folder around those of its runs."};
+  if (const auto given = grid.optional_text(name, name_rule)) head.name = checked_name(grid, "name", *given);
+  head.members = grid.optional_integer(
+      {"members",
+       "Number of runs at each point of the grid, with different draws of the packings, which are reduced to means and "
+       "bands. Without the key, one run is made with the seeds of the case."},
+      {.at_least = 1, .at_most = most_members});
+  return head;
+}
+
+/// What a [[run]] says: its name, and what it shares with no other.
+struct RunHead {
+  std::string name;
+  Common common;
+};
+
+RunHead read_run(const io::Table& table, const Common& above) {
+  const io::Key name{"name", "Name of the run, which is its folder below that of the sweep."};
+  RunHead head{.name = checked_name(table, "name", table.text(name, {}, name_rule)), .common = {}};
+  head.common = common_of(table, above);
+  return head;
+}
+
+std::vector<io::Table> runs_in(const io::Table& root) {
+  return root.tables({"run", "A run by its name, beside the runs of grids."});
+}
+
+std::vector<io::Table> grids_in(const io::Table& root) {
+  return root.table_or_tables(
+      {"grid",
+       "A grid of runs: all combinations of the values of its axes. A file with one grid writes `[grid]`; a file with "
+       "several writes `[[grid]]` for each, with a `name` in it."});
 }
 
 std::string below(const std::string& folder, const std::string& name) {
@@ -68,10 +117,7 @@ void add_point(SweepPlan& plan, const io::Table& grid, const PlannedRun& point, 
 
 void add_grid(SweepPlan& plan, const io::Table& grid, const Common& above) {
   const fs::path folder = plan.file.parent_path();
-  const Common common = common_of(grid, above);
-  const std::string name = grid.has("name") ? checked_name(grid, "name", grid.text("name")) : "";
-  std::optional<std::int64_t> members;
-  if (grid.has("members")) members = grid.integer("members", {.at_least = 1, .at_most = most_members});
+  const auto [common, name, members] = read_grid(grid, above);
   for (const GridPoint& point : points_of(grid, folder)) {
     PlannedRun run{.name = below(name, checked_name(grid, "", point.name)),
                    .case_file = point.case_file.empty() ? common.base : point.case_file,
@@ -90,8 +136,7 @@ void add_grid(SweepPlan& plan, const io::Table& grid, const Common& above) {
 }
 
 void add_run(SweepPlan& plan, const io::Table& table, const Common& above) {
-  const std::string name = checked_name(table, "name", table.text("name"));
-  const Common common = common_of(table, above);
+  const auto [name, common] = read_run(table, above);
   if (common.base.empty()) throw table.error("base", "is missing");
   plan.runs.push_back({.name = name,
                        .case_file = common.base,
@@ -131,12 +176,24 @@ SweepPlan load_sweep(const fs::path& file) {
   SweepPlan plan{.file = file, .text = io::read_text_file(file, most_sweep_bytes), .runs = {}, .ensembles = {}};
   const io::Table root = text.root();
   const Common common = common_of(root, {});
-  for (const io::Table& table : root.tables("run")) add_run(plan, table, common);
-  for (const io::Table& grid : root.table_or_tables("grid")) add_grid(plan, grid, common);
+  for (const io::Table& table : runs_in(root)) add_run(plan, table, common);
+  for (const io::Table& grid : grids_in(root)) add_grid(plan, grid, common);
   if (plan.runs.empty()) throw root.error("run", "there is no [[run]] and no [grid] in this sweep");
   text.finish();
   refuse_names(plan);
   return plan;
+}
+
+io::KeyList keys_of_sweep() {
+  const io::CaseFile file = io::CaseFile::of_text(
+      "[[run]]\nname = \"a\"\n[[grid]]\n\"ground.height\" = [1]\n[grid.soil]\ndense = \"a=1\"\n", "keys of sweeps");
+  const Common common = common_of(file.root(), {});
+  for (const io::Table& run : runs_in(file.root())) static_cast<void>(read_run(run, common));
+  for (const io::Table& grid : grids_in(file.root())) {
+    static_cast<void>(read_grid(grid, common));
+    static_cast<void>(points_of(grid, {}));
+  }
+  return {file.keys(), file.tables()};
 }
 
 const PlannedRun& run_named(const SweepPlan& plan, const std::string& name) {

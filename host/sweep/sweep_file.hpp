@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "io/key_info.hpp"
+
 namespace voussoir::host {
 
 struct PlannedRun {
@@ -40,6 +42,9 @@ struct SweepPlan {
 /// io::InputError for whatever the file says wrong: names, axes of different lengths that advance together, two runs of
 /// one name, no run at all.
 [[nodiscard]] SweepPlan load_sweep(const std::filesystem::path& file);
+
+/// All keys of sweep files. A key whose name the user chooses ends in a placeholder.
+[[nodiscard]] io::KeyList keys_of_sweep();
 
 /// The run of this name; throws io::InputError where there is none.
 [[nodiscard]] const PlannedRun& run_named(const SweepPlan& plan, const std::string& name);

@@ -5,6 +5,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
+from bad_settings import LINES, SETTINGS, SWEEPS
 from program import PROGRAM, ROOT, check, command, fresh, run, table
 
 CASE = ROOT / "cases" / "tunnel_elastic" / "case.toml"
@@ -37,33 +38,15 @@ def run_with(*settings):
     return ["run", CASE, "-o", OUT, *(word for setting in settings for word in ("--set", setting))]
 
 
-lines = CASE.read_text().count("\n") + 3
-expect_complaint(["run", with_line("[soil]\nfrictoin = '30 deg'"), "-o", OUT], f"bad.toml:{lines}", "frictoin")
-expect_complaint(
-    ["check", with_line("[soil]\nsize_minimum = '-2 mm'")], "bad.toml", "size_minimum", "at least 0.001 mm"
-)
-expect_complaint(["run", with_line("[soil]\nmodulus = '3 mm'"), "-o", OUT], "bad.toml", "modulus", "length")
-expect_complaint(["run", with_line("[soil]\nmodulus = 3"), "-o", OUT], "bad.toml", "modulus")
-expect_complaint(["run", with_line("this is no TOML"), "-o", OUT], "bad.toml")
+place = f"bad.toml:{CASE.read_text().count(chr(10)) + 3}"
+for text, fragments, _ in LINES:
+    expect_complaint(["run", with_line(text), "-o", OUT], "bad.toml", *fragments)
+    expect_complaint(["check", with_line(text)], "bad.toml", *fragments)
+expect_complaint(["check", with_line("[soil]\nfrictoin = '30 deg'")], place)
+for settings, fragments, _ in SETTINGS:
+    expect_complaint(run_with(*settings), *fragments)
 expect_complaint(["run", "no_such_case.toml", "-o", OUT], "no_such_case.toml")
-expect_complaint(run_with("ground.diameter=-5 m"), "ground.diameter", "at least 1 cm")
-expect_complaint(run_with("ground.diameter=5 kPa"), "ground.diameter", "pressure")
-expect_complaint(run_with("ground.depth=5 m"), "ground.depth", "unknown")
-expect_complaint(run_with("ground.cover_ratio=6"), "ground.cover_ratio", "invert")
-expect_complaint(run_with("ground.surcharge=2 kPa"), "ground.surcharge", "packing.pressure")
-expect_complaint(run_with("elastic.poisson=0.5"), "elastic.poisson")
-expect_complaint(run_with("volume_loss.increments=0"), "volume_loss.increments")
-expect_complaint(run_with("volume_loss.total=100 %"), "volume_loss.total")
-expect_complaint(run_with("packing.grains=two"), "packing.grains")
-expect_complaint(run_with("output.rves=[3, 3]"), "output.rves", "twice")
-expect_complaint(run_with("output.rves=[1000000]"), "output.rves", "1000000")
 expect_complaint(["check", CASE, "--set", "output.rves=[1000000]"], "output.rves", "1000000")
-expect_complaint(run_with('output.fields=["stress", "strian"]'), "output.fields", "strian")
-expect_complaint(run_with("title=../elsewhere"), "title")
-expect_complaint(run_with("title="), "title", "must not be empty")
-expect_complaint(run_with("kind=tunel"), "kind", "tunnel", "is tunel")
-expect_complaint(run_with("kind="), "kind", "tunnel", "is empty")
-expect_complaint(run_with("ground.diameter=5 deg"), "ground.diameter", "is an angle")
 os.mkfifo(fresh_file("pipe.h5"))
 expect_complaint(run_with(f"packing.file={Path('pipe.h5').absolute()}"), "packing.file", "pipe")
 Path("bad_particles.csv").write_text("id,x_m,y_m,r_m,theta_z_rad\n0,nowhere,0,0.001,0\n")
@@ -73,27 +56,21 @@ for name in ("bad_particles.csv", "bad_packing.h5"):
     for words in (["check", CASE], ["run", CASE, "-o", OUT]):
         expect_complaint([*words, "--set", f"packing.file={Path(name).absolute()}"], "packing.file", name)
 expect_complaint(run_with("no_equals_sign"), "no_equals_sign")
-expect_complaint(run_with("ground={width='40 m',width='50 m'}"), "--set ground", "is no TOML")
-expect_complaint(run_with("volume_loss.increments=9223372036854775808"), "volume_loss.increments", "is no TOML")
-expect_complaint(run_with("ground.height=" + "[" * 3000 + "]" * 3000), "--set", "open brackets")
-endless = ["ground.width=10 km", "ground.height=10 km", "ground.mesh_size_opening=1 m", "ground.mesh_size_far=1 m"]
-expect_complaint(run_with(*endless), "ground.mesh_size_far", "Gauss points", "this machine allows")
 expect_complaint(["run", CASE, "-o", CASE.parent], "no results of this program")
 expect_complaint(["run", CASE, "-o", OUT, "--threads", "0"], "--threads")
 expect_complaint(["run", CASE, "-o", OUT, "--resume", "--replace"], "--re")
 expect_complaint(["walk", CASE], "unknown command walk")
 expect_complaint([])
 expect_complaint(["info", CASE], "case.toml")
-Path("sweep.toml").write_text(f"base = '{CASE}'\n[[run]]\nname = 'a'\nset = ['ground.diametre=4 m']\n")
-expect_complaint(["sweep", "sweep.toml", "-o", OUT], "sweep.toml:4", "run a", "ground.diametre")
-for name, said in (("summary.csv", "itself writes"), ("run.lock", "itself writes"), ("x" * 256, "at most 200")):
-    Path("sweep.toml").write_text(f"base = '{CASE}'\n[[run]]\nname = '{name}'\n")
-    expect_complaint(["sweep", "sweep.toml", "-o", OUT], "sweep.toml:3", "name", said)
+for text, fragments, _ in SWEEPS:
+    Path("sweep.toml").write_text(f"base = '{CASE}'\n{text}")
+    expect_complaint(["sweep", "sweep.toml", "-o", OUT], *fragments)
 expect_complaint(["run", CASE, "-o", ""], "--output", "is empty")
-Path("sweep.toml").write_text(f"base = '{CASE}'\n[[run]]\nname = 'a'\n[[run]]\nname = 'a'\n")
-expect_complaint(["sweep", "sweep.toml", "-o", OUT], "name")
-Path("sweep.toml").write_text(f"base = '{CASE}'\n[[run]]\nname = 'a,b'\n")
-expect_complaint(["sweep", "sweep.toml", "-o", OUT], "name", "letters")
+expect_complaint(["keys", "tunel"], "must be one of pack", "sweep", "is tunel")
+expect_complaint(["keys", ""], "empty")
+expect_complaint(["keys", "--markdown", "--json-schema"], "--json-schema", "--markdown")
+expect_complaint(["keys", "tunnel", "pack"], "pack")
+expect_complaint(["keys", "--mardkown"], "--mardkown")
 
 # A run whose run.h5 has vanished or is damaged is known by its other files, and the line says the way on.
 whole = fresh("whole")

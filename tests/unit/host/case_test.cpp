@@ -54,7 +54,7 @@ TEST(Case, GradientsOfAPathKeepTheAreaAndHaveASizeToSearchIn) {
   const std::string before = "kind = 'probe'\n[[probe.path]]\n", key = "probe.path[0].gradient";
   expect_refused({before + "gradient = [0, 0, 0, 0]\nconstant_xx = true\n", {}, 3, key, "must not be 0"});
   expect_refused({before + "gradient = [1e-3, 0, 0, 0]\nconstant_xx = true\n", {}, 3, key, "must have no xx"});
-  expect_refused({before + "gradient = [0, 0, 0]\n", {}, 3, key, "four entries"});
+  expect_refused({before + "gradient = [0, 0, 0]\n", {}, 3, key, "must have 4 entries, has 3"});
   expect_refused({before + "gradient = [-0.5, 0.5, 0.5, -0.5]\n", {}, 3, key, "leaves no area"});
 }
 

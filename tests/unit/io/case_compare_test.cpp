@@ -49,11 +49,11 @@ TEST(CaseCompare, IdleKeysAreSaidOnceForAReason) {
   const auto path = std::filesystem::current_path() / "idle.toml";
   std::ofstream(path) << "[newton]\nnear = 0.1\nattempts = 3\n[soil]\nmodulus = \"1 GPa\"\nsizes = [1, 2]\n";
   const CaseFile file = CaseFile::load(path);
-  const Table newton = file.root().table("newton"), soil = file.root().table("soil");
-  for (const char* key : {"near", "attempts", "left_out"})
+  const Table newton = file.root().table({"newton", "A table."}), soil = file.root().table({"soil", "A table."});
+  for (const Key& key : {Key{"near", "A key."}, Key{"attempts", "A key."}, Key{"left_out", "A key."}})
     static_cast<void>(newton.quantity(key, Dimension::none, {.fallback = "1"}));
-  static_cast<void>(soil.quantity("modulus", Dimension::pressure));
-  static_cast<void>(soil.quantities("sizes", Dimension::none));
+  static_cast<void>(soil.quantity({"modulus", "A key."}, Dimension::pressure));
+  static_cast<void>(soil.quantities({"sizes", "A key."}, Dimension::none));
   EXPECT_TRUE(file.idle_keys().empty());
   for (const char* key : {"near", "attempts", "left_out"}) newton.declare_idle(key, "nothing is relaxed");
   soil.declare_idle("", "there are no grains");

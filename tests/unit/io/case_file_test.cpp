@@ -36,20 +36,21 @@ std::filesystem::path write(const std::string& text) {
 /// Reads every key of `valid`, as a host would.
 void read_all(const CaseFile& file) {
   const Table root = file.root();
-  static_cast<void>(root.choice("kind", {"tunnel", "pack"}));
-  static_cast<void>(root.integer("steps", {.at_least = 1}));
-  const Table soil = root.table("soil");
-  static_cast<void>(soil.quantity("radius", Dimension::length, {.positive = true}));
-  static_cast<void>(soil.quantity("weight", Dimension::unit_weight, {.at_least = "0 N/m3", .at_most = "30 kN/m3"}));
-  static_cast<void>(soil.quantity("friction", Dimension::none));
-  static_cast<void>(soil.boolean("kept"));
-  static_cast<void>(soil.text("shape"));
-  static_cast<void>(soil.quantity("thickness", Dimension::length, {.fallback = "0.1 m"}));
-  for (const Table& stage : root.tables("stage")) {
-    static_cast<void>(stage.text("name"));
+  static_cast<void>(root.choice({"kind", "A key."}, {"tunnel", "pack"}));
+  static_cast<void>(root.integer({"steps", "A key."}, {.at_least = 1}));
+  const Table soil = root.table({"soil", "A table."});
+  static_cast<void>(soil.quantity({"radius", "A key."}, Dimension::length, {.positive = true}));
+  static_cast<void>(
+      soil.quantity({"weight", "A key."}, Dimension::unit_weight, {.at_least = "0 N/m3", .at_most = "30 kN/m3"}));
+  static_cast<void>(soil.quantity({"friction", "A key."}, Dimension::none));
+  static_cast<void>(soil.boolean({"kept", "A key."}));
+  static_cast<void>(soil.text({"shape", "A key."}));
+  static_cast<void>(soil.quantity({"thickness", "A key."}, Dimension::length, {.fallback = "0.1 m"}));
+  for (const Table& stage : root.tables({"stage", "A table."})) {
+    static_cast<void>(stage.text({"name", "A key."}));
     static_cast<void>(
-        stage.quantities("targets", Dimension::none, {.positive = true}, std::vector<std::string>{"1 %"}));
-    static_cast<void>(stage.integers("seeds", {.at_least = 1}, std::vector<std::int64_t>{7}));
+        stage.quantities({"targets", "A key."}, Dimension::none, {.positive = true}, std::vector<std::string>{"1 %"}));
+    static_cast<void>(stage.integers({"seeds", "A key."}, {.at_least = 1}, std::vector<std::int64_t>{7}));
   }
   file.finish();
 }
@@ -75,12 +76,14 @@ std::string changed(const std::string& from, const std::string& to) {
 TEST(CaseFile, ValuesAreSi) {
   const CaseFile file = CaseFile::load(write(valid));
   read_all(file);
-  const Table soil = file.root().table("soil");
-  EXPECT_EQ(soil.quantity("radius", Dimension::length), 0.005);
-  EXPECT_EQ(soil.quantity("weight", Dimension::unit_weight), 2e4);
-  EXPECT_EQ(soil.quantity("thickness", Dimension::length, {.fallback = "0.1 m"}), 0.1);
-  EXPECT_EQ(file.root().tables("stage").at(0).quantities("targets", Dimension::none), (std::vector<double>{0.05, 0.1}));
-  EXPECT_EQ(file.root().tables("stage").at(1).integers("seeds"), (std::vector<std::int64_t>{1, 2}));
+  const Table soil = file.root().table({"soil", "A table."});
+  EXPECT_EQ(soil.quantity({"radius", "A key."}, Dimension::length), 0.005);
+  EXPECT_EQ(soil.quantity({"weight", "A key."}, Dimension::unit_weight), 2e4);
+  EXPECT_EQ(soil.quantity({"thickness", "A key."}, Dimension::length, {.fallback = "0.1 m"}), 0.1);
+  EXPECT_EQ(file.root().tables({"stage", "A table."}).at(0).quantities({"targets", "A key."}, Dimension::none),
+            (std::vector<double>{0.05, 0.1}));
+  EXPECT_EQ(file.root().tables({"stage", "A table."}).at(1).integers({"seeds", "A key."}),
+            (std::vector<std::int64_t>{1, 2}));
   EXPECT_FALSE(soil.has("thickness"));
 }
 
@@ -126,9 +129,9 @@ TEST(CaseFile, MissingFilesAreErrors) {
                             ": cannot be read");
   const auto path = write("packing = \"none.h5\"\nself = \"case.toml\"\n");
   const CaseFile file = CaseFile::load(path);
-  EXPECT_EQ(file.root().path("self"), path);
+  EXPECT_EQ(file.root().optional_path({"self", "A key."}), path);
   try {
-    static_cast<void>(file.root().path("packing"));
+    static_cast<void>(file.root().optional_path({"packing", "A key."}));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
@@ -140,11 +143,12 @@ TEST(CaseFile, OverridesReplaceAddAndAreChecked) {
   const CaseFile file = CaseFile::load(write(valid), {"soil.radius=7 mm", "steps=9", "soil.thickness=0.2 m",
                                                       "stage[1].name=late", "stage[0].targets=[1, \"2 %\"]"});
   read_all(file);
-  EXPECT_EQ(file.root().table("soil").quantity("radius", Dimension::length), 0.007);
-  EXPECT_EQ(file.root().integer("steps"), 9);
-  EXPECT_EQ(file.root().table("soil").quantity("thickness", Dimension::length), 0.2);
-  EXPECT_EQ(file.root().tables("stage").at(1).text("name"), "late");
-  EXPECT_EQ(file.root().tables("stage").at(0).quantities("targets", Dimension::none), (std::vector<double>{1, 0.02}));
+  EXPECT_EQ(file.root().table({"soil", "A table."}).quantity({"radius", "A key."}, Dimension::length), 0.007);
+  EXPECT_EQ(file.root().integer({"steps", "A key."}), 9);
+  EXPECT_EQ(file.root().table({"soil", "A table."}).quantity({"thickness", "A key."}, Dimension::length), 0.2);
+  EXPECT_EQ(file.root().tables({"stage", "A table."}).at(1).text({"name", "A key."}), "late");
+  EXPECT_EQ(file.root().tables({"stage", "A table."}).at(0).quantities({"targets", "A key."}, Dimension::none),
+            (std::vector<double>{1, 0.02}));
 
   EXPECT_EQ(message(valid, {"soil.radius=-7 mm"}), "--set soil.radius: must be positive, is -7 mm");
   EXPECT_EQ(message(valid, {"soil.radios=7 mm"}), "--set soil.radios: unknown key; did you mean \"radius\"?");
@@ -169,10 +173,15 @@ kept = true
 name = "only"
 )");
   read_all(file);
-  EXPECT_EQ(file.root().table("soil").quantity("radius", Dimension::length), 0.005);  // of whole.toml
-  EXPECT_EQ(file.root().table("soil").quantity("friction", Dimension::none), 0.7);    // soil.toml is the later one
-  EXPECT_TRUE(file.root().table("soil").boolean("kept"));                             // the file itself
-  EXPECT_EQ(file.root().tables("stage").size(), 1U);                                  // an array is replaced
+  EXPECT_EQ(file.root().table({"soil", "A table."}).quantity({"radius", "A key."}, Dimension::length),
+            0.005);  // of whole.toml
+  EXPECT_EQ(file.root().table({"soil", "A table."}).quantity({"friction", "A key."}, Dimension::none),
+            0.7);                                                                    // soil.toml
+                                                                                     // is the
+                                                                                     // later
+                                                                                     // one
+  EXPECT_TRUE(file.root().table({"soil", "A table."}).boolean({"kept", "A key."}));  // the file itself
+  EXPECT_EQ(file.root().tables({"stage", "A table."}).size(), 1U);                   // an array is replaced
   EXPECT_EQ(file.resolved().find("extends"), std::string::npos);
 
   const CaseFile same = load("extends = \"extended/whole.toml\"");
@@ -202,20 +211,23 @@ TEST(CaseFile, PathsBeginWhereTheyAreWritten) {
   std::ofstream(here / "extended" / "data.csv") << "1\n";
   std::ofstream(here / "extended" / "path.toml") << "file = \"data.csv\"\n";
   const auto file = write("extends = \"extended/path.toml\"");
-  EXPECT_TRUE(std::filesystem::equivalent(CaseFile::load(file).root().path("file"), here / "extended" / "data.csv"));
-  EXPECT_TRUE(std::filesystem::equivalent(CaseFile::load(file, {"file=extended/data.csv"}).root().path("file"),
+  EXPECT_TRUE(std::filesystem::equivalent(CaseFile::load(file).root().optional_path({"file", "A key."}).value(),
                                           here / "extended" / "data.csv"));
+  EXPECT_TRUE(std::filesystem::equivalent(
+      CaseFile::load(file, {"file=extended/data.csv"}).root().optional_path({"file", "A key."}).value(),
+      here / "extended" / "data.csv"));
 }
 
 TEST(CaseFile, ATableOfTheCommandLineLeavesTheOtherKeysOfTheFile) {
   for (const char* table : {"soil={}", "soil={radius = \"7 mm\"}"}) {
     const CaseFile file = CaseFile::load(write(valid), {table});
     read_all(file);
-    EXPECT_EQ(file.root().table("soil").quantity("weight", Dimension::unit_weight), 20e3) << table;
+    EXPECT_EQ(file.root().table({"soil", "A table."}).quantity({"weight", "A key."}, Dimension::unit_weight), 20e3)
+        << table;
   }
   const CaseFile changed = CaseFile::load(write(valid), {"soil={radius = \"7 mm\", kept = false}"});
-  EXPECT_EQ(changed.root().table("soil").quantity("radius", Dimension::length), 7e-3);
-  EXPECT_FALSE(changed.root().table("soil").boolean("kept"));
+  EXPECT_EQ(changed.root().table({"soil", "A table."}).quantity({"radius", "A key."}, Dimension::length), 7e-3);
+  EXPECT_FALSE(changed.root().table({"soil", "A table."}).boolean({"kept", "A key."}));
   EXPECT_EQ(message(valid, {"soil={radios = 1}"}), "--set soil.radios: unknown key; did you mean \"radius\"?");
 }
 
@@ -223,13 +235,14 @@ TEST(CaseFile, OneNameOrAListOfNamesOfFiles) {
   const auto here = std::filesystem::current_path();
   for (const char* name : {"a.csv", "b.csv"}) std::ofstream(here / name) << "1\n";
   using Paths = std::vector<std::filesystem::path>;
-  EXPECT_EQ(CaseFile::load(write("file = \"a.csv\"")).root().optional_paths("file"), Paths{here / "a.csv"});
+  EXPECT_EQ(CaseFile::load(write("file = \"a.csv\"")).root().optional_paths({"file", "A key."}), Paths{here / "a.csv"});
   const CaseFile both = CaseFile::load(write("file = [\"a.csv\", \"b.csv\"]"));
-  EXPECT_EQ(both.root().optional_paths("file"), (Paths{here / "a.csv", here / "b.csv"}));
+  EXPECT_EQ(both.root().optional_paths({"file", "A key."}), (Paths{here / "a.csv", here / "b.csv"}));
   EXPECT_NE(both.resolved().find("file = [\"a.csv\", \"b.csv\"]"), std::string::npos) << both.resolved();
-  EXPECT_TRUE(CaseFile::load(write("x = 1")).root().optional_paths("file").empty());
+  EXPECT_TRUE(CaseFile::load(write("x = 1")).root().optional_paths({"file", "A key."}).empty());
   for (const char* wrong : {"file = []", "file = [\"a.csv\", \"none.csv\"]", "file = [1]", "file = [[\"a.csv\"]]"}) {
-    EXPECT_THROW(static_cast<void>(CaseFile::load(write(wrong)).root().optional_paths("file")), InputError) << wrong;
+    EXPECT_THROW(static_cast<void>(CaseFile::load(write(wrong)).root().optional_paths({"file", "A key."})), InputError)
+        << wrong;
   }
 }
 
@@ -276,8 +289,56 @@ TEST(CaseFile, FingerprintDoesNotFollowHowAValueIsWritten) {
 
 TEST(CaseFile, ChecksOfTheHostCarryThePlace) {
   const CaseFile file = CaseFile::load(write(valid));
-  const std::string line = file.root().table("soil").error("weight", "does not fit the radius").what();
+  const std::string line = file.root().table({"soil", "A table."}).error("weight", "does not fit the radius").what();
   EXPECT_TRUE(line.ends_with("case.toml:5: soil.weight: does not fit the radius")) << line;
+}
+
+TEST(CaseFile, ListsHaveLimitsOfTheirLength) {
+  const auto said = [](const std::string& text, const ListRule& rule) {
+    const CaseFile file = CaseFile::of_text(text, "case.toml");
+    try {
+      static_cast<void>(file.root().integers({"list", "A key."}, {}, {}, rule));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(said("list = [1, 2]", {.least = 2, .most = 2, .different = true}), "");
+  EXPECT_EQ(said("list = [1]", {.least = 2}), "case.toml:1: list: must have at least 2 entries, has 1");
+  EXPECT_EQ(said("list = []", {.least = 1}), "case.toml:1: list: must have at least 1 entry, has 0");
+  EXPECT_EQ(said("list = [1, 2]", {.most = 1}), "case.toml:1: list: must have at most 1 entry, has 2");
+  EXPECT_EQ(said("list = [1]", {.least = 4, .most = 4}), "case.toml:1: list: must have 4 entries, has 1");
+  EXPECT_EQ(said("list = [3, 3]", {.different = true}), "case.toml:1: list: names 3 twice");
+}
+
+TEST(CaseFile, TextsMatchTheirPattern) {
+  const TextRule rule{.pattern = "[a-z]+", .fault = "must be small letters"};
+  const CaseFile file = CaseFile::of_text("good = \"abc\"\nbad = \"abC\"", "case.toml");
+  EXPECT_EQ(file.root().text({"good", "A key."}, {}, rule), "abc");
+  EXPECT_EQ(file.root().optional_text({"none", "A key."}, rule), std::nullopt);
+  expect_throws<InputError>([&] { static_cast<void>(file.root().optional_text({"bad", "A key."}, rule)); },
+                            "case.toml:2: bad: must be small letters");
+}
+
+TEST(CaseFile, KeysAndTablesKeepTheirSentences) {
+  const CaseFile file = CaseFile::of_text("[[grid]]\n\"a.b\" = [1]\n[grid.soft]\nx = \"y=1\"", "case.toml");
+  for (const Table& grid : file.root().table_or_tables({"grid", "A grid."})) {
+    static_cast<void>(grid.values_as_toml({"\"TABLE.KEY\"", "An axis."}, "a.b"));
+    static_cast<void>(grid.named_table({"NAME", "A named axis."}, "soft").text_or_texts({"POINT", "A point."}, "x"));
+    EXPECT_EQ(grid.optional_integer({"members", "Runs."}), std::nullopt);
+  }
+  const std::vector<KeyInfo> keys = file.keys(), tables = file.tables();
+  ASSERT_EQ(keys.size(), 4U);
+  EXPECT_EQ(keys[0].key, "extends");
+  EXPECT_EQ(keys[1].key, "grid[].\"TABLE.KEY\"");
+  EXPECT_EQ(keys[2].key, "grid[].NAME.POINT");
+  EXPECT_EQ(keys[2].help, "A point.");
+  EXPECT_EQ(keys[3].key, "grid[].members");
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(tables[0].help, "A grid.");
+  EXPECT_EQ(tables[1].key, "grid[].NAME");
+  EXPECT_EQ(file.root().known_tables("grid").size(), 1U);
+  EXPECT_THROW(static_cast<void>(file.root().known_table("never_read")), std::logic_error);
 }
 
 }  // namespace
