@@ -106,12 +106,14 @@ run([PROGRAM, "sweep", "numbers.toml", "-o", str(fresh("swept_numbers")), "-j", 
 
 
 # No memory, at whatever place: 4 and one line, or the run has enough. Below that the program cannot even be loaded.
+# Where OpenBLAS is the BLAS, it starts threads before the program begins, and ends the process by a signal when it cannot.
 codes = []
+one_thread = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
 few = ["volume_loss.increments=1", "ground.mesh_size_opening=1.5 m", "gravity.ratio=9"]
 for megabytes in range(100, 300, 16):
     words = command("tunnel_elastic", fresh("out_memory"), few, "--threads", "2")
     limited = ["sh", "-c", f'ulimit -v {megabytes * 1024}; exec "$@"', "sh", *words]
-    done = subprocess.run(limited, check=False, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(limited, check=False, capture_output=True, text=True, timeout=120, env=one_thread)
     codes.append(done.returncode)
     check(done.returncode in (0, 4, 127), f"{megabytes} MB: exit {done.returncode}: {done.stderr}")
     check(done.returncode != 4 or done.stderr.count("\n") <= 2, f"{megabytes} MB: {done.stderr}")
