@@ -1,14 +1,40 @@
 #include "fem/sparse_solver.hpp"
 
 #include <cholmod.h>
+#include <sys/mman.h>
 
 #include <algorithm>
+#include <new>
 #include <stdexcept>
 
-// One BLAS thread: sums then have one order, so that a run repeats its bits. Present only where OpenBLAS is the BLAS.
+// Present only where OpenBLAS is the BLAS; dsyrk is a function of every BLAS.
 extern "C" [[gnu::weak]] void openblas_set_num_threads(int);
+extern "C" [[gnu::weak]] void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*,
+                                     const int*, const double*, double*, const int*);
 
 namespace voussoir::fem {
+namespace {
+
+/// OpenBLAS gets one thread: sums then have one order, so that a run repeats its bits. It asks the system for its work
+/// memory at the first product of matrices, and where there is none it asks again without end (version 0.3.21, 128 MiB).
+/// So the memory is tried first, and OpenBLAS takes it at once. Throws std::bad_alloc.
+void prepare_open_blas() {
+  if (openblas_set_num_threads == nullptr || dsyrk_ == nullptr) return;
+  openblas_set_num_threads(1);
+  static bool has_memory = false;
+  if (has_memory) return;
+  constexpr std::size_t work_memory = std::size_t{130} << 20;
+  void* tried = mmap(nullptr, work_memory, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (tried == MAP_FAILED) throw std::bad_alloc();
+  munmap(tried, work_memory);
+  const int one = 1;
+  const double unit = 1;
+  double product = 0;
+  dsyrk_("L", "N", &one, &one, &unit, &unit, &one, &unit, &product, &one);
+  has_memory = true;
+}
+
+}  // namespace
 
 /// The library's workspace, the matrix (its arrays are ours) and the factor.
 struct SparseSolver::Cholmod {
@@ -18,7 +44,7 @@ struct SparseSolver::Cholmod {
   SparsePattern pattern;
 
   Cholmod() {
-    if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+    prepare_open_blas();
     cholmod_start(&common);
     common.print = 0;
     common.supernodal = CHOLMOD_SUPERNODAL;  // LL^T: reports a matrix that is not positive definite
