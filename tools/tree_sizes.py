@@ -2,9 +2,9 @@
 """Sizes of folders and files, and the depth of the includes: tools/tree_sizes.py [--before REVISION] [--into FILE]
 
 The tables are Markdown. --before adds tables of an earlier revision; --into writes all of them into a page between the
-lines `<!-- sizes -->` and `<!-- end of sizes -->`, so that docs/explanation/architecture.md is brought up to date by
+lines `<!-- sizes -->` and `<!-- end of sizes -->`, so that docs/measurements/rooms.md is brought up to date by
 
-    tools/tree_sizes.py --before 902c57a --into docs/explanation/architecture.md
+    tools/tree_sizes.py --before 902c57a --into docs/measurements/rooms.md
 """
 
 import argparse

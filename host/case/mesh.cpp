@@ -148,20 +148,23 @@ BiaxialBvpCase read_biaxial_bvp(const io::Table& table) {
 
 NewtonCase read_newton(const io::Table& table) {
   NewtonCase newton;
-  read_quantity(table,
-                {"tolerance",
-                 "Equilibrium counts as found where the residual force of the free nodes is at most this share of the "
-                 "external force, beside a floor for the noise of the grains."},
-                Dimension::none, newton.tolerance, {.at_least = "1e-15", .at_most = "0.1"});
+  read_quantity(
+      table,
+      {"tolerance",
+       "Equilibrium counts as found where the residual force of the free nodes is at most this share of the "
+       "external force or of the reactions of the supports, whichever is larger, beside a floor for the noise of "
+       "the grains."},
+      Dimension::none, newton.tolerance, {.at_least = "1e-15", .at_most = "0.1"});
   read_quantity(table,
                 {"displacement_tolerance",
                  "Equilibrium counts as found where, besides, the last correction of the displacements is at most this "
                  "share of the increment's displacements."},
                 Dimension::none, newton.displacement_tolerance, {.at_least = "1e-15", .at_most = "1"});
-  read_integer(
-      table,
-      {"maximum_iterations", "Largest number of iterations of one increment; an increment that needs more is cut."},
-      newton.maximum_iterations, {.at_least = 1, .at_most = 10000});
+  read_integer(table,
+               {"maximum_iterations",
+                "Largest number of iterations of an increment that may not be relaxed; an increment that needs more is "
+                "cut."},
+               newton.maximum_iterations, {.at_least = 1, .at_most = 10000});
   read_integer(table,
                {"anderson_depth",
                 "Number of earlier iterations that Anderson acceleration uses; 0 is plain Newton iteration, which "
@@ -193,7 +196,7 @@ NewtonCase read_newton(const io::Table& table) {
   read_quantity(table,
                 {"relax_near",
                  "An increment is relaxed at once when the residual of an iteration is below this share of the "
-                 "external force; the way to equilibrium is short then."},
+                 "external force or of the reactions, whichever is larger; the way to equilibrium is short then."},
                 Dimension::none, newton.relax_near, {.at_least = "0", .at_most = "0.5"});
   read_integer(table,
                {"relax_substeps",
