@@ -200,6 +200,15 @@ class Runs(unittest.TestCase):
         self.assertIn("**CPS_D, here** (100 grains) | 30.0 ± 0.0 | 30.0 ± 0.0 | 0.0 ± 0.0 |", table)
         self.assertIn("φ_p is not met, off by -9.1°", table)
 
+    def test_own_soil_has_no_name_of_the_study(self):
+        for sizes, name in (('["2 mm", "20 mm"]', "gravel"), ('["1 mm", "8 mm"]', "dense sand")):
+            made_up_tests("runs/own", 100, [1e5, 1e5], case=f"[soil]\nsizes = {sizes}\npassing = [0, 1]\n")
+            table_two.write([element_tests.Series(RunIndex("runs/own"))], Path("own.md"))
+            table = Path("own.md").read_text()
+            self.assertIn(f"**own {name}, here** (100 grains)", table)
+            self.assertIn(f"own {name}: the study has no such soil", table)
+            self.assertNotRegex(table, "CP[SG]_")
+
     def test_probe(self):
         """The strain that the rotation shows is that of the case, and so nearly is the one that the tangents imply."""
         probe = probes.Probe(Path("runs/probe"))

@@ -39,7 +39,7 @@ class Series:
 
     def __init__(self, run: RunIndex) -> None:
         self.run = run
-        self.soil = run.soil
+        self.soil = run.named_soil  # one of NAMES only where the grains are the study's
         table = run.table("strength", *STRENGTH)
         valid = table.get("valid", np.ones(len(table["seed"])))  # files of the first versions lack it
         self.tests: list[Test] = []
@@ -123,7 +123,7 @@ def _by_seed(tests: Iterable[Test]) -> list[list[Test]]:
 
 
 def labels(all_series: Sequence[Series]) -> list[str]:
-    """Short names for legends: the study's name of the soil, and the folder where two runs have one soil."""
+    """Short names for legends: the study's name of its soils, and the folder where two runs have one soil."""
     soils = [NAMES.get(series.soil, series.soil) for series in all_series]
     return [
         soil if soils.count(soil) == 1 else f"{soil} ({series.run.folder.resolve().name})"

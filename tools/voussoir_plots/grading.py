@@ -58,10 +58,21 @@ def _label(group: list[Packing], diameter: np.ndarray) -> str:
     one = group[0]
     void = np.mean([packing.void_ratio for packing in group])
     count = f"{len(group)} packings" if len(group) > 1 else "1 packing"
+    friction = _common(group, "consolidation_friction", 1, ", $\\mu_t$ = {:.3g}")
+    pressure = _common(group, "pressure", 1e-3, ", {:.3g} kPa")
     return (
-        f"{one.soil}, {count} of {len(one.radius)} grains, $e$ = {void:.3f}: "
+        f"{one.soil}, {count} of {len(one.radius)} grains{friction}{pressure}, $e$ = {void:.3f}: "
         f"$C_u$ = {uniformity:.2f}, $C_c$ = {curvature:.2f} by area"
     )
+
+
+def _common(group: list[Packing], name: str, factor: float, text: str) -> str:
+    """A number of the recipe in words; empty where the packings differ in it or do not tell it, as where the program
+    searched the friction of each packing."""
+    if not all(name in packing.numbers for packing in group):
+        return ""
+    texts = {text.format(packing.numbers[name] * factor) for packing in group}
+    return texts.pop() if len(texts) == 1 else ""
 
 
 def _scale(axis: Axes, sizes: np.ndarray) -> None:

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 from .settings import Settings
-from .soils import soil_of
+from .soils import named, soil_of
 from .units import quantity
 
 FORMAT_VERSION = 1  # of docs/reference/files.md
@@ -143,9 +143,20 @@ class RunIndex:
         the study's trends differ."""
         if self.case.get("material", "grains") != "grains":
             return "no grains"
-        soil, packing = self.case.get("soil", {}), self.case.get("packing", {})
-        largest = max(_lengths(soil.get("sizes", [])), default=0.0)
-        return soil_of(largest, packing.get("void_ratio", 0), packing.get("consolidation_friction", 0))
+        packing = self.case.get("packing", {})
+        return soil_of(self._sizes()[-1], packing.get("void_ratio", 0), packing.get("consolidation_friction", 0))
+
+    @property
+    def named_soil(self) -> str:
+        """The same, with "own" before it where the grains are not those of the study's soil."""
+        sizes = self._sizes()
+        return named(self.soil, sizes[0], sizes[-1])
+
+    def _sizes(self) -> list[float]:
+        """The grain diameters that the case names, ascending [m]; without a curve the least and the largest one."""
+        soil = self.case.get("soil", {})
+        ends = [soil.get("size_minimum", "2 mm"), soil.get("size_maximum", "4.75 mm")]
+        return sorted(_lengths(soil.get("sizes", []))) or sorted(_lengths(ends)) or [0.0]
 
 
 class Result(RunIndex):

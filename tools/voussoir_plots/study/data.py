@@ -39,8 +39,9 @@ class Tunnel:
 
     @property
     def code(self) -> str:
-        """The paper's name of the soil."""
-        return NAMES.get(self.soil, self.soil)
+        """The paper's name of the soil, where it is one of the paper's."""
+        soil = self.members[0].named_soil
+        return NAMES.get(soil, soil)
 
     @cached_property
     def cover_ratio(self) -> float:
