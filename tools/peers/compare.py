@@ -64,6 +64,7 @@ def yade(packing):
             capture_output=True,
             text=True,
             cwd=folder,
+            env=os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parent)},
         )
         result = Path(folder) / "yade.json"
         if not result.exists():

@@ -12,9 +12,11 @@ from voussoir_plots.style import CYCLE, save
 from .program import ROOT, Program
 
 DATA = ROOT / "tests/data/yade"
+PARTICLES = DATA / "CPS_D_particles.csv"  # made at 100 kPa
 STRAIN = 0.1  # to which the test is driven
-SEEDS = (1, 2, 3, 4)  # of the packings whose K0 stands beside Yade's
-YADE_K0 = ((5, 0.59), (20, 0.44), (100, 0.32), (200, 0.30), (700, 0.29))  # vertical stress [kPa], K0: cases/column
+SEEDS = (1, 2, 3, 4)  # of the packings made at 1 kPa
+# Vertical stress [kPa] and K0 of Yade's packing, unloaded from 100 kPa to 1 kPa: docs/validation/yade.md.
+YADE_K0 = ((5, 0.59), (20, 0.44), (100, 0.32), (200, 0.30), (700, 0.29))
 
 
 def _reference() -> np.ndarray:
@@ -56,24 +58,32 @@ def _values(test: Test, name: str) -> np.ndarray:
     return test.curve["q"] / test.curve["p"] if name == "q_over_p" else test.curve[name]
 
 
+def _column(program: Program, name: str, *settings: str) -> np.ndarray:
+    """Vertical stress [Pa] and K0 of one packing, alone in a column of its own."""
+    folder = program.run(f"column_{name}", ROOT / "cases/column/case.toml", *settings)
+    return np.loadtxt(folder / "k0.csv", delimiter=",", skiprows=1, unpack=True)
+
+
 def _k0(axis: Axes, program: Program) -> list[str]:
-    """K0 of four packings, each alone in a column of its own."""
+    """K0 of Yade's packing in both codes, and of four packings that were made at 1 kPa."""
     stress, recorded = np.array(YADE_K0).T
-    found: list[np.ndarray] = []
-    for seed in SEEDS:
-        settings = (f"packing.folder={program.folder / 'packings'}", "packing.grains=700", "packing.candidates=1")
-        folder = program.run(f"column_{seed}", ROOT / "cases/column/case.toml", *settings, f"packing.seed={seed}")
-        vertical, k0 = np.loadtxt(folder / "k0.csv", delimiter=",", skiprows=1, unpack=True)
-        axis.plot(vertical / 1e3, k0, color=CYCLE[0], linewidth=1, label="" if found else "Voussoir, four packings")
-        found.append(np.interp(np.log(1e3 * stress), np.log(vertical), k0))
-    axis.plot(stress, recorded, "s", color=CYCLE[3], label="Yade 2023.02a, one packing")
+    unloaded = _column(program, "unloaded", f"packing.file={PARTICLES}")
+    recipe = (f"packing.folder={program.folder / 'packings'}", "packing.grains=700", "packing.candidates=1")
+    made = [_column(program, str(seed), *recipe, f"packing.seed={seed}") for seed in SEEDS]
+    for index, (vertical, k0) in enumerate(made):
+        label = "" if index > 0 else "Voussoir, four packings made at 1 kPa"
+        axis.plot(vertical / 1e3, k0, color=CYCLE[0], linewidth=1, label=label)
+    axis.plot(unloaded[0] / 1e3, unloaded[1], "--", color=CYCLE[1], label="Voussoir, Yade's packing")
+    axis.plot(stress, recorded, "s", color=CYCLE[3], label="Yade 2023.02a, Yade's packing")
     axis.set_xscale("log")
     axis.set_xlabel("vertical stress [kPa]")
     axis.set_ylabel("$K_0$ [-]")
     axis.legend()
+    at = [np.interp(np.log(1e3 * stress), np.log(vertical), k0) for vertical, k0 in (unloaded, *made)]
     return [
-        f"K0 at {s:g} kPa: Yade {y:.2f}, here {np.min(v):.3f} to {np.max(v):.3f}"
-        for s, y, v in zip(stress, recorded, np.array(found).T)
+        f"K0 at {s:g} kPa: Yade {y:.2f}, the same packing here {v[0]:.3f}, packings made at 1 kPa {v[1:].min():.3f} "
+        f"to {v[1:].max():.3f}"
+        for s, y, v in zip(stress, recorded, np.array(at).T)
     ]
 
 
@@ -81,7 +91,7 @@ def draw(program: Program, path: Path) -> list[str]:
     folder = program.run(
         "yade_biaxial",
         ROOT / "cases/biaxial/case.toml",
-        f"packing.file={DATA / 'CPS_D_particles.csv'}",
+        f"packing.file={PARTICLES}",
         "packing.seeds=[]",
         'biaxial.pressures=["100 kPa"]',
         f"biaxial.strain={STRAIN}",
