@@ -16,8 +16,8 @@ namespace voussoir::fem {
 namespace {
 
 /// OpenBLAS gets one thread: sums then have one order, so that a run repeats its bits. It asks the system for its work
-/// memory at the first product of matrices, and where there is none it asks again without end (version 0.3.21, 128 MiB).
-/// So the memory is tried first, and OpenBLAS takes it at once. Throws std::bad_alloc.
+/// memory at the first product of matrices, and where there is none it asks again without end (version 0.3.21, 128
+/// MiB). So the memory is tried first, and OpenBLAS takes it at once. Throws std::bad_alloc.
 void prepare_open_blas() {
   if (openblas_set_num_threads == nullptr || dsyrk_ == nullptr) return;
   openblas_set_num_threads(1);

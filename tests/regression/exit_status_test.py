@@ -106,7 +106,7 @@ run([PROGRAM, "sweep", "numbers.toml", "-o", str(fresh("swept_numbers")), "-j", 
 
 
 # No memory, at whatever place: 4 and one line, or the run has enough. Below that the program cannot even be loaded.
-# Where OpenBLAS is the BLAS, it starts threads before the program begins, and ends the process by a signal when it cannot.
+# Where OpenBLAS is the BLAS, it starts threads before the program begins, and ends the process when it cannot.
 codes = []
 one_thread = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
 few = ["volume_loss.increments=1", "ground.mesh_size_opening=1.5 m", "gravity.ratio=9"]
