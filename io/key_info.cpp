@@ -15,7 +15,9 @@ void collect(const CaseNode& node, const std::string& prefix, bool tables, std::
   for (const auto& child : node.children) {
     const bool is_entry = child->name.front() == '[';
     const std::string& name = child->placeholder.empty() ? child->name : child->placeholder;
-    const std::string full = is_entry ? prefix + "[]" : prefix + (prefix.empty() ? "" : ".") + name;
+    std::string full = prefix;
+    if (!is_entry && !prefix.empty()) full += '.';
+    full += is_entry ? "[]" : name;
     const bool is_table = !child->info || child->info->type == KeyType::table;
     if (child->info && is_table == tables) {
       keys.push_back(*child->info);
