@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <stdexcept>
 #include <utility>
 
 #include "host/ensemble/csv.hpp"
@@ -59,6 +60,15 @@ void name_failed(const EnsembleMembers& ensemble, bool reduced) {
                                                  one ? "is" : "are");
   complain(ensemble, fmt::format("{} of {} members {} the means and bands: {}", names.size(), ensemble.runs.size(),
                                  what, fmt::join(names, ", ")));
+}
+
+/// A member that is done and has no results is not left out in silence. Throws std::runtime_error.
+void expect_results(const EnsembleMembers& ensemble) {
+  for (std::size_t k = 0; k < ensemble.runs.size(); ++k) {
+    const ProcessRun& run = ensemble.runs[k];
+    if (run.end.outcome == Outcome::done && !ensemble.reduced[k])
+      throw std::runtime_error(fmt::format("{}: the run is done, but its results are missing", run.folder.string()));
+  }
 }
 
 /// Says whether the folder still belongs to this process, as a run does before each write.
@@ -138,6 +148,7 @@ Outcome reduce_members(const EnsembleMembers& ensemble, std::optional<double> er
   for (const ProcessRun& run : ensemble.runs) ends.push_back(run.end);
   const Outcome outcome = outcome_of(ends);
   if (interrupted() || outcome == Outcome::interrupted) return Outcome::interrupted;
+  expect_results(ensemble);
   name_failed(ensemble, true);
   name_failed(ensemble, false);
   remove_earlier_reduction(ensemble.folder);

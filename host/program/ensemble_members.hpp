@@ -43,6 +43,7 @@ void write_summary(const EnsembleMembers& ensemble);
 /// Names the members that did not end well and writes ensemble.h5, fields/, curves.csv and members.csv in place of an
 /// earlier reduction's. `error` is the standard error that --until reached. Returns the outcome of the ensemble but for
 /// its goal: that of its runs, or interrupted where a request to stop ended the reduction.
+/// Throws std::runtime_error where a member that is done has no results.
 [[nodiscard]] Outcome reduce_members(const EnsembleMembers& ensemble, std::optional<double> error, const RunLock& lock);
 
 }  // namespace voussoir::host
