@@ -7,50 +7,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "host/case/load_case.hpp"
-#include "io/input_error.hpp"
+#include "tests/case_with_key.hpp"
 
 namespace voussoir::host {
 namespace {
 
 using io::KeyInfo;
 using io::KeyType;
-
-/// A case of this kind in which the key has this value, and the line of the key.
-std::pair<std::string, int> case_with(CaseKind kind, const KeyInfo& key, const std::string& value) {
-  const std::size_t dot = key.key.rfind('.');
-  const std::string table = dot == std::string::npos ? "" : key.key.substr(0, dot), name = key.key.substr(dot + 1);
-  std::string text = name == "kind" ? "" : "kind = \"" + to_string(kind) + "\"\n";
-  if (!table.empty())
-    text += table.ends_with("[]") ? "[[" + table.substr(0, table.size() - 2) + "]]\n" : "[" + table + "]\n";
-  if (table == "soil.class[]" && name != "size_to") text += "size_to = \"1 m\"\n";
-  if (table == "probe.path[]" && name != "gradient") text += "gradient = [0, 0, 0, 0]\n";
-  if (table == "calibrate" && name != "rolling_stiffness") text += "rolling_stiffness = [0.1, 0.2]\n";
-  const auto line = 1 + static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-  text += name + " = " + value + "\n";
-  if (kind == CaseKind::calibrate && table != "calibrate") text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
-  return {text, line};
-}
-
-/// What load_case says of the text; empty where it takes the case.
-std::string said_of(const std::string& text) {
-  std::filesystem::remove("case.toml");  // a file written over is synced by some file systems, which takes longer than
-                                         // all else
-  std::ofstream("case.toml") << text;
-  try {
-    static_cast<void>(load_case("case.toml"));
-  } catch (const io::InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// The key as messages name it: with the number of its entry.
 std::string in_messages(const KeyInfo& key) {
@@ -77,10 +45,10 @@ std::string outside(const KeyInfo& key, const std::string& limit, int direction)
 void expect_limit(CaseKind kind, const KeyInfo& key, const std::string& limit, bool upper) {
   SCOPED_TRACE(to_string(kind) + ": " + key.key + " at " + limit);
   ASSERT_FALSE(limit.empty()) << "a number without limits may be one that no run can use";
-  const std::string at = said_of(case_with(kind, key, as_value(key, limit)).first);
+  const std::string at = said_of(case_with(kind, key.key, as_value(key, limit)).first);
   // Relations to other keys may forbid the limit here; key_limits_long_test.py tries it with other values beside it.
   EXPECT_EQ(at.find("must be at "), std::string::npos) << at;
-  const auto [text, line] = case_with(kind, key, as_value(key, outside(key, limit, upper ? 1 : -1)));
+  const auto [text, line] = case_with(kind, key.key, as_value(key, outside(key, limit, upper ? 1 : -1)));
   const std::string said = said_of(text);
   EXPECT_TRUE(said.starts_with(fmt::format("case.toml:{}: {}", line, in_messages(key)))) << said;
   EXPECT_NE(said.find(fmt::format("must be at {} {}, is ", upper ? "most" : "least", limit)), std::string::npos)
@@ -147,7 +115,7 @@ TEST(KeyLimits, ValuesOfWrongFormsAreRefusedAtTheirPlace) {
     for (const KeyInfo& key : keys_of(kind).keys) {
       if (!tried.insert(key.key).second) continue;
       for (const std::string& form : wrong_forms(key)) {
-        const auto [text, line] = case_with(kind, key, form);
+        const auto [text, line] = case_with(kind, key.key, form);
         const std::string said = said_of(text);
         EXPECT_TRUE(said.starts_with(fmt::format("case.toml:{}: {}", line, in_messages(key))))
             << key.key << " = " << form.substr(0, 80) << ": \"" << said << "\"";

@@ -3,38 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "host/case/key_reference.hpp"
 #include "host/case/load_case.hpp"
 #include "host/sweep/sweep_file.hpp"
-#include "io/input_error.hpp"
+#include "tests/case_with_key.hpp"
 
 namespace voussoir::host {
 namespace {
-
-/// What load_case says of a case of this kind with a value for the key that no key takes.
-std::string said_of(CaseKind kind, const std::string& key) {
-  const std::string table = io::parent_of(key);
-  std::string text = "kind = \"" + to_string(kind) + "\"\n";
-  if (!table.empty())
-    text += table.ends_with("[]") ? "[[" + table.substr(0, table.size() - 2) + "]]\n" : "[" + table + "]\n";
-  if (table == "soil.class[]" && key != "soil.class[].size_to") text += "size_to = \"1 m\"\n";
-  if (table == "probe.path[]" && key != "probe.path[].gradient") text += "gradient = [0, 0, 0, 0]\n";
-  if (table == "calibrate" && key != "calibrate.rolling_stiffness") text += "rolling_stiffness = [0.1, 0.2]\n";
-  text += io::last_part(key) + " = 1979-05-27\n";
-  if (kind == CaseKind::calibrate && table != "calibrate") text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
-  std::filesystem::remove("case.toml");
-  std::ofstream("case.toml") << text;
-  try {
-    static_cast<void>(load_case("case.toml"));
-  } catch (const io::InputError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 const io::ListedKey& key_named(const io::KeyReference& reference, const std::string& name) {
   const auto found = std::find_if(reference.keys.begin(), reference.keys.end(),
@@ -50,7 +27,7 @@ TEST(KeyReference, EachKindAcceptsTheKeysThatTheListGivesItAndNoOther) {
     for (const io::ListedKey& listed : all.keys) {
       if (listed.info.key == "kind" || listed.info.key == "extends") continue;
       const bool is_listed = std::find(listed.kinds.begin(), listed.kinds.end(), name) != listed.kinds.end();
-      const std::string said = said_of(kind, listed.info.key);
+      const std::string said = said_of(case_with(kind, listed.info.key, "1979-05-27").first);
       EXPECT_NE(said, "") << name << " takes a date for " << listed.info.key;
       EXPECT_EQ(said.find("unknown key") == std::string::npos, is_listed) << name << ": " << said;
     }
