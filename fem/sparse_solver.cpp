@@ -6,10 +6,12 @@
 #include <new>
 #include <stdexcept>
 
-// Present only where OpenBLAS is the BLAS; dsyrk is a function of every BLAS.
+// Present only where OpenBLAS is the BLAS; dsyrk is a function of every BLAS, whose Fortran gives its name the
+// underscore.
 extern "C" [[gnu::weak]] void openblas_set_num_threads(int);
-extern "C" [[gnu::weak]] void dsyrk_(const char*, const char*, const int*, const int*, const double*, const double*,
-                                     const int*, const double*, double*, const int*);
+extern "C" [[gnu::weak]] void dsyrk_(  // NOLINT(readability-identifier-naming)
+    const char*, const char*, const int*, const int*, const double*, const double*, const int*, const double*, double*,
+    const int*);
 
 namespace voussoir::fem {
 namespace {
