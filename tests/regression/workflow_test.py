@@ -63,8 +63,10 @@ done = run(by_workflow(SWEEP, "file"), code=4)
 check("file/.workflow: Not a directory" in done.stderr and done.stderr.count("\n") == 1, f"not one line: {done.stderr}")
 
 # Snakemake is killed, a run survives, and the next call waits for it.
-swept, survivor, lock_text = next(filter(None, (killed_with_survivor() for _ in range(10))), (None, None, None))
-check(survivor, "in ten tries no run has survived its Snakemake")
+found = next(filter(None, (killed_with_survivor() for _ in range(10))), None)
+check(found is not None, "in ten tries no run has survived its Snakemake")
+assert found is not None
+swept, survivor, lock_text = found
 second = start(by_workflow(SWEEP, swept, "--cores", "2"), "second.log")
 wait_until(lambda: "waits: " in Path("second.log").read_text(), second, "run that waits")
 os.kill(survivor, signal.SIGCONT)
