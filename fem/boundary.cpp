@@ -47,7 +47,7 @@ Point volume_loss_displacement(const Point& x, const Point& invert, double volum
 }
 
 void constrain_volume_loss(Constraints& constraints, const Mesh& mesh, double from, double to) {
-  const Point invert = mesh.coordinates.col(mesh.node_set("invert").front());
+  const Point invert = mesh.coordinates.col(mesh.point("invert"));
   for (const int node : mesh.node_set("opening")) {
     const Point x = mesh.coordinates.col(node);
     const Point u = volume_loss_displacement(x, invert, to) - volume_loss_displacement(x, invert, from);

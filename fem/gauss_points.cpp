@@ -37,11 +37,16 @@ GaussPoints gauss_points(const Mesh& mesh, const Coordinates& coordinates) {
     for (int a = 0; a < 8; ++a) x.col(a) = coordinates.col(mesh.elements[e][a]);
     for (int p = 0; p < 4; ++p) {
       const ReferencePoint& reference = reference_points()[p];
+      points.positions.col(4 * e + p) = x * reference.shape;
+      if (mesh.is_dug_out(e)) {
+        points.gradients[4 * e + p].setZero();
+        points.volumes[4 * e + p] = 0;
+        continue;
+      }
       const Eigen::Matrix2d jacobian = x * reference.gradient;  // J_ij = dx_i / dxi_j
       const double det = jacobian.determinant();
       points.gradients[4 * e + p] = reference.gradient * jacobian.inverse();
       points.volumes[4 * e + p] = det;
-      points.positions.col(4 * e + p) = x * reference.shape;
       points.smallest_jacobian = det < points.smallest_jacobian || !(det == det) ? det : points.smallest_jacobian;
     }
   }

@@ -16,6 +16,8 @@ struct GaussPoints {
   double smallest_jacobian = 0;              ///< min det J over all points [m2]; not positive: the mesh is folded
 };
 
+/// The points of an element that has been dug out have no volume and no gradients, so that they add nothing to forces
+/// and stiffness; their element may be folded.
 [[nodiscard]] GaussPoints gauss_points(const Mesh& mesh, const Coordinates& coordinates);
 
 /// Computes the gradient H_ij = d u_i / d x_j of a nodal vector field u (size n_dofs) at every Gauss point [-].

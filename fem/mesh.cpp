@@ -9,18 +9,20 @@ namespace voussoir::fem {
 namespace {
 
 template <class Set>
-const Set& find_set(const std::map<std::string, Set>& sets, const std::string& name) {
+const Set& find_set(const std::map<std::string, Set>& sets, const char* what, const std::string& name) {
   const auto found = sets.find(name);
   if (found != sets.end()) return found->second;
   std::string known;
   for (const auto& [key, value] : sets) known += (known.empty() ? "" : ", ") + key;
-  throw std::out_of_range("the mesh has no boundary '" + name + "'; it has " + known);
+  throw std::out_of_range(std::string("the mesh has no ") + what + " '" + name + "'; it has " +
+                          (known.empty() ? "none" : known));
 }
 
 }  // namespace
 
-const std::vector<Edge>& Mesh::edge_set(const std::string& name) const { return find_set(edges, name); }
-const std::vector<int>& Mesh::node_set(const std::string& name) const { return find_set(nodes, name); }
+const std::vector<Edge>& Mesh::edge_set(const std::string& name) const { return find_set(edges, "boundary", name); }
+const std::vector<int>& Mesh::node_set(const std::string& name) const { return find_set(nodes, "boundary", name); }
+int Mesh::point(const std::string& name) const { return find_set(points, "point", name); }
 
 double area_left_of(const Coordinates& coordinates, const std::vector<Edge>& chain) {
   double twice = 0;

@@ -1,8 +1,9 @@
 #pragma once
-/// Meshes of eight-node quadrilaterals (Q8, serendipity) and their named boundaries.
+/// Meshes of eight-node quadrilaterals (Q8, serendipity) with named boundaries, regions and points.
 ///
-/// Origin at the base on the symmetry axis, x to the right, y up, metres. Element nodes: corners 0-3 counter-clockwise,
-/// then the midsides 4 (0-1), 5 (1-2), 6 (2-3), 7 (3-0). Degree of freedom 2*node is u_x, 2*node + 1 is u_y.
+/// x to the right, y up, metres; a tunnel's ground has the origin at the base on the tunnel's vertical axis. Element
+/// nodes: corners 0-3 counter-clockwise, then the midsides 4 (0-1), 5 (1-2), 6 (2-3), 7 (3-0). Degree of freedom 2*node
+/// is u_x, 2*node + 1 is u_y.
 
 #include <Eigen/Dense>
 #include <array>
@@ -21,23 +22,39 @@ struct Mesh {
   Coordinates coordinates;             ///< of the undeformed mesh [m]
   std::vector<ElementNodes> elements;  ///< Gauss point p of element e has the index 4 * e + p
 
-  /// Boundaries as chains, each edge starting where the one before it ends; all chains together run counter-clockwise
-  /// around the soil: "base" (x grows), "side" (y grows), "top" (x falls), "axis" (x = 0, y falls; with a tunnel in two
-  /// pieces, above the crown and below the invert) and "opening" (from crown to invert, clockwise about its centre).
+  /// The outer edges of each named boundary, the soil on the left of each, as chains: an edge starts where the one
+  /// before it ends. A boundary may have several pieces, one after the other, or be closed. All outer edges together
+  /// run counter-clockwise around the soil and clockwise about a hole. Built-in shapes have "base" (x grows), "side" or
+  /// "right" (y grows), "top" (x falls), "axis" or "left" (y falls) and "opening".
   std::map<std::string, std::vector<Edge>> edges;
 
-  /// Every boundary of `edges` under its name, in the order of its chain without repetition; with a tunnel "crown" and
-  /// "invert" (one node each).
+  /// Outer edges on no named boundary.
+  std::vector<Edge> unnamed_edges;
+
+  /// The nodes of each named boundary in the order of its chain without repetition. A curve inside the ground has nodes
+  /// but no edges.
   std::map<std::string, std::vector<int>> nodes;
+
+  std::map<std::string, int> points;  ///< nodes with names, such as "crown" and "invert" of a tunnel
+
+  std::vector<std::string> region_names;  ///< empty: all elements are of one region without a name
+  std::vector<int> region;                ///< of each element, an index into region_names; empty as region_names is
+
+  /// Non-zero for elements that have been dug out: they have neither stiffness nor weight. Empty: none has been.
+  std::vector<char> dug_out;
 
   [[nodiscard]] int n_nodes() const { return static_cast<int>(coordinates.cols()); }
   [[nodiscard]] int n_elements() const { return static_cast<int>(elements.size()); }
   [[nodiscard]] int n_dofs() const { return 2 * n_nodes(); }
   [[nodiscard]] int n_points() const { return 4 * n_elements(); }
 
+  [[nodiscard]] bool is_dug_out(int element) const { return !dug_out.empty() && dug_out[element] != 0; }
+
   /// The named boundary; throws std::out_of_range, whose message lists the names that exist.
   [[nodiscard]] const std::vector<Edge>& edge_set(const std::string& name) const;
   [[nodiscard]] const std::vector<int>& node_set(const std::string& name) const;
+  /// The node with this name; throws std::out_of_range as the others.
+  [[nodiscard]] int point(const std::string& name) const;
 };
 
 /// Area between a boundary chain and the line x = 0, or within a closed chain, integrated along the curved edges [m2].

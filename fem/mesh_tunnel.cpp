@@ -86,8 +86,8 @@ Mesh complete_half_tunnel(const HalfTunnelOptions& options, const QuadMesh& quad
   // they have in every other mesh.
   for (const Edge& edge : mesh.edge_set("opening"))
     mesh.coordinates.col(edge[1]) = opening.project(mesh.coordinates.col(edge[1]));
-  mesh.nodes["crown"] = {mesh.node_set("opening").front()};
-  mesh.nodes["invert"] = {mesh.node_set("opening").back()};
+  mesh.points["crown"] = mesh.node_set("opening").front();
+  mesh.points["invert"] = mesh.node_set("opening").back();
   if (!(gauss_points(mesh, mesh.coordinates).smallest_jacobian > 0))
     throw std::runtime_error("tunnel mesh: an element is folded; try other element sizes");
   return mesh;

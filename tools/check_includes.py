@@ -42,6 +42,8 @@ ROOMS = {
         ("ranks", "library"),
         ("record",),
         ("stages", "element_tests"),
+        ("scene",),
+        ("kinds",),
         ("estimate", "ensemble"),
         ("sweep",),
         ("program",),

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/stages/k0_table.hpp"
+#include "host/scene/k0_table.hpp"
 
 namespace voussoir::host {
 namespace {

@@ -40,6 +40,7 @@ Load largest_load(const Case& input) {
       return rest(input.probe.pressure, "of the packing");
     case CaseKind::pack:
       return rest(input.packing.pressure, "of the packing");
+    case CaseKind::scene:
     case CaseKind::column:
     case CaseKind::tunnel:
       break;

@@ -7,9 +7,9 @@
 #include "host/case/accuracy.hpp"
 #include "host/element_tests/calibration.hpp"
 #include "host/estimate/storage.hpp"
+#include "host/kinds/ground_loads.hpp"
+#include "host/kinds/tunnel_mesh.hpp"
 #include "host/packing/packings.hpp"
-#include "host/stages/ground_loads.hpp"
-#include "host/stages/tunnel_mesh.hpp"
 
 namespace voussoir::host {
 namespace {

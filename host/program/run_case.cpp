@@ -12,11 +12,12 @@
 #include "host/element_tests/calibrate_run.hpp"
 #include "host/element_tests/pack.hpp"
 #include "host/element_tests/probe.hpp"
+#include "host/kinds/biaxial_bvp.hpp"
+#include "host/kinds/column.hpp"
+#include "host/kinds/tunnel.hpp"
 #include "host/program/failure.hpp"
 #include "host/record/log.hpp"
-#include "host/stages/biaxial_bvp.hpp"
-#include "host/stages/column.hpp"
-#include "host/stages/tunnel.hpp"
+#include "host/scene/run_scene.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
@@ -58,6 +59,8 @@ Outcome run_kind(const Case& input, const RunOptions& options) {
       return answer(run_column(input, options), options);
     case CaseKind::biaxial_bvp:
       return answer(run_biaxial_bvp(input, options), options);
+    case CaseKind::scene:
+      return answer(run_scene(input, options), options);
     case CaseKind::pack:
       return run_pack(input);
     case CaseKind::probe:

@@ -69,8 +69,8 @@ TEST(VolumeLoss, RemovesExactlyItsShareOfTheArea) {
     for (const auto& [dof, value] : increment) moved(dof % 2, dof / 2) += value;
   }
   EXPECT_NEAR(area_left_of(moved, mesh.edge_set("opening")) / before, 0.8, 1e-13);
-  const int crown = mesh.node_set("crown")[0];
-  const int invert = mesh.node_set("invert")[0];
+  const int crown = mesh.point("crown");
+  const int invert = mesh.point("invert");
   EXPECT_NEAR(mesh.coordinates(1, crown) - moved(1, crown), 5 * (1 - std::sqrt(0.8)), 1e-13);  // 0.528 m
   EXPECT_EQ(moved.col(invert), mesh.coordinates.col(invert));
   EXPECT_EQ(moved(0, crown), 0);

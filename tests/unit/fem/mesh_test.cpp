@@ -41,10 +41,10 @@ void check_tunnel(const HalfTunnelOptions& o) {
   for (const int node : mesh.node_set("opening"))
     EXPECT_NEAR((mesh.coordinates.col(node) - centre).norm(), o.diameter / 2, 1e-14 * o.height);
   for (const int node : mesh.node_set("axis")) EXPECT_EQ(mesh.coordinates(0, node), 0);
-  EXPECT_EQ(mesh.coordinates(0, mesh.node_set("crown")[0]), 0);
-  EXPECT_EQ(mesh.coordinates(0, mesh.node_set("invert")[0]), 0);
-  EXPECT_NEAR(mesh.coordinates(1, mesh.node_set("crown")[0]), o.height - o.cover, 1e-12);
-  EXPECT_NEAR(mesh.coordinates(1, mesh.node_set("invert")[0]), o.height - o.cover - o.diameter, 1e-12);
+  EXPECT_EQ(mesh.coordinates(0, mesh.point("crown")), 0);
+  EXPECT_EQ(mesh.coordinates(0, mesh.point("invert")), 0);
+  EXPECT_NEAR(mesh.coordinates(1, mesh.point("crown")), o.height - o.cover, 1e-12);
+  EXPECT_NEAR(mesh.coordinates(1, mesh.point("invert")), o.height - o.cover - o.diameter, 1e-12);
   double previous = 1e300;
   for (const int node : mesh.node_set("opening")) {  // from crown to invert
     EXPECT_LT(mesh.coordinates(1, node), previous);

@@ -6,7 +6,7 @@
 
 #include "fem/linear_elastic.hpp"
 #include "fem/mesh_rectangle.hpp"
-#include "host/stages/biaxial_bvp.hpp"
+#include "host/kinds/biaxial_bvp.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "host/stages/biaxial_bvp.hpp"
-#include "host/stages/column.hpp"
-#include "host/stages/geostatic_check.hpp"
-#include "host/stages/opening_check.hpp"
-#include "host/stages/tunnel.hpp"
-#include "host/stages/volume_loss.hpp"
+#include "host/kinds/biaxial_bvp.hpp"
+#include "host/kinds/column.hpp"
+#include "host/kinds/geostatic_check.hpp"
+#include "host/kinds/opening_check.hpp"
+#include "host/kinds/tunnel.hpp"
+#include "host/kinds/volume_loss.hpp"
 #include "io/increment_file.hpp"
 #include "tests/format_page.hpp"
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "host/stages/k0_table.hpp"
+#include "host/scene/k0_table.hpp"
 
 namespace voussoir::host {
 namespace {

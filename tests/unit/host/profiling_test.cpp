@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "host/stages/column.hpp"
+#include "host/kinds/column.hpp"
 
 namespace voussoir::host {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "host/case/result_fields.hpp"
-#include "host/stages/biaxial_bvp.hpp"
+#include "host/kinds/biaxial_bvp.hpp"
 #include "host/stages/make_material.hpp"
 #include "tests/format_page.hpp"
 

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "fem/linear_elastic.hpp"
+#include "host/kinds/column.hpp"
+#include "host/kinds/geostatic_check.hpp"
+#include "host/kinds/opening_check.hpp"
+#include "host/kinds/tunnel_mesh.hpp"
 #include "host/record/provenance.hpp"
-#include "host/stages/column.hpp"
-#include "host/stages/geostatic_check.hpp"
 #include "host/stages/ground_checkpoint.hpp"
-#include "host/stages/opening_check.hpp"
-#include "host/stages/tunnel_mesh.hpp"
 
 namespace voussoir::host {
 namespace {

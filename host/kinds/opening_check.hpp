@@ -6,8 +6,8 @@
 
 #include "host/case/case.hpp"
 #include "host/record/columns.hpp"
+#include "host/scene/k0_table.hpp"
 #include "host/stages/ground.hpp"
-#include "host/stages/k0_table.hpp"
 
 namespace voussoir::host {
 

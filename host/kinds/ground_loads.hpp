@@ -7,7 +7,7 @@
 #include "fem/boundary.hpp"
 #include "fem/mesh.hpp"
 #include "host/case/case.hpp"
-#include "host/stages/k0_table.hpp"
+#include "host/scene/k0_table.hpp"
 
 namespace voussoir::host {
 

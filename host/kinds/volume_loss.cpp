@@ -1,4 +1,4 @@
-#include "host/stages/volume_loss.hpp"
+#include "host/kinds/volume_loss.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "host/stages/geostatic_check.hpp"
-#include "host/stages/ground_loads.hpp"
+#include "host/kinds/geostatic_check.hpp"
+#include "host/kinds/ground_loads.hpp"
+#include "host/kinds/opening_check.hpp"
 #include "host/stages/ground_record.hpp"
-#include "host/stages/opening_check.hpp"
 #include "host/stages/stage_driver.hpp"
 
 namespace voussoir::host {
@@ -53,7 +53,7 @@ void record_start(GroundRun& run, const GroundCase& soil, const K0Table& k0) {
 TunnelReport tunnel_report(const Ground& ground) {
   const std::vector<int>& top = ground.mesh.node_set("top");
   TunnelReport report;
-  report.crown_settlement = settlement(ground, ground.mesh.node_set("crown").front());
+  report.crown_settlement = settlement(ground, ground.mesh.point("crown"));
   report.surface_settlement = settlement(ground, top.front());
   for (const int node : top) report.surface_settlement = std::max(report.surface_settlement, settlement(ground, node));
   report.area_loss = area_loss(ground);

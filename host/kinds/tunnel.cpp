@@ -1,4 +1,4 @@
-#include "host/stages/tunnel.hpp"
+#include "host/kinds/tunnel.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -8,14 +8,14 @@
 #include <span>
 #include <stdexcept>
 
+#include "host/kinds/column.hpp"
+#include "host/kinds/gravity.hpp"
+#include "host/kinds/tunnel_mesh.hpp"
+#include "host/kinds/volume_loss.hpp"
 #include "host/record/provenance.hpp"
 #include "host/record/remarks.hpp"
-#include "host/stages/column.hpp"
-#include "host/stages/gravity.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/ground_run.hpp"
-#include "host/stages/tunnel_mesh.hpp"
-#include "host/stages/volume_loss.hpp"
 #include "io/input_error.hpp"
 #include "io/result_file.hpp"
 

@@ -1,4 +1,4 @@
-#include "host/stages/tunnel_mesh.hpp"
+#include "host/kinds/tunnel_mesh.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -1,4 +1,4 @@
-#include "host/stages/column.hpp"
+#include "host/kinds/column.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -9,9 +9,9 @@
 #include <string>
 
 #include "fem/mesh_rectangle.hpp"
+#include "host/kinds/ground_loads.hpp"
 #include "host/record/provenance.hpp"
 #include "host/record/remarks.hpp"
-#include "host/stages/ground_loads.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/stage_driver.hpp"
 #include "io/atomic_file.hpp"

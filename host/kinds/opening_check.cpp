@@ -1,10 +1,10 @@
-#include "host/stages/opening_check.hpp"
+#include "host/kinds/opening_check.hpp"
 
 #include <cmath>
 #include <vector>
 
 #include "fem/assembly.hpp"
-#include "host/stages/ground_loads.hpp"
+#include "host/kinds/ground_loads.hpp"
 
 namespace voussoir::host {
 

@@ -1,6 +1,6 @@
-#include "host/stages/gravity.hpp"
+#include "host/kinds/gravity.hpp"
 
-#include "host/stages/ground_loads.hpp"
+#include "host/kinds/ground_loads.hpp"
 #include "host/stages/stage_driver.hpp"
 
 namespace voussoir::host {

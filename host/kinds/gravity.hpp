@@ -1,8 +1,8 @@
 #pragma once
 /// Stage "gravity" takes the ground from its isotropic initial state to geostatic equilibrium, on a fixed mesh.
 
+#include "host/scene/k0_table.hpp"
 #include "host/stages/ground_run.hpp"
-#include "host/stages/k0_table.hpp"
 #include "host/stages/stage.hpp"
 
 namespace voussoir::host {

@@ -1,4 +1,4 @@
-#include "host/stages/ground_loads.hpp"
+#include "host/kinds/ground_loads.hpp"
 
 #include "fem/load_stepper.hpp"
 

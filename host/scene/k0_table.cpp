@@ -1,4 +1,4 @@
-#include "host/stages/k0_table.hpp"
+#include "host/scene/k0_table.hpp"
 
 #include <algorithm>
 #include <cassert>

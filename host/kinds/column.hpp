@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/record/columns.hpp"
+#include "host/scene/k0_table.hpp"
 #include "host/stages/ground_run.hpp"
-#include "host/stages/k0_table.hpp"
 #include "host/stages/stage.hpp"
 
 namespace voussoir::host {

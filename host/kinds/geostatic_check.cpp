@@ -1,4 +1,4 @@
-#include "host/stages/geostatic_check.hpp"
+#include "host/kinds/geostatic_check.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -1,4 +1,4 @@
-#include "host/stages/biaxial_bvp.hpp"
+#include "host/kinds/biaxial_bvp.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
