@@ -41,34 +41,38 @@ void constrain(Constraints& constraints, const std::vector<int>& nodes, int axis
   }
 }
 
-Point volume_loss_displacement(const Point& x, const Point& invert, double volume_loss) {
-  if (!(volume_loss >= 0 && volume_loss < 1)) throw std::invalid_argument("boundary: volume loss must be in [0, 1)");
-  return (std::sqrt(1 - volume_loss) - 1) * (x - invert);
-}
-
-void constrain_volume_loss(Constraints& constraints, const Mesh& mesh, double from, double to) {
-  const Point invert = mesh.coordinates.col(mesh.point("invert"));
-  for (const int node : mesh.node_set("opening")) {
-    const Point x = mesh.coordinates.col(node);
-    const Point u = volume_loss_displacement(x, invert, to) - volume_loss_displacement(x, invert, from);
-    constrain(constraints, {node}, 0, u.x());
-    constrain(constraints, {node}, 1, u.y());
-  }
+Point affine_displacement(const Point& x, const Point& centre, double rotation, double area) {
+  if (!(area > -1)) throw std::invalid_argument("boundary: the area must not vanish");
+  const double scale = std::sqrt(1 + area);
+  const Point from_centre = x - centre;
+  if (rotation == 0) return (scale - 1) * from_centre;
+  const double c = scale * std::cos(rotation), s = scale * std::sin(rotation);
+  return {(c - 1) * from_centre.x() - s * from_centre.y(), s * from_centre.x() + (c - 1) * from_centre.y()};
 }
 
 Eigen::VectorXd body_force(const Mesh& mesh, const Coordinates& coordinates, const Point& b) {
+  return body_force(mesh, coordinates, std::vector<Point>(static_cast<std::size_t>(mesh.n_elements()), b));
+}
+
+Eigen::VectorXd body_force(const Mesh& mesh, const Coordinates& coordinates, std::span<const Point> b) {
   const GaussPoints points = gauss_points(mesh, coordinates);
   Eigen::VectorXd f = Eigen::VectorXd::Zero(mesh.n_dofs());
   for (int i = 0; i < mesh.n_points(); ++i) {
     const auto [xi, eta] = q8::gauss_points[i % 4];
     const q8::Shape shape = q8::shape(xi, eta);
-    for (int a = 0; a < 8; ++a) f.segment<2>(2 * mesh.elements[i / 4][a]) += shape[a] * points.volumes[i] * b;
+    for (int a = 0; a < 8; ++a) f.segment<2>(2 * mesh.elements[i / 4][a]) += shape[a] * points.volumes[i] * b[i / 4];
   }
   return f;
 }
 
 Eigen::VectorXd pressure_force(const Coordinates& coordinates, const std::vector<Edge>& edges, double p) {
   return integrate_edges(coordinates, edges, [p](const Point&, const Point& n) -> Point { return -p * n; });
+}
+
+Eigen::VectorXd constant_traction_force(const Coordinates& coordinates, const std::vector<Edge>& edges,
+                                        const Point& traction) {
+  return integrate_edges(coordinates, edges,
+                         [&traction](const Point&, const Point& n) -> Point { return n.norm() * traction; });
 }
 
 Eigen::VectorXd traction_force(const Coordinates& coordinates, const std::vector<Edge>& edges,
@@ -80,8 +84,17 @@ Eigen::VectorXd traction_force(const Coordinates& coordinates, const std::vector
 }
 
 Stress GeostaticStress::operator()(const Point& x) const {
-  const double vertical = -(load_factor * unit_weight * (height - x.y()) + surcharge);
-  return {k0(vertical) * vertical, vertical, 0};
+  double overburden = 0;
+  double top = height;
+  std::size_t at = 0;
+  for (;; ++at) {
+    const bool last = at + 1 == layers.size() || x.y() >= layers[at].bottom;
+    overburden += load_factor * layers[at].unit_weight * (top - (last ? x.y() : layers[at].bottom));
+    if (last) break;
+    top = layers[at].bottom;
+  }
+  const double vertical = -(overburden + surcharge);
+  return {k0(at, vertical) * vertical, vertical, 0};
 }
 
 }  // namespace voussoir::fem

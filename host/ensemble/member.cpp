@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "host/ensemble/trough_fit.hpp"
-#include "host/kinds/ground_loads.hpp"
+#include "host/kinds/tunnel_scene.hpp"
 #include "io/increment_file.hpp"
 
 namespace voussoir::host {

@@ -7,22 +7,16 @@
 #include <filesystem>
 #include <limits>
 
-#include "fem/boundary.hpp"
 #include "fem/mesh_rectangle.hpp"
 #include "host/record/provenance.hpp"
 #include "host/record/remarks.hpp"
+#include "host/scene/run_stages.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/ground_run.hpp"
-#include "host/stages/stage_driver.hpp"
 #include "io/result_file.hpp"
 
 namespace voussoir::host {
 namespace {
-
-Eigen::VectorXd side_forces(const fem::Mesh& mesh, const fem::Coordinates& coordinates, double pressure) {
-  return fem::pressure_force(coordinates, mesh.edge_set("side"), pressure) +
-         fem::pressure_force(coordinates, mesh.edge_set("axis"), pressure);
-}
 
 io::MeshData specimen_data(const fem::Mesh& mesh, const BiaxialBvpCase& test) {
   io::MeshData data = mesh_data(mesh);
@@ -88,38 +82,36 @@ std::string cost_line(const std::filesystem::path& folder) {
       all.size(), evaluations / n, work / n, wall / n);
 }
 
-/// The stage of the specimen. `ground`, `test` and `specimen` must outlive the stage.
-Stage specimen_stage(const Ground& ground, const BiaxialBvpCase& test, SpecimenState& specimen) {
-  const fem::Mesh& mesh = ground.mesh;
-  Stage stage;
-  stage.name = "biaxial_bvp";
-  stage.kinematics = fem::Kinematics::updated_lagrangian;
-  stage.path.external_force = [&ground, &mesh, &test](double) {
-    return side_forces(mesh, ground.state.coordinates, test.pressure);
-  };
-  stage.path.prescribed_increment = [&mesh, &test](double from, double to) {
-    return platen_constraints(mesh, -(to - from) * test.height);
-  };
-  const int n = test.increments();
-  for (int k = 1; k <= n; ++k) stage.targets.push_back(test.strain * k / n);
-  stage.last = true;
+/// Gives the stage its columns. `mesh` and `specimen` must outlive it.
+void add_specimen_columns(Stage& stage, const fem::Mesh& mesh, SpecimenState& specimen) {
   stage.on_step = [&mesh, &specimen](const fem::ConvergedStep& step) {
     specimen = specimen_state(mesh, step.increment, step.state);
   };
   stage.on_record = [&specimen](IncrementReport& increment) {
     add_columns(specimen, specimen_columns, increment.info.extra);
   };
-  return stage;
 }
 
 }  // namespace
 
-fem::Constraints platen_constraints(const fem::Mesh& mesh, double top_increment) {
-  fem::Constraints constraints;
-  fem::constrain(constraints, mesh.node_set("base"), 1, 0.0);
-  fem::constrain(constraints, {mesh.node_set("base").front()}, 0, 0.0);
-  fem::constrain(constraints, mesh.node_set("top"), 1, top_increment);
-  return constraints;
+Scene specimen_scene(const BiaxialBvpCase& test) {
+  Scene scene{.input = {}, .mesh = fem::make_rectangle(test.width, test.height, test.columns, test.rows),
+              .pressure = test.pressure, .gravity = {}};
+  RegionCase ground;
+  ground.unit_weight = 0;
+  scene.input.regions = {ground};
+  scene.input.supports = {{.boundaries = {"base"}, .point = {}, .y = true},
+                          {.boundaries = {}, .point = {.name = "", .at = {0, 0}}, .x = true}};
+  StageCase stage;
+  stage.name = "biaxial_bvp";
+  stage.end = test.strain;
+  stage.steps = test.increments();
+  MoveCase top;
+  top.boundary = "top";
+  top.y = -test.height;  // at a strain of 1
+  stage.moves = {top};
+  scene.input.stages = {stage};
+  return scene;
 }
 
 SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increment, const fem::MeshState& state) {
@@ -150,7 +142,8 @@ SpecimenState specimen_state(const fem::Mesh& mesh, const fem::Increment& increm
 
 RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
   const BiaxialBvpCase& test = input.biaxial_bvp;
-  const fem::Mesh mesh = fem::make_rectangle(test.width, test.height, test.columns, test.rows);
+  Scene scene = specimen_scene(test);
+  const fem::Mesh& mesh = scene.mesh;
   RunLog log = open_log(options);
   tell_circumstances(options, log);
   GroundRun run(options, provenance_of(options, input, "biaxial_bvp"), mesh, specimen_data(mesh, test),
@@ -167,7 +160,10 @@ RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options) {
   material.packing.pressure = test.pressure;
   run.open_ground(material, [&log](const std::string& text) { log.line(text); });
   SpecimenState specimen;
-  const RunStatus status = advance_stage(run, specimen_stage(run.ground(), test, specimen));
+  const RunStatus status = run_stages(run, scene, plan_stages(scene), nullptr,
+                                      {.on_start = {}, .complete = [&](const StagePlan&, Stage& stage) {
+                                         add_specimen_columns(stage, mesh, specimen);
+                                       }});
   if (status == RunStatus::interrupted || run.ground().state.parameter == 0) return status;
   run.recorder().set_table("gauss_histories", gauss_histories(options.folder));
   log.line(cost_line(options.folder));

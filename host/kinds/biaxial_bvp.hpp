@@ -16,6 +16,7 @@
 #include "host/case/case.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/folder.hpp"
+#include "host/scene/scene.hpp"
 #include "host/stages/stage.hpp"
 
 namespace voussoir::host {
@@ -23,8 +24,8 @@ namespace voussoir::host {
 /// Starts the specimen in options.folder, or goes on with it.
 [[nodiscard]] RunStatus run_biaxial_bvp(const Case& input, const RunOptions& options);
 
-/// The supports of smooth platens, whose top moves by the displacement increment `top_increment` [m].
-[[nodiscard]] fem::Constraints platen_constraints(const fem::Mesh& mesh, double top_increment);
+/// The specimen as a scene: smooth platens, whose top moves down by the first height at a load parameter of 1.
+[[nodiscard]] Scene specimen_scene(const BiaxialBvpCase& test);
 
 /// The specimen as a whole; compression is positive, strains are logarithmic.
 struct SpecimenState {

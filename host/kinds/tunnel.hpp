@@ -7,6 +7,7 @@
 #include "host/packing/draw_scatter.hpp"
 #include "host/record/columns.hpp"
 #include "host/record/folder.hpp"
+#include "host/stages/ground.hpp"
 #include "host/stages/stage.hpp"
 
 namespace voussoir::host {
@@ -16,6 +17,20 @@ inline constexpr auto draw_scatter_columns = std::to_array<Column<DrawScatter>>(
     {"settlement", "-", &DrawScatter::settlement},
     {"reaction", "-", &DrawScatter::reaction},
     {"k0", "-", &DrawScatter::k0},
+});
+
+/// The effect of the tunnel on the ground.
+struct TunnelReport {
+  double crown_settlement = 0;    ///< [m]
+  double surface_settlement = 0;  ///< largest settlement of the surface [m]
+  double area_loss = 0;           ///< area that the opening has lost, over its original area [-]
+};
+[[nodiscard]] TunnelReport tunnel_report(const Ground& ground);
+
+inline constexpr auto tunnel_columns = std::to_array<Column<TunnelReport>>({
+    {"crown_settlement", "m", &TunnelReport::crown_settlement},
+    {"surface_settlement", "m", &TunnelReport::surface_settlement},
+    {"area_loss", "-", &TunnelReport::area_loss},
 });
 
 /// Starts the tunnel of the case in options.folder, or goes on with it. The column has its results in the folder

@@ -9,7 +9,7 @@
 #include "host/ensemble/member.hpp"
 #include "host/kinds/biaxial_bvp.hpp"
 #include "host/kinds/column.hpp"
-#include "host/kinds/volume_loss.hpp"
+#include "host/kinds/tunnel.hpp"
 #include "io/input_error.hpp"
 #include "io/text_file.hpp"
 #include "io/units.hpp"

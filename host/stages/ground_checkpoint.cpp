@@ -43,6 +43,11 @@ Eigen::VectorXd get_vector(const io::Checkpoint& checkpoint, const std::string& 
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(size));
 }
 
+fem::Coordinates get_coordinates(const io::Checkpoint& checkpoint, const std::string& name, const fem::Mesh& mesh) {
+  const std::vector<double> values = get_sized(checkpoint, name, static_cast<std::size_t>(mesh.n_dofs()));
+  return Eigen::Map<const fem::Coordinates>(values.data(), 2, mesh.n_nodes());
+}
+
 std::span<const double> numbers(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 
 }  // namespace
@@ -59,6 +64,12 @@ void save(const Ground& ground, io::Checkpoint& checkpoint) {
                                       state.relaxation_factor};
   checkpoint.put_doubles("load", scalars);
   put_list(checkpoint, "strain", ground.strain);
+  if (ground.earlier.coordinates.cols() > 0) {
+    checkpoint.put_doubles("earlier_displacement", numbers(ground.earlier.displacement));
+    put_list(checkpoint, "earlier_strain", ground.earlier.strain);
+    checkpoint.put_doubles("earlier_coordinates", {ground.earlier.coordinates.data(),
+                                                   static_cast<std::size_t>(ground.earlier.coordinates.size())});
+  }
   const std::shared_ptr<const fem::HeldState> material = ground.material.hold();
   checkpoint.put_late(
       "material", {[material] { return material->size(); }, [material](const auto& sink) { material->write(sink); }});
@@ -69,8 +80,7 @@ void restore(Ground& ground, const io::Checkpoint& checkpoint) {
   const auto points = static_cast<std::size_t>(ground.mesh.n_points());
   fem::MeshState state;
   state.displacement = get_vector(checkpoint, "displacement", dofs);
-  const std::vector<double> coordinates = get_sized(checkpoint, "coordinates", dofs);
-  state.coordinates = Eigen::Map<const fem::Coordinates>(coordinates.data(), 2, ground.mesh.n_nodes());
+  state.coordinates = get_coordinates(checkpoint, "coordinates", ground.mesh);
   state.deformation = get_list<fem::Gradient>(checkpoint, "deformation", points);
   state.initial_tangent = get_list<fem::Tangent>(checkpoint, "initial_tangent", points);
   state.tangent = get_list<fem::Tangent>(checkpoint, "tangent", points);
@@ -84,6 +94,12 @@ void restore(Ground& ground, const io::Checkpoint& checkpoint) {
   state.relaxation_factor = scalars[4];
   ground.state = std::move(state);
   ground.strain = get_list<fem::PlaneTensor>(checkpoint, "strain", points);
+  ground.earlier = {};
+  if (checkpoint.has("earlier_coordinates")) {
+    ground.earlier.displacement = get_vector(checkpoint, "earlier_displacement", dofs);
+    ground.earlier.strain = get_list<fem::PlaneTensor>(checkpoint, "earlier_strain", points);
+    ground.earlier.coordinates = get_coordinates(checkpoint, "earlier_coordinates", ground.mesh);
+  }
   ground.material.set_state(checkpoint.get("material"));
 }
 

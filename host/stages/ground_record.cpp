@@ -60,14 +60,14 @@ std::vector<double> moved_coordinates(const Ground& ground) {
 std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd& reactions) {
   const auto n = static_cast<std::size_t>(ground.mesh.n_points());
   std::vector<io::Field> fields;
-  fields.push_back(field_of(result_field("displacement"), flat(ground.state.displacement)));
+  fields.push_back(field_of(result_field("displacement"), flat(ground.total_displacement())));
   if (reactions.size() > 0) fields.push_back(field_of(result_field("reaction"), flat(reactions)));
   const fem::GaussPoints points = fem::gauss_points(ground.mesh, ground.state.coordinates);
   fields.push_back(field_of(result_field("gauss_point_coordinates"), flat(points.positions.reshaped())));
   std::vector<fem::Stress> stress(n);
   ground.material.committed(stress, {});
   add_stress_fields(fields, stress);
-  add_strain_fields(fields, ground.strain);
+  add_strain_fields(fields, ground.total_strain());
   for (fem::PointField& field : ground.material.fields()) {
     fields.push_back({std::move(field.name), std::move(field.unit), io::FieldLocation::gauss, field.components,
                       std::move(field.values)});

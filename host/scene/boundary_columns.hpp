@@ -1,0 +1,41 @@
+#pragma once
+/// What the boundaries of a scene bear and how far they have moved, as columns of the table of increments.
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "fem/increment.hpp"
+#include "host/scene/scene.hpp"
+#include "host/stages/ground.hpp"
+#include "io/result_data.hpp"
+
+namespace voussoir::host {
+
+/// The boundaries that something holds or moves in any stage, and those whose area changes: the same columns in all
+/// stages.
+struct WatchedBoundaries {
+  std::vector<std::string> held;
+  std::set<std::string> with_area;
+};
+[[nodiscard]] WatchedBoundaries watched(const std::vector<StagePlan>& plans);
+
+/// Adds, of each boundary NAME and axis x, y:
+///   reaction_NAME_x     sum of the reactions that the boundary owns, of the support on the ground [N/m]
+///   displacement_NAME_x mean displacement of its nodes [m]
+///   traction_NAME_x     the reaction over the width of the nodes that it owns [Pa]; not for curves inside the ground
+///   area_NAME           area that the opening has lost over its first area [-]
+/// and tensile_nodes, the nodes of held boundaries at which the support pulls the ground outwards. `reactions` as
+/// fem::Increment::reactions [N/m], `coordinates` those on which they were integrated [m].
+void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& plan, const Ground& ground,
+                          const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates, io::Quantities& to);
+
+/// The area that an opening, closed or on the line x = 0, has lost, over its first area [-].
+[[nodiscard]] double lost_area(const Ground& ground, const std::string& boundary);
+
+/// Nodes at which the support of a boundary pulls the ground outwards, by the boundaries' names.
+[[nodiscard]] std::map<std::string, int> tensile_nodes(const StagePlan& plan, const fem::Mesh& mesh,
+                                                       const Eigen::VectorXd& reactions,
+                                                       const fem::Coordinates& coordinates);
+
+}  // namespace voussoir::host

@@ -1,0 +1,40 @@
+#include "host/scene/scene.hpp"
+
+#include <algorithm>
+
+namespace voussoir::host {
+
+double Scene::unit_weight(int element) const {
+  if (mesh.region.empty()) return input.regions.front().unit_weight;
+  const std::string& name = mesh.region_names[mesh.region[element]];
+  const auto found = std::find_if(input.regions.begin(), input.regions.end(),
+                                  [&](const RegionCase& region) { return region.name == name; });
+  return found == input.regions.end() ? 0.0 : found->unit_weight;
+}
+
+fem::Point Holder::displacement(const fem::Point& x, double from, double to) const {
+  if (move.is_affine()) {
+    const auto at = [&](double parameter) {
+      return fem::affine_displacement(x, about, move.rotation.value_or(0) * parameter,
+                                      move.area.value_or(0) * parameter);
+    };
+    return at(to) - at(from);
+  }
+  return (to - from) * fem::Point(move.x.value_or(0), move.y.value_or(0));
+}
+
+int node_at(const fem::Mesh& mesh, const PlaceCase& place) {
+  if (!place.name.empty()) return mesh.point(place.name);
+  const fem::Point wanted(place.at[0], place.at[1]);
+  Eigen::Index nearest = 0;
+  const double distance = (mesh.coordinates.colwise() - wanted).colwise().norm().minCoeff(&nearest);
+  const double size = (mesh.coordinates.rowwise().maxCoeff() - mesh.coordinates.rowwise().minCoeff()).norm();
+  return distance <= 1e-6 * size ? static_cast<int>(nearest) : -1;
+}
+
+fem::Point coordinates_of(const fem::Mesh& mesh, const PlaceCase& place) {
+  if (!place.name.empty()) return mesh.coordinates.col(mesh.point(place.name));
+  return {place.at[0], place.at[1]};
+}
+
+}  // namespace voussoir::host

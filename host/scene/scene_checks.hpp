@@ -1,0 +1,25 @@
+#pragma once
+/// Whether the nouns of a scene fit its mesh. All functions throw std::runtime_error, whose text begins with the key at
+/// fault.
+
+#include "host/scene/scene.hpp"
+
+namespace voussoir::host {
+
+/// The largest share of an element's edge by which a boundary may move in one step.
+inline constexpr double most_of_an_edge = 0.25;
+
+/// Points of supports and moves must be nodes.
+void check_places(const Scene& scene);
+
+/// The stage with this number: nothing presses on what is held, motions of area keep to their supports, the ground cannot
+/// move as a rigid body.
+void check_stage(const Scene& scene, const StagePlan& plan, std::size_t number);
+
+/// No step moves a boundary by more than most_of_an_edge.
+void check_steps(const Scene& scene, const StagePlan& plan, std::size_t number);
+
+/// The largest motion of one step of a holder over the shortest edge of the elements at its nodes [-].
+[[nodiscard]] double step_over_edge(const Scene& scene, const StagePlan& plan, const Holder& holder);
+
+}  // namespace voussoir::host

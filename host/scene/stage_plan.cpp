@@ -1,0 +1,271 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "fem/load_stepper.hpp"
+#include "host/scene/scene.hpp"
+#include "host/scene/scene_checks.hpp"
+
+namespace voussoir::host {
+namespace {
+
+constexpr std::array<const char*, 2> axis_names{"x", "y"};
+
+/// What holds and loads the scene between two stages.
+struct Standing {
+  std::vector<Holder> holders;
+  std::vector<BoundaryLoad> loads;  ///< `..._to` counts
+  double gravity = 0, tilt = 0;
+  std::vector<char> dug_out;
+};
+
+std::vector<Holder> holders_of(const Scene& scene, const SupportCase& support) {
+  const std::array<bool, 2> axes{support.x, support.y};
+  std::vector<Holder> holders;
+  for (const std::string& name : support.boundaries) {
+    holders.push_back({.name = name, .nodes = scene.mesh.node_set(name), .axes = axes});
+  }
+  if (support.boundaries.empty()) {
+    holders.push_back({.name = support.point.name,
+                       .is_boundary = false,
+                       .nodes = {node_at(scene.mesh, support.point)},
+                       .axes = axes});
+  }
+  return holders;
+}
+
+Holder holder_of(const Scene& scene, const MoveCase& move) {
+  Holder holder{.name = move.boundary, .is_boundary = !move.boundary.empty(), .move = move};
+  if (holder.is_boundary) {
+    holder.nodes = scene.mesh.node_set(move.boundary);
+  } else {
+    holder.name = move.point.name;
+    holder.nodes = {node_at(scene.mesh, move.point)};
+  }
+  holder.axes = {move.is_affine() || move.x.has_value(), move.is_affine() || move.y.has_value()};
+  if (move.is_affine()) holder.about = coordinates_of(scene.mesh, move.about);
+  return holder;
+}
+
+Standing first_standing(const Scene& scene) {
+  Standing standing;
+  for (const SupportCase& support : scene.input.supports) {
+    for (Holder& holder : holders_of(scene, support)) standing.holders.push_back(std::move(holder));
+  }
+  const auto loaded = [&](const std::string& name, const std::vector<fem::Edge>& edges) {
+    BoundaryLoad load{.boundary = name, .edges = edges};
+    load.pressure_to = {scene.pressure, scene.pressure};
+    standing.loads.push_back(std::move(load));
+  };
+  for (const auto& [name, edges] : scene.mesh.edges) loaded(name, edges);
+  loaded("", scene.mesh.unnamed_edges);
+  return standing;
+}
+
+std::map<int, std::size_t> owners_of(const std::vector<Holder>& holders) {
+  std::map<int, std::size_t> owners;
+  for (std::size_t k = 0; k < holders.size(); ++k) {
+    for (const int node : holders[k].nodes) {
+      for (int axis = 0; axis < 2; ++axis) {
+        if (holders[k].axes[axis]) owners[2 * node + axis] = k;
+      }
+    }
+  }
+  return owners;
+}
+
+/// Whether a holder of this very boundary holds it along an axis.
+bool is_held(const std::vector<Holder>& holders, const std::string& boundary, int axis) {
+  return std::any_of(holders.begin(), holders.end(), [&](const Holder& holder) {
+    return holder.is_boundary && holder.name == boundary && holder.axes[axis];
+  });
+}
+
+/// Starts a stage on what stands: what was moved stays, and what was loaded stays loaded.
+StagePlan plan_on(const Standing& standing, const StageCase& input) {
+  StagePlan plan{.input = input, .holders = standing.holders, .loads = standing.loads};
+  for (Holder& holder : plan.holders) {
+    MoveCase stays;
+    stays.boundary = holder.move.boundary;
+    stays.point = holder.move.point;
+    holder.move = stays;
+  }
+  for (BoundaryLoad& load : plan.loads) {
+    load.pressure_from = load.pressure_to;
+    load.traction_from = load.traction_to;
+    load.rest_from = load.rest_to;
+  }
+  plan.gravity_from = standing.gravity;
+  plan.tilt_from = standing.tilt;
+  plan.gravity_to = input.gravity.value_or(standing.gravity);
+  plan.tilt_to = input.tilt.value_or(standing.tilt);
+  plan.dug_out = standing.dug_out;
+  return plan;
+}
+
+BoundaryLoad& load_of(StagePlan& plan, const std::string& boundary) {
+  const auto found = std::find_if(plan.loads.begin(), plan.loads.end(),
+                                  [&](const BoundaryLoad& load) { return load.boundary == boundary; });
+  if (found == plan.loads.end()) throw std::runtime_error(fmt::format("{} has no outer edges to press on", boundary));
+  return *found;
+}
+
+/// The forces that held the boundary fade, and its own load begins at nothing along the axes that are free now.
+void release(StagePlan& plan, const ReleaseCase& release) {
+  std::array<bool, 2> freed{};
+  const std::map<int, std::size_t> before = owners_of(plan.holders);
+  for (int axis = 0; axis < 2; ++axis) freed[axis] = is_held(plan.holders, release.boundary, axis);
+  std::set<int> dofs;
+  for (const auto& [dof, owner] : before) {
+    if (plan.holders[owner].is_boundary && plan.holders[owner].name == release.boundary) dofs.insert(dof);
+  }
+  std::erase_if(plan.holders,
+                [&](const Holder& holder) { return holder.is_boundary && holder.name == release.boundary; });
+  const std::map<int, std::size_t> after = owners_of(plan.holders);
+  for (const int dof : dofs) {
+    if (!after.contains(dof)) plan.fading[dof] = release.share;
+  }
+  const auto load = std::find_if(plan.loads.begin(), plan.loads.end(),
+                                 [&](const BoundaryLoad& one) { return one.boundary == release.boundary; });
+  if (load == plan.loads.end()) return;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!freed[axis]) continue;
+    for (auto* values : {&load->pressure_from, &load->pressure_to, &load->traction_from, &load->traction_to,
+                         &load->rest_from, &load->rest_to}) {
+      (*values)[axis] = 0;
+    }
+  }
+}
+
+/// @param first whether the ground still stands in its first state, in which the tractions at rest are p0
+void press(StagePlan& plan, const PressCase& press, bool first) {
+  BoundaryLoad& load = load_of(plan, press.boundary);
+  for (int axis = 0; axis < 2; ++axis) {
+    load.pressure_to[axis] = press.kind == PressKind::pressure ? press.pressure : 0.0;
+    load.traction_to[axis] = press.kind == PressKind::traction ? press.traction[axis] : 0.0;
+    load.rest_to[axis] = press.kind == PressKind::at_rest ? 1.0 : 0.0;
+    if (press.kind == PressKind::at_rest && first) {
+      load.pressure_from[axis] = 0;
+      load.rest_from[axis] = 1;
+    }
+  }
+}
+
+void excavate(const Scene& scene, StagePlan& plan, const ExcavateCase& excavation) {
+  const fem::Mesh& mesh = scene.mesh;
+  const auto region = std::find(mesh.region_names.begin(), mesh.region_names.end(), excavation.region);
+  const auto index = static_cast<int>(region - mesh.region_names.begin());
+  plan.dug_out.resize(static_cast<std::size_t>(mesh.n_elements()), 0);
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    if (mesh.region[e] == index) plan.dug_out[e] = 1;
+  }
+}
+
+std::vector<char> nodes_in_use(const fem::Mesh& mesh, const std::vector<char>& dug_out) {
+  std::vector<char> used(static_cast<std::size_t>(mesh.n_nodes()), 0);
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    if (!dug_out.empty() && dug_out[e] != 0) continue;
+    for (const int node : mesh.elements[e]) used[node] = 1;
+  }
+  return used;
+}
+
+/// Takes what has been dug out from loads and holders, and lets the forces on its edge fade.
+void leave_out_dug(const Scene& scene, StagePlan& plan, const std::vector<char>& dug_before) {
+  if (plan.dug_out.empty()) return;
+  const fem::Mesh& mesh = scene.mesh;
+  const std::vector<char> used = nodes_in_use(mesh, plan.dug_out);
+  for (int node = 0; node < mesh.n_nodes(); ++node) {
+    if (used[node] == 0) plan.idle_nodes.push_back(node);
+  }
+  for (Holder& holder : plan.holders) std::erase_if(holder.nodes, [&](int node) { return used[node] == 0; });
+  std::set<int> mids;  // of edges that are left; an outer edge belongs to one element
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    if (plan.dug_out[e] == 0) mids.insert(mesh.elements[e].begin() + 4, mesh.elements[e].end());
+  }
+  for (BoundaryLoad& load : plan.loads) {
+    std::erase_if(load.edges, [&](const fem::Edge& edge) { return !mids.contains(edge[1]); });
+  }
+  const std::map<int, std::size_t> owners = owners_of(plan.holders);
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    if (plan.dug_out[e] == 0 || (!dug_before.empty() && dug_before[e] != 0)) continue;
+    for (const int node : mesh.elements[e]) {
+      for (int dof = 2 * node; used[node] != 0 && dof < 2 * node + 2; ++dof) {
+        if (!owners.contains(dof)) plan.fading[dof] = 1.0;
+      }
+    }
+  }
+}
+
+/// The largest vertical stress of the weights at load factor 1 [Pa].
+double weight_stress(const Scene& scene) {
+  const Eigen::RowVectorXd y = scene.mesh.coordinates.row(1);
+  double heaviest = 0;
+  for (const RegionCase& region : scene.input.regions) heaviest = std::max(heaviest, region.unit_weight);
+  return heaviest * (y.maxCoeff() - y.minCoeff());
+}
+
+std::vector<double> targets_of(const Scene& scene, const StagePlan& plan) {
+  std::vector<double> targets;
+  const double rise = plan.gravity_to - plan.gravity_from;
+  const double full = weight_stress(scene);
+  if (plan.input.steps == 0 && rise > 0 && full > 0) {
+    const double carried = scene.pressure / full + plan.gravity_from;
+    return fem::geometric_targets(carried / rise, scene.gravity.ratio, scene.gravity.uniform_step);
+  }
+  const int n = plan.input.steps > 0 ? plan.input.steps : static_cast<int>(std::ceil(1 / scene.gravity.uniform_step));
+  for (int k = 1; k <= n; ++k) targets.push_back(plan.input.end * k / n);
+  return targets;
+}
+
+Standing standing_after(const StagePlan& plan) {
+  return {.holders = plan.holders,
+          .loads = plan.loads,
+          .gravity = plan.gravity_to,
+          .tilt = plan.tilt_to,
+          .dug_out = plan.dug_out};
+}
+
+StagePlan plan_stage(const Scene& scene, const Standing& standing, const StageCase& input, bool first) {
+  StagePlan plan = plan_on(standing, input);
+  for (const ReleaseCase& one : input.releases) release(plan, one);
+  for (const ExcavateCase& one : input.excavations) excavate(scene, plan, one);
+  for (const MoveCase& move : input.moves) plan.holders.push_back(holder_of(scene, move));
+  for (const PressCase& one : input.presses) press(plan, one, first);
+  leave_out_dug(scene, plan, standing.dug_out);
+  plan.owners = owners_of(plan.holders);
+  std::erase_if(plan.fading, [&](const auto& entry) { return plan.owners.contains(entry.first); });
+  // What holds a boundary along an axis carries its load there.
+  for (BoundaryLoad& load : plan.loads) {
+    for (int axis = 0; axis < 2; ++axis) {
+      if (!is_held(plan.holders, load.boundary, axis)) continue;
+      for (auto* values : {&load.pressure_from, &load.pressure_to, &load.traction_from, &load.traction_to,
+                           &load.rest_from, &load.rest_to}) {
+        (*values)[axis] = 0;
+      }
+    }
+  }
+  plan.targets = targets_of(scene, plan);
+  return plan;
+}
+
+}  // namespace
+
+std::vector<StagePlan> plan_stages(const Scene& scene) {
+  check_places(scene);
+  std::vector<StagePlan> plans;
+  Standing standing = first_standing(scene);
+  for (const StageCase& stage : scene.input.stages) {
+    const bool first = plans.empty() || standing.gravity == 0;
+    StagePlan plan = plan_stage(scene, standing, stage, first);
+    check_stage(scene, plan, plans.size());
+    standing = standing_after(plan);
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+}  // namespace voussoir::host
