@@ -47,13 +47,15 @@ LinearElastic::LinearElastic(std::size_t n_points, const ElasticOptions& options
     : stiffness_(plane_strain_stiffness(options.young, options.poisson)),
       strain_(options.strain),
       committed_(n_points, options.initial_stress),
-      trial_(committed_) {
+      trial_(committed_),
+      retired_(n_points) {
   if (!options.initial_stress.allFinite()) throw std::invalid_argument("elastic: the initial stress must be finite");
 }
 
 BatchReport LinearElastic::evaluate(std::span<const Gradient> gradients, std::span<Stress> stress,
                                     std::span<Tangent> tangent) {
   for (std::size_t i = 0; i < size(); ++i) {
+    if (retired_.contains(i)) continue;
     const Gradient& h = gradients[i];
     if (strain_ == ElasticStrain::logarithmic)
       trial_[i] = logarithmic_stress(stiffness_, committed_[i], h);
@@ -62,12 +64,14 @@ BatchReport LinearElastic::evaluate(std::span<const Gradient> gradients, std::sp
     stress[i] = trial_[i];
   }
   std::fill(tangent.begin(), tangent.end(), stiffness_);
+  retired_.clear(stress, tangent);
   return {};
 }
 
 void LinearElastic::committed(std::span<Stress> stress, std::span<Tangent> tangent) const {
   std::copy(committed_.begin(), committed_.end(), stress.begin());
   std::fill(tangent.begin(), tangent.end(), stiffness_);
+  retired_.clear(stress, tangent);
 }
 
 std::vector<std::byte> LinearElastic::state() const {

@@ -3,6 +3,7 @@
 /// forms.
 
 #include "fem/material_batch.hpp"
+#include "fem/retired_points.hpp"
 
 namespace voussoir::fem {
 
@@ -35,6 +36,7 @@ class LinearElastic final : public MaterialBatch {
   [[nodiscard]] std::vector<PointField> fields() const override { return {}; }
   [[nodiscard]] std::vector<std::byte> state() const override;
   void set_state(std::span<const std::byte> bytes) override;
+  void retire(std::span<const std::size_t> points) override { retired_.add(points); }
 
   /// Sets the committed stress point by point, e.g. to a geostatic state.
   void set_stress(std::span<const Stress> stress);
@@ -44,6 +46,7 @@ class LinearElastic final : public MaterialBatch {
   ElasticStrain strain_;
   std::vector<Stress> committed_;
   std::vector<Stress> trial_;
+  RetiredPoints retired_;
 };
 
 }  // namespace voussoir::fem

@@ -1,5 +1,6 @@
 #include "fem/material_batch.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 namespace voussoir::fem {
@@ -17,6 +18,10 @@ class HeldBytes final : public HeldState {
 };
 
 }  // namespace
+
+void MaterialBatch::retire(std::span<const std::size_t> points) {
+  if (!points.empty()) throw std::logic_error("this material cannot be dug out");
+}
 
 std::shared_ptr<const HeldState> MaterialBatch::hold() { return std::make_shared<HeldBytes>(state()); }
 

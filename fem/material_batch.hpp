@@ -93,6 +93,13 @@ class MaterialBatch {
   [[nodiscard]] virtual std::vector<std::byte> state() const = 0;
   virtual void set_state(std::span<const std::byte> bytes) = 0;
 
+  /// Takes points out of the batch that have been dug out. From now on they answer with zero stress and zero tangent,
+  /// they cost nothing, they count in no report, and their fields are NaN. That is no part of the state: it outlasts
+  /// `set_state` and `return_to`, and a new batch that takes over a state has to be told again. A point may be named
+  /// several times. Throws std::out_of_range where a point does not exist, and std::logic_error where the batch is of a
+  /// kind that cannot be dug out.
+  virtual void retire(std::span<const std::size_t> points);
+
   /// Holds the committed state, to go back to it or to write it to a file later. Here the state's bytes are copied; a
   /// batch whose states are large holds them without a copy.
   [[nodiscard]] virtual std::shared_ptr<const HeldState> hold();

@@ -45,17 +45,18 @@ void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::St
   }
 }
 
-fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor,
-                           std::span<const double> least_areas) {
+fem::BatchReport summarise(std::span<const kernels::RveReport> reports, const PoolFacts& pool) {
   fem::BatchReport out;
   out.mean_overlap = 0;
   double noise = 0;
   double unsettled = 0;
   std::size_t failures = 0;
   for (std::size_t k = 0; k < reports.size(); ++k) {
+    if (pool.retired.contains(k)) continue;
     const kernels::RveReport& r = reports[k];
     if (kernels::is_failure(r.status) && failures++ == 0) {
-      out.message = fmt::format("RVE {}: {} (overlap {:.3f})", k, kernels::name_of(r.status), r.largest_overlap);
+      out.message = fmt::format("RVE {}: {} (overlap {:.3f})", pool.numbers.empty() ? k : pool.numbers[k],
+                                kernels::name_of(r.status), r.largest_overlap);
     }
     if (r.steps > out.slowest_steps) {
       out.slowest = k;
@@ -63,20 +64,22 @@ fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double p
     }
     if (r.steps == 0) ++out.deferred;
     if (r.status == kernels::RveStatus::open) ++out.open;
-    if (r.mean_overlap > most_mean_overlap || r.largest_overlap > most_single_overlap || r.cell_area < least_areas[k])
+    if (r.mean_overlap > most_mean_overlap || r.largest_overlap > most_single_overlap ||
+        r.cell_area < pool.least_areas[k])
       ++out.out_of_range;
     out.mean_overlap = std::max(*out.mean_overlap, r.mean_overlap);
     if (r.status == kernels::RveStatus::step_limit) {
       ++out.step_limit;
       unsettled += r.pressure() * r.pressure();
     }
-    const double s = noise_share * r.unbalanced * std::max(r.pressure(), pressure_floor);
+    const double s = noise_share * r.unbalanced * std::max(r.pressure(), pool.pressure_floor);
     noise += s * s;
   }
   if (failures > 1) out.message += fmt::format(" and {} more", failures - 1);
   out.usable = failures == 0;
-  out.stress_noise = std::sqrt(noise / static_cast<double>(reports.size()));
-  out.unsettled_stress = std::sqrt(unsettled / static_cast<double>(reports.size()));
+  const auto counted = static_cast<double>(std::max<std::size_t>(pool.retired.left(), 1));
+  out.stress_noise = std::sqrt(noise / counted);
+  out.unsettled_stress = std::sqrt(unsettled / counted);
   return out;
 }
 

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "fem/material_batch.hpp"
+#include "fem/retired_points.hpp"
 #include "kernels/state/rve_batch.hpp"
 
 namespace voussoir::host {
@@ -22,10 +22,15 @@ namespace voussoir::host {
 void copy_answers(std::span<const kernels::RveReport> reports, std::span<fem::Stress> stress,
                   std::span<fem::Tangent> tangent);
 
+/// What a report of a whole evaluation depends on, besides the reports of its RVEs.
+struct PoolFacts {
+  double pressure_floor = 0;             ///< the engine's unbalanced ratios are relative to at least this pressure [Pa]
+  std::span<const double> least_areas;   ///< (RVE) cell area below which its grains interpenetrate [m^2], least_areas()
+  std::span<const std::size_t> numbers;  ///< (RVE) its number in messages; empty: its number in the pool
+  const fem::RetiredPoints& retired;     ///< they are left out
+};
+
 /// The report of a whole evaluation, made from the reports of its RVEs. The caller sets `work` and `deferral_error`.
-/// @param pressure_floor the engine's unbalanced ratios are relative to at least this pressure [Pa]
-/// @param least_areas (RVE) the cell area below which its grains interpenetrate [m^2] (packing/law_range.hpp)
-[[nodiscard]] fem::BatchReport summarise(std::span<const kernels::RveReport> reports, double pressure_floor,
-                                         std::span<const double> least_areas);
+[[nodiscard]] fem::BatchReport summarise(std::span<const kernels::RveReport> reports, const PoolFacts& pool);
 
 }  // namespace voussoir::host

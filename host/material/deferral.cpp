@@ -57,6 +57,7 @@ void Deferral::start(std::span<const kernels::RveReport> grains) {
 void Deferral::begin_increment() { std::fill(trial_.begin(), trial_.end(), Trial{}); }
 
 fem::Gradient Deferral::whole(std::size_t rve, const fem::Gradient& h) const {
+  if (!on()) return h;
   const fem::Gradient& before = rves_[rve].gradient;
   return h + before + h * before;  // this is F_rel F - I, written without cancellation
 }
@@ -68,7 +69,7 @@ bool Deferral::within_bound(const Committed& rve, double change) const {
 }
 
 bool Deferral::answer(std::size_t rve, const fem::Gradient& h, kernels::RveReport& report) {
-  if (trial_[rve].runs) return false;
+  if (runs(rve)) return false;
   const Extrapolation by_tangent = extrapolate(rves_[rve].grains, whole(rve, h));
   if (rves_[rve].commits >= most_commits || !within_bound(rves_[rve], by_tangent.change)) {
     trial_[rve].runs = true;
@@ -81,8 +82,8 @@ bool Deferral::answer(std::size_t rve, const fem::Gradient& h, kernels::RveRepor
 }
 
 void Deferral::check(std::size_t rve, const fem::Gradient& h, const kernels::RveReport& report) {
+  if (!on() || rves_[rve].commits == 0) return;
   const Committed& before = rves_[rve];
-  if (before.commits == 0) return;
   const Extrapolation by_tangent = extrapolate(before.grains, whole(rve, h));
   const double deferred = extrapolate(before.grains, before.gradient).change;
   const bool comparable = within_bound(before, by_tangent.change) || deferred >= by_tangent.change;
@@ -92,7 +93,7 @@ void Deferral::check(std::size_t rve, const fem::Gradient& h, const kernels::Rve
 
 bool Deferral::commit(std::size_t rve, const fem::Gradient& h, const kernels::RveReport& report) {
   Committed& at = rves_[rve];
-  if (!trial_[rve].runs) {
+  if (!runs(rve)) {
     at.gradient = whole(rve, h);
     ++at.commits;
     return true;

@@ -70,7 +70,7 @@ class Deferral {
   /// returns false: its grains have to run with `whole`.
   bool answer(std::size_t rve, const fem::Gradient& h, kernels::RveReport& report);
 
-  [[nodiscard]] bool runs(std::size_t rve) const { return trial_[rve].runs; }
+  [[nodiscard]] bool runs(std::size_t rve) const { return !on() || trial_[rve].runs; }
 
   /// Takes the error of the answers before from `report`, the report of the grains' run. There is no error if nothing
   /// was deferred.

@@ -27,6 +27,7 @@ class MirroredBatch final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<fem::PointField> fields() const override;
   [[nodiscard]] std::vector<std::byte> state() const override { return batch_->state(); }
   void set_state(std::span<const std::byte> bytes) override { batch_->set_state(bytes); }
+  void retire(std::span<const std::size_t> points) override { batch_->retire(points); }
   [[nodiscard]] std::shared_ptr<const fem::HeldState> hold() override { return batch_->hold(); }
   void return_to(const fem::HeldState& held) override { batch_->return_to(held); }
   /// The list is empty where the mirrored batch has no grains.

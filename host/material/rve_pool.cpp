@@ -60,6 +60,8 @@ RvePool::RvePool(const PackingMix& mix, const PoolOptions& options)
       trial_reports_(mix.points()),
       committed_reports_(mix.points()),
       deferral_(engine_.defer, settings_.pressure_floor),
+      retired_(mix.points()),
+      numbers_(mix.numbers),
       least_areas_(least_areas(mix)),
       all_states_{batch_.committed, batch_.trial} {
   for (const kernels::Packing& packing : batch_.packings) {
@@ -133,17 +135,26 @@ void RvePool::choose_steps(std::size_t rve, const fem::Gradient& gradient, bool 
   request.hold_cap = engine_.hold_cap;
 }
 
-/// Runs the grains of the RVEs that may not be deferred, with the whole gradient since their last run.
-kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings) {
+/// Chooses the RVEs whose grains run, and their requests: all RVEs but those that have been dug out and those that
+/// their tangents answer for. Grains run with the whole gradient since their last run.
+void RvePool::choose_running(std::span<const fem::Gradient> gradients) {
   running_.clear();
   increment_.assign(gradients.begin(), gradients.end());
   for (std::size_t k = 0; k < size(); ++k) {
+    if (retired_.contains(k)) continue;
     const bool ran = steps_are_fixed_ && deferral_.runs(k);
-    if (deferral_.answer(k, gradients[k], trial_reports_[k])) continue;
+    if (deferral_.on() && deferral_.answer(k, gradients[k], trial_reports_[k])) continue;
     choose_steps(k, deferral_.whole(k, gradients[k]), !ran);
     running_.push_back(static_cast<int>(k));
   }
   steps_are_fixed_ = true;
+}
+
+/// Without tangents the reports have the tangent of eq. (4), which is computed together with the stress.
+kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients, bool with_tangents) {
+  kernels::EngineSettings settings = settings_;
+  if (!with_tangents) settings.tangent = kernels::TangentKind::contact;
+  choose_running(gradients);
   const kernels::Work work = kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings,
                                               trial_reports_, running_);
   for (const int rve : running_) {
@@ -153,21 +164,12 @@ kernels::Work RvePool::advance_some(std::span<const fem::Gradient> gradients, co
   return work;
 }
 
-/// Without tangents the reports have the tangent of eq. (4), which is computed together with the stress.
-kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients, bool with_tangents) {
-  kernels::EngineSettings settings = settings_;
-  if (!with_tangents) settings.tangent = kernels::TangentKind::contact;
-  if (deferral_.on()) return advance_some(gradients, settings);
-  for (std::size_t k = 0; k < size(); ++k) choose_steps(k, gradients[k], !steps_are_fixed_);
-  steps_are_fixed_ = true;
-  return kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings, trial_reports_);
-}
-
 fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
                                    std::span<fem::Tangent> tangent) {
   const kernels::Work work = advance(gradients, !tangent.empty());
   copy_answers(trial_reports_, stress, tangent);
-  fem::BatchReport report = summarise(trial_reports_, settings_.pressure_floor, least_areas_);
+  retired_.clear(stress, tangent);
+  fem::BatchReport report = summarise(trial_reports_, {settings_.pressure_floor, least_areas_, numbers_, retired_});
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
   report.tangent_time = work.tangent_time();
@@ -178,8 +180,11 @@ fem::BatchReport RvePool::evaluate(std::span<const fem::Gradient> gradients, std
 void RvePool::commit() {
   const kernels::RveStates before = batch_.committed;
   std::vector<int> kept;
-  for (std::size_t k = 0; deferral_.on() && k < size(); ++k) {
-    if (deferral_.commit(k, increment_[k], trial_reports_[k])) kept.push_back(static_cast<int>(k));
+  for (std::size_t k = 0; k < size(); ++k) {
+    const bool is_retired = retired_.contains(k);
+    if (is_retired) trial_reports_[k] = committed_reports_[k];
+    const bool is_deferred = !is_retired && deferral_.on() && deferral_.commit(k, increment_[k], trial_reports_[k]);
+    if (is_retired || is_deferred) kept.push_back(static_cast<int>(k));
   }
   kernels::commit(batch_, kept);
   committed_reports_ = trial_reports_;
@@ -190,6 +195,7 @@ void RvePool::commit() {
 
 void RvePool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const {
   copy_answers(committed_reports_, stress, tangent);
+  retired_.clear(stress, tangent);
 }
 
 std::vector<fem::PointField> RvePool::fields() const {
@@ -224,6 +230,7 @@ std::vector<fem::PointField> RvePool::fields() const {
     if (row.request == nullptr || !is_asked_for(row, microstructure_)) continue;
     add(row, [&](std::size_t k) { return row.of_network(states[k].network); });
   }
+  retired_.clear(out);
   return out;
 }
 

@@ -3,6 +3,7 @@
 /// stress and tangent.
 
 #include "fem/material_batch.hpp"
+#include "fem/retired_points.hpp"
 #include "host/case/case.hpp"
 #include "host/material/deferral.hpp"
 #include "host/material/devices.hpp"
@@ -43,6 +44,8 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<fem::PointField> fields() const override;
   [[nodiscard]] std::vector<std::byte> state() const override;
   void set_state(std::span<const std::byte> bytes) override;
+  /// The grains of these points stay as they are, in checkpoints too.
+  void retire(std::span<const std::size_t> points) override { retired_.add(points); }
   /// Nothing is copied but the reports.
   [[nodiscard]] std::shared_ptr<const fem::HeldState> hold() override;
   void return_to(const fem::HeldState& held) override;
@@ -63,7 +66,9 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   }  ///< least pressure that the reports' ratios are relative to [Pa]
   /// Says on which device the RVEs reside, or why they do not; empty where there is none to speak of.
   [[nodiscard]] std::string device_sentence() const { return sentence_of(device_); }
-  [[nodiscard]] std::uint64_t identity() const;
+  [[nodiscard]] std::uint64_t identity() const { return identity(batch_.packing_of); }
+  /// The identity of a larger pool of the same packings, of which this one is a part.
+  [[nodiscard]] std::uint64_t identity(std::span<const int> packing_of) const;
   [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;  ///< of `n` RVEs
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
 
@@ -77,9 +82,11 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<kernels::RveReport> trial_reports_;
   std::vector<kernels::RveReport> committed_reports_;
   Deferral deferral_;
-  std::vector<int> running_;              ///< RVEs whose grains the evaluation needs; only where some may be deferred
-  std::vector<fem::Gradient> increment_;  ///< of the last evaluation; only where some may be deferred
+  fem::RetiredPoints retired_;
+  std::vector<int> running_;              ///< RVEs whose grains the evaluation needs
+  std::vector<fem::Gradient> increment_;  ///< of the last evaluation
   bool steps_are_fixed_ = false;
+  std::vector<std::size_t> numbers_;                 ///< PackingMix::numbers
   std::vector<double> least_areas_;                  ///< (RVE), see least_areas [m^2]
   std::vector<double> solid_areas_;                  ///< of each packing [m^2]
   std::vector<double> mobilities_;                   ///< mean over the grains of each packing [m/N]
@@ -92,7 +99,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] double void_ratio_at(std::size_t rve, double cell_area) const;
   [[nodiscard]] int steps_for(std::size_t rve, const kernels::Mat2& f_rel) const;
   void choose_steps(std::size_t rve, const fem::Gradient& gradient, bool anew);
-  kernels::Work advance_some(std::span<const fem::Gradient> gradients, const kernels::EngineSettings& settings);
+  void choose_running(std::span<const fem::Gradient> gradients);
   [[nodiscard]] HeldRves committed_rves() const;
   [[nodiscard]] bool is_held(const kernels::RveStates& states);
   [[nodiscard]] kernels::RveStates free_states();

@@ -82,7 +82,8 @@ struct ByteCounter {
 
 }  // namespace
 
-std::uint64_t RvePool::identity() const {
+/// Which packing an RVE has counts only where there are several, so that the identities of older checkpoints hold.
+std::uint64_t RvePool::identity(std::span<const int> packing_of) const {
   std::uint64_t hash = io::fnv_start;
   const auto add = [&hash](const auto& values) { hash = io::fnv1a(std::as_bytes(std::span(values)), hash); };
   add(std::array{record_version});
@@ -94,6 +95,7 @@ std::uint64_t RvePool::identity() const {
       for (const kernels::MaterialNumber& n : kernels::material_numbers) add(std::array{m.*n.number});
     }
   }
+  if (batch_.packings.size() > 1) add(packing_of);
   if (deferral_.on()) add(std::array{deferral_.bound()});
   return hash;
 }

@@ -1,6 +1,8 @@
 #include "host/packing/variety.hpp"
 
+#include <algorithm>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "host/packing/grading.hpp"
@@ -10,7 +12,10 @@ namespace voussoir::host {
 
 PackingMix PackingMix::part(const std::vector<std::size_t>& points) const {
   PackingMix out{packings, {}};
-  for (const std::size_t p : points) out.of_point.push_back(of_point[p]);
+  for (const std::size_t p : points) {
+    out.of_point.push_back(of_point[p]);
+    if (!numbers.empty()) out.numbers.push_back(numbers[p]);
+  }
   return out;
 }
 
@@ -26,6 +31,47 @@ PackingMix clones_of(PackedRve rve, std::size_t n) {
   PackingMix out;
   out.packings.push_back(std::move(rve));
   out.of_point.assign(n, 0);
+  return out;
+}
+
+namespace {
+
+bool is_same_material(const kernels::GrainMaterial& a, const kernels::GrainMaterial& b) {
+  return std::all_of(kernels::material_numbers.begin(), kernels::material_numbers.end(),
+                     [&](const kernels::MaterialNumber& n) { return a.*n.number == b.*n.number; });
+}
+
+/// True where no RVE could tell the two apart.
+bool is_same_packing(const PackedRve& a, const PackedRve& b) {
+  const kernels::Packing &p = a.packing, &q = b.packing;
+  const auto state = [](const PackedRve& r) {
+    return std::tie(r.position, r.rotation, r.cell.xx, r.cell.xy, r.cell.yx, r.cell.yy, r.contact_key,
+                    r.contact_history);
+  };
+  return std::tie(p.radii, p.class_of, p.thickness, p.local_damping) ==
+             std::tie(q.radii, q.class_of, q.thickness, q.local_damping) &&
+         std::equal(p.materials.begin(), p.materials.end(), q.materials.begin(), q.materials.end(), is_same_material) &&
+         state(a) == state(b);
+}
+
+}  // namespace
+
+PackingMix join(std::vector<PackingMix> mixes, const std::vector<std::vector<std::size_t>>& places) {
+  PackingMix out;
+  std::size_t n = 0;
+  for (const PackingMix& mix : mixes) n += mix.points();
+  out.of_point.resize(n);
+  for (std::size_t k = 0; k < mixes.size(); ++k) {
+    std::vector<int> index;  // of each packing of this mix, among all
+    for (PackedRve& rve : mixes[k].packings) {
+      auto found = std::find_if(out.packings.begin(), out.packings.end(),
+                                [&](const PackedRve& other) { return is_same_packing(rve, other); });
+      if (found == out.packings.end()) found = out.packings.insert(found, std::move(rve));
+      index.push_back(static_cast<int>(found - out.packings.begin()));
+    }
+    for (std::size_t i = 0; i < mixes[k].points(); ++i)
+      out.of_point[places[k][i]] = index[static_cast<std::size_t>(mixes[k].of_point[i])];
+  }
   return out;
 }
 

@@ -12,7 +12,8 @@ namespace voussoir::host {
 /// The packings of a mesh, and the packing that each Gauss point holds.
 struct PackingMix {
   std::vector<PackedRve> packings;
-  std::vector<int> of_point;  ///< (point) index into `packings`
+  std::vector<int> of_point;              ///< (point) index into `packings`
+  std::vector<std::size_t> numbers = {};  ///< (point) of the mesh, for messages; empty: all points of a mesh, in order
 
   [[nodiscard]] std::size_t points() const { return of_point.size(); }
   /// The mix of some of the points, in their order; all packings stay, so that their indices keep their meaning.
@@ -29,5 +30,9 @@ struct PackingMix {
 /// packings out in turn, so that the numbers of points of two packings differ by one at most. The same seed gives the
 /// same mix on every machine.
 [[nodiscard]] PackingMix mix(std::vector<PackedRve> packings, std::size_t n, std::int64_t seed);
+
+/// One mix of several, whose points lie between one another in a mesh: point i of mix k is the point places[k][i] of
+/// the joined mix. Mixes that have equal packings share them.
+[[nodiscard]] PackingMix join(std::vector<PackingMix> mixes, const std::vector<std::vector<std::size_t>>& places);
 
 }  // namespace voussoir::host

@@ -22,6 +22,7 @@ enum class Command : std::uint8_t {
   commit,           ///< ->
   fields,           ///< -> number of fields, the fields
   states,           ///< first RVE, number of RVEs -> their records
+  retire,           ///< points that have been dug out ->
   set_states,       ///< first RVE, records -> committed reports of all RVEs
   forget,           ///< the pool is no longer needed -> peak memory
   quit              ///< no reply

@@ -72,7 +72,8 @@ RankPool::RankPool(PackingMix mix, const PoolOptions& options, std::span<const R
       least_areas_(least_areas(mix_)),
       points_(deal_points(mix_.points(), ranks)),
       trial_(mix_.points()),
-      committed_(mix_.points()) {
+      committed_(mix_.points()),
+      retired_(mix_.points()) {
   const auto replies = ask(
       others(), [&](std::size_t r) { return make_message(r); },
       [&] { own_ = std::make_unique<RvePool>(mix_.part(points_[0]), options_); });
@@ -172,7 +173,8 @@ fem::BatchReport RankPool::evaluate(std::span<const fem::Gradient> gradients, st
     ledger_.bytes += static_cast<double>(replies[r - 1].size());
   }
   copy_answers(trial_, stress, tangent);
-  fem::BatchReport report = summarise(trial_, own_->pressure_floor(), least_areas_);
+  retired_.clear(stress, tangent);
+  fem::BatchReport report = summarise(trial_, {own_->pressure_floor(), least_areas_, mix_.numbers, retired_});
   report.work = work.particle_steps;
   report.lane_steps = work.lane_steps;
   report.tangent_time = work.tangent_time();
@@ -190,6 +192,26 @@ void RankPool::commit() {
 
 void RankPool::committed(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const {
   copy_answers(committed_, stress, tangent);
+  retired_.clear(stress, tangent);
+}
+
+/// A list of points is sent to each rank, by their numbers within the rank.
+void RankPool::retire(std::span<const std::size_t> points) {
+  retired_.add(points);
+  std::vector<std::vector<std::size_t>> of_rank(points_.size());
+  for (std::size_t r = 0; r < points_.size(); ++r) {
+    for (const std::size_t p : points) {
+      const auto found = std::lower_bound(points_[r].begin(), points_[r].end(), p);
+      if (found != points_[r].end() && *found == p)
+        of_rank[r].push_back(static_cast<std::size_t>(found - points_[r].begin()));
+    }
+  }
+  const auto message = [&](std::size_t r) {
+    Message m = message_of(Command::retire);
+    ByteWriter(m).list(of_rank[r]);
+    return m;
+  };
+  ask(others(), message, [&] { own_->retire(of_rank[0]); });
 }
 
 std::vector<fem::PointField> RankPool::fields() const {
@@ -243,11 +265,11 @@ std::vector<std::byte> RankPool::state() const {
       for (std::size_t k = 0; k < some.size(); ++k) records[points_[r][first + k]] = std::move(some[k]);
     }
   }
-  return join_state(own_->identity(), std::vector<StateRecord>(records.begin(), records.end()));
+  return join_state(identity(), std::vector<StateRecord>(records.begin(), records.end()));
 }
 
 void RankPool::set_state(std::span<const std::byte> bytes) {
-  const std::vector<StateRecord> records = split_state(bytes, own_->identity(), size());
+  const std::vector<StateRecord> records = split_state(bytes, identity(), size());
   std::vector<std::size_t> rves(points_[0].size());
   std::vector<StateRecord> mine;
   for (std::size_t k = 0; k < rves.size(); ++k) {

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "fem/retired_points.hpp"
 #include "host/material/rve_pool.hpp"
 #include "host/ranks/channel.hpp"
 #include "host/ranks/session.hpp"
@@ -34,6 +35,7 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::vector<fem::PointField> fields() const override;
   [[nodiscard]] std::vector<std::byte> state() const override;
   void set_state(std::span<const std::byte> bytes) override;
+  void retire(std::span<const std::size_t> points) override;
   [[nodiscard]] std::vector<io::RveSnapshot> snapshots(std::span<const std::int64_t> points) const override;
 
  private:
@@ -46,6 +48,7 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
     double waiting = 0;     ///< time that the first rank waited for the others [s]
   };
 
+  [[nodiscard]] std::uint64_t identity() const { return own_->identity(mix_.of_point); }
   [[nodiscard]] std::size_t others() const { return points_.size() - 1; }
   [[nodiscard]] Message make_message(std::size_t rank) const;
   [[nodiscard]] Message gradient_message(std::size_t rank, std::span<const fem::Gradient> gradients,
@@ -61,6 +64,7 @@ class RankPool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<std::vector<std::size_t>> points_;  ///< by rank
   std::unique_ptr<RvePool> own_;
   std::vector<kernels::RveReport> trial_, committed_;  ///< of all points
+  fem::RetiredPoints retired_;                         ///< of all points
   Ledger ledger_;
 };
 

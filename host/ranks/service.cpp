@@ -38,6 +38,8 @@ class Service {
         return fields(reply);
       case Command::states:
         return states(read, reply);
+      case Command::retire:
+        return pool().retire(read.list<std::size_t>());
       case Command::set_states:
         return set_states(read, reply);
       case Command::forget:

@@ -41,7 +41,7 @@ GroundRun::GroundRun(const RunOptions& options, const io::Provenance& provenance
 }
 
 void GroundRun::open_ground(const MaterialCase& material, const PackingNote& note) {
-  material_ = make_material(material, static_cast<std::size_t>(mesh_.n_points()), note);
+  material_ = make_material(material, mesh_, note);
   catch_interrupts();  // packings may take long and are kept one by one; from here on there are increments to end first
   ground_.emplace(Ground{mesh_, *material_, {}, {}});
   if (const io::Checkpoint* checkpoint = recorder_.resumed()) {

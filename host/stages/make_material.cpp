@@ -1,27 +1,119 @@
 #include "host/stages/make_material.hpp"
 
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "fem/linear_elastic.hpp"
 #include "host/case/result_fields.hpp"
 #include "host/material/mirrored_batch.hpp"
+#include "host/material/region_batch.hpp"
 #include "host/material/rve_pool.hpp"
 #include "host/ranks/session.hpp"
 
 namespace voussoir::host {
 namespace {
 
-/// A pool with the chosen packings at the points.
-std::unique_ptr<fem::MaterialBatch> make_rve_pool(const MaterialCase& material, std::size_t n_points,
-                                                  const PackingNote& note) {
-  PackingMix mix = choose_packings(material.soil, material.packing, n_points, note);
+using Points = std::vector<std::size_t>;
+
+/// A region with its points of the mesh, ascending.
+struct RegionPoints {
+  const RegionCase* region = nullptr;
+  Points points;
+};
+
+/// The regions of the mesh that have points, in the order of the case.
+std::vector<RegionPoints> regions_of(const std::vector<RegionCase>& cases, const fem::Mesh& mesh) {
+  std::vector<RegionPoints> all;
+  for (const RegionCase& region : cases) all.push_back({&region, {}});
+  const auto index_of = [&](std::size_t element) -> std::size_t {
+    if (mesh.region_names.empty() && all.size() == 1) return 0;
+    const std::string name = mesh.region_names.empty()
+                                 ? ""
+                                 : mesh.region_names[static_cast<std::size_t>(mesh.region[element])];
+    for (std::size_t k = 0; k < cases.size(); ++k)
+      if (cases[k].name == name) return k;
+    throw std::invalid_argument("region '" + name + "' of the mesh has no [[region]]");
+  };
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    Points& points = all[index_of(e)].points;
+    for (std::size_t p = 0; p < 4; ++p) points.push_back(4 * e + p);
+  }
+  std::erase_if(all, [](const RegionPoints& r) { return r.points.empty(); });
+  return all;
+}
+
+/// A pool with these packings at its points.
+std::unique_ptr<fem::MaterialBatch> pool_of(const MaterialCase& material, PackingMix mix, const PackingNote& note) {
   PoolOptions options = options_for_newton(material.engine, material.tangent, material.tangent_strain);
   options.microstructure = material.microstructure;
   options.local_rank = local_rank();
-  if (rank_count() > 1) return make_rank_pool(std::move(mix), options, note);
-  auto pool = std::make_unique<RvePool>(mix, options);
-  if (note && !pool->device_sentence().empty()) note(pool->device_sentence());
-  return pool;
+  const auto make = [&]() -> std::unique_ptr<fem::MaterialBatch> {
+    if (rank_count() > 1) return make_rank_pool(std::move(mix), options, note);
+    auto pool = std::make_unique<RvePool>(mix, options);
+    if (note && !pool->device_sentence().empty()) note(pool->device_sentence());
+    return pool;
+  };
+  if (!material.packing.mirrored) return make();
+  return std::make_unique<MirroredBatch>(make());
+}
+
+std::unique_ptr<fem::MaterialBatch> elastic_batch(const ElasticCase& elastic, double pressure, std::size_t n) {
+  return std::make_unique<fem::LinearElastic>(
+      n, fem::ElasticOptions{.young = elastic.modulus,
+                             .poisson = elastic.poisson,
+                             .initial_stress = fem::Stress(-pressure, -pressure, 0.0),
+                             .strain = fem::ElasticStrain::logarithmic});
+}
+
+/// One pool for the regions with grains, so that no thread idles at the end of each region's own pool.
+RegionPart grains_part(const MaterialCase& material, const std::vector<RegionPoints>& regions, bool is_whole_mesh,
+                       const PackingNote& note) {
+  Points points;
+  for (const RegionPoints& r : regions) points.insert(points.end(), r.points.begin(), r.points.end());
+  std::sort(points.begin(), points.end());
+  std::vector<PackingMix> mixes;
+  std::vector<Points> places;
+  for (const RegionPoints& r : regions) {
+    PackingCase recipe = r.region->packing;
+    recipe.pressure = material.packing.pressure;
+    const PackingNote prefixed = [&](const std::string& text) { note("region " + r.region->name + ": " + text); };
+    const bool is_only = regions.size() == 1;
+    mixes.push_back(choose_packings(r.region->soil, recipe, r.points.size(), note && !is_only ? prefixed : note));
+    Points& of_mix = places.emplace_back();
+    for (const std::size_t p : r.points) {
+      of_mix.push_back(static_cast<std::size_t>(std::lower_bound(points.begin(), points.end(), p) - points.begin()));
+    }
+  }
+  PackingMix mix = mixes.size() == 1 ? std::move(mixes.front()) : join(std::move(mixes), places);
+  if (!is_whole_mesh) mix.numbers = points;
+  return {pool_of(material, std::move(mix), note), std::move(points)};
+}
+
+std::unique_ptr<fem::MaterialBatch> material_of_regions(const MaterialCase& material, const fem::Mesh& mesh,
+                                                        const PackingNote& note) {
+  std::vector<RegionPoints> grains;
+  std::map<std::pair<double, double>, Points> elastic;  // by Young's modulus and Poisson's ratio
+  for (RegionPoints& r : regions_of(material.regions, mesh)) {
+    const ElasticCase constants = r.region->elastic.value_or(material.elastic);
+    if (material.kind == MaterialKind::grains && !r.region->elastic) {
+      grains.push_back(std::move(r));
+    } else {
+      Points& points = elastic[{constants.modulus, constants.poisson}];
+      points.insert(points.end(), r.points.begin(), r.points.end());
+    }
+  }
+  std::vector<RegionPart> parts;
+  if (!grains.empty()) parts.push_back(grains_part(material, grains, elastic.empty(), note));
+  for (auto& [constants, points] : elastic) {
+    std::sort(points.begin(), points.end());
+    const ElasticCase of_part{.modulus = constants.first, .poisson = constants.second};
+    parts.push_back({elastic_batch(of_part, material.packing.pressure, points.size()), points});
+  }
+  if (parts.size() == 1) return std::move(parts.front().batch);
+  return std::make_unique<RegionBatch>(std::move(parts));
 }
 
 }  // namespace
@@ -34,22 +126,17 @@ MaterialCase material_case(const Case& input) {
           .elastic = input.elastic,
           .tangent = input.newton.tangent,
           .tangent_strain = input.newton.tangent_strain,
-          .microstructure = written_quantities(input.output)};
+          .microstructure = written_quantities(input.output),
+          .regions = input.kind == CaseKind::scene ? input.scene.regions : std::vector<RegionCase>()};
 }
 
-std::unique_ptr<fem::MaterialBatch> make_material(const MaterialCase& material, std::size_t n_points,
+std::unique_ptr<fem::MaterialBatch> make_material(const MaterialCase& material, const fem::Mesh& mesh,
                                                   const PackingNote& note) {
-  if (material.kind == MaterialKind::grains) {
-    auto pool = make_rve_pool(material, n_points, note);
-    if (!material.packing.mirrored) return pool;
-    return std::make_unique<MirroredBatch>(std::move(pool));
-  }
-  const double pressure = material.packing.pressure;
-  return std::make_unique<fem::LinearElastic>(
-      n_points, fem::ElasticOptions{.young = material.elastic.modulus,
-                                    .poisson = material.elastic.poisson,
-                                    .initial_stress = fem::Stress(-pressure, -pressure, 0.0),
-                                    .strain = fem::ElasticStrain::logarithmic});
+  if (!material.regions.empty()) return material_of_regions(material, mesh, note);
+  const auto n = static_cast<std::size_t>(mesh.n_points());
+  if (material.kind == MaterialKind::linear_elastic)
+    return elastic_batch(material.elastic, material.packing.pressure, n);
+  return pool_of(material, choose_packings(material.soil, material.packing, n, note), note);
 }
 
 }  // namespace voussoir::host
