@@ -84,7 +84,8 @@ fem::Mesh column_mesh(const ColumnSetup& setup) {
   const double base = setup.layers.back().bottom;
   if (setup.layers.size() == 1)
     return fem::make_rectangle(setup.column.width, setup.layers.front().top - base, 1, setup.column.elements);
-  SceneMeshCase grid{.shape = MeshShape::grid};
+  SceneMeshCase grid;
+  grid.shape = MeshShape::grid;
   grid.x = {0, setup.column.width};
   grid.columns = {1};
   grid.y = {0};

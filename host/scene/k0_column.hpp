@@ -15,12 +15,12 @@ namespace voussoir::host {
 
 /// The parts of a case from which its column is made.
 struct ColumnSetup {
-  ColumnCase column;
-  std::vector<GroundLayer> layers;  ///< from the surface down
+  ColumnCase column = {};
+  std::vector<GroundLayer> layers = {};  ///< from the surface down
   double surcharge = 1e3;           ///< on the surface, and isotropic pressure at the start [Pa]
-  GravityCase gravity;
-  MaterialCase material;
-  StageSettings settings;
+  GravityCase gravity = {};
+  MaterialCase material = {};
+  StageSettings settings = {};
 };
 /// The column of a case with [ground].
 [[nodiscard]] ColumnSetup column_setup(const Case& input);
@@ -28,8 +28,8 @@ struct ColumnSetup {
 /// K0 (sigma_yy) of each layer's material, measured on a column under its own weight.
 struct ColumnResult {
   RunStatus status = RunStatus::finished;
-  std::vector<K0Table> k0;          ///< of each layer, from the surface down; empty where the column is not finished
-  std::vector<StageTotals> totals;  ///< the column's costs
+  std::vector<K0Table> k0 = {};          ///< of each layer, from the surface down; empty where the column is not finished
+  std::vector<StageTotals> totals = {};  ///< the column's costs
 };
 
 /// Starts the column in options.folder, or goes on with it. The column has results and checkpoints of its own, the

@@ -15,11 +15,11 @@ namespace voussoir::host {
 
 /// A record with its places in the mesh as drawn.
 struct PlacedRecord {
-  RecordCase input;
-  std::vector<fem::Located> places;      ///< of a point one, of a line those that lie in the ground
-  std::vector<fem::Point> coordinates;   ///< of the places, as drawn [m]
-  std::vector<double> along;             ///< of the places: distance from the line's first point [m]
-  std::vector<int> elements;             ///< of a region
+  RecordCase input = {};
+  std::vector<fem::Located> places = {};      ///< of a point one, of a line those that lie in the ground
+  std::vector<fem::Point> coordinates = {};   ///< of the places, as drawn [m]
+  std::vector<double> along = {};             ///< of the places: distance from the line's first point [m]
+  std::vector<int> elements = {};             ///< of a region
 };
 
 /// Throws std::runtime_error, whose text begins with the key at fault, where a point lies outside the ground or a line

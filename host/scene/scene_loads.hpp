@@ -10,8 +10,8 @@ namespace voussoir::host {
 
 /// Forces of supports that are gone and of ground that was dug out, as far as they act still. A checkpoint keeps both.
 struct FadingForces {
-  Eigen::VectorXd kept;    ///< of earlier stages; they stay [N/m]; empty: none
-  Eigen::VectorXd fading;  ///< at the start of this stage; empty: none [N/m]
+  Eigen::VectorXd kept = {};    ///< of earlier stages; they stay [N/m]; empty: none
+  Eigen::VectorXd fading = {};  ///< at the start of this stage; empty: none [N/m]
 };
 
 /// The loads of one stage. It keeps references to all that it is made of.

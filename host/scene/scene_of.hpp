@@ -12,9 +12,9 @@ namespace voussoir::host {
 /// A scene with its stages and records, checked against its mesh.
 struct PlannedScene {
   Scene scene;
-  std::vector<StagePlan> plans;
-  std::vector<PlacedRecord> records;
-  std::vector<GroundLayer> layers;  ///< from the surface down; empty where no stage presses at rest
+  std::vector<StagePlan> plans = {};
+  std::vector<PlacedRecord> records = {};
+  std::vector<GroundLayer> layers = {};  ///< from the surface down; empty where no stage presses at rest
 };
 
 /// Throws io::InputError with the place and the key at fault where the nouns of the scene do not fit one another.

@@ -12,8 +12,6 @@
 namespace voussoir::host {
 namespace {
 
-constexpr std::array<const char*, 2> axis_names{"x", "y"};
-
 /// What holds and loads the scene between two stages.
 struct Standing {
   std::vector<Holder> holders;

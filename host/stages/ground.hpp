@@ -12,16 +12,16 @@ namespace voussoir::host {
 
 /// What stages that moved the mesh have left behind where others went on from there; all empty where none has.
 struct EarlierStages {
-  Eigen::VectorXd displacement;          ///< until the present stage began, n_dofs [m]
-  std::vector<fem::PlaneTensor> strain;  ///< the same, n_points [-]
-  fem::Coordinates coordinates;          ///< when the present stage began [m]
+  Eigen::VectorXd displacement = {};          ///< until the present stage began, n_dofs [m]
+  std::vector<fem::PlaneTensor> strain = {};  ///< the same, n_points [-]
+  fem::Coordinates coordinates = {};          ///< when the present stage began [m]
 };
 
 struct Ground {
   const fem::Mesh& mesh;
   fem::MaterialBatch& material;
   fem::MeshState state;                  ///< state of the current stage
-  std::vector<fem::PlaneTensor> strain;  ///< sum of the increments' strains since the stage began, n_points [-]
+  std::vector<fem::PlaneTensor> strain = {};  ///< sum of the increments' strains since the stage began, n_points [-]
   EarlierStages earlier = {};
 
   /// The coordinates when the present stage began.

@@ -5,6 +5,7 @@
 #include "fem/mesh_rectangle.hpp"
 #include "fem/mesh_tunnel.hpp"
 #include "tests/fem_support.hpp"
+#include "tests/shrinking_opening.hpp"
 
 namespace voussoir::fem {
 namespace {
@@ -35,7 +36,7 @@ TEST(Geostatic, ColumnIsExact) {
                            rollers(mesh), 0, 0};
   Increment increment;
   ASSERT_EQ(solver.solve_increment(state, load, increment).status, NewtonStatus::converged);
-  const GeostaticStress expected{gamma, height, surcharge, 1, [](double) { return k0; }};
+  const GeostaticStress expected{{{0, gamma}}, height, surcharge, 1, [](std::size_t, double) { return k0; }};
   for (int i = 0; i < mesh.n_points(); ++i)
     EXPECT_LT((increment.stress[i] - expected(increment.points.positions.col(i))).norm(), 1e-12 * gamma * height);
   const double modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
@@ -62,8 +63,8 @@ class ElasticTunnel : public testing::Test {
 
   /// K0 = 1 at the initial 1 kPa; the elastic ground adds its own share of the rest.
   [[nodiscard]] static GeostaticStress at_rest(double lambda) {
-    return {gamma, height, surcharge, lambda,
-            [](double s) { return s == -surcharge ? 1.0 : (-surcharge + k0 * (s + surcharge)) / s; }};
+    return {{{0, gamma}}, height, surcharge, lambda,
+            [](std::size_t, double s) { return s == -surcharge ? 1.0 : (-surcharge + k0 * (s + surcharge)) / s; }};
   }
   [[nodiscard]] Eigen::VectorXd gravity_force(double lambda) const {
     return lambda * weight_ + top_ + traction_force(mesh_.coordinates, mesh_.edge_set("opening"), at_rest(lambda));
@@ -100,7 +101,7 @@ TEST_F(ElasticTunnel, ReactionsTakeOverTheTractionsAndTheLossRemovesItsArea) {
   state = begin_stage(mesh_, mesh_.coordinates, material_);
   NewtonSolver solver(mesh_, material_, Kinematics::updated_lagrangian, {});
   IncrementLoad still{weight_ + top_, rollers(mesh_), 0, 0};
-  constrain_volume_loss(still.prescribed, mesh_, 0, 0);
+  shrink_opening(still.prescribed, mesh_, 0, 0);
   Increment increment;
   ASSERT_EQ(solver.solve_increment(state, still, increment).status, NewtonStatus::converged);
   double difference = 0;
@@ -112,7 +113,7 @@ TEST_F(ElasticTunnel, ReactionsTakeOverTheTractionsAndTheLossRemovesItsArea) {
   const LoadPath path{[&](double) { return still.external_force; },
                       [&](double from, double to) {
                         Constraints c = rollers(mesh_);
-                        constrain_volume_loss(c, mesh_, from, to);
+                        shrink_opening(c, mesh_, from, to);
                         return c;
                       },
                       0};

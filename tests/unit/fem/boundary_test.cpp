@@ -6,6 +6,7 @@
 #include "fem/mesh_tunnel.hpp"
 #include "tests/fem_support.hpp"
 #include "tests/throws.hpp"
+#include "tests/shrinking_opening.hpp"
 
 namespace voussoir::fem {
 namespace {
@@ -30,7 +31,7 @@ TEST(Boundary, WeightIsTheAreaTimesUnitWeight) {
 TEST(Boundary, OpeningTractionsHaveTheExactResultant) {
   const Mesh mesh = make_half_tunnel({.cover = 15, .size_near = 0.9, .size_far = 3});
   const double gamma = 2e4, height = 35, surcharge = 1e3, lambda = 0.7, k0 = 0.45;
-  const GeostaticStress field{gamma, height, surcharge, lambda, [=](double) { return k0; }};
+  const GeostaticStress field{{{0, gamma}}, height, surcharge, lambda, [=](std::size_t, double) { return k0; }};
   const Point f = resultant(traction_force(mesh.coordinates, mesh.edge_set("opening"), field));
   // Divergence theorem on the half hole (N points into it), closed by its chord on the axis.
   const double hole = -area_left_of(mesh.coordinates, mesh.edge_set("opening"));
@@ -42,7 +43,7 @@ TEST(Boundary, OpeningTractionsHaveTheExactResultant) {
 
 TEST(Boundary, IsotropicStressIsInEquilibriumAtLoadFactorZero) {
   const Mesh mesh = make_half_tunnel({});
-  const GeostaticStress field{2e4, 35, 1e3, 0, [](double) { return 1.0; }};
+  const GeostaticStress field{{{0, 2e4}}, 35, 1e3, 0, [](std::size_t, double) { return 1.0; }};
   const Eigen::VectorXd force = traction_force(mesh.coordinates, mesh.edge_set("opening"), field) +
                                 pressure_force(mesh.coordinates, mesh.edge_set("top"), 1e3);
   const InternalForce internal = internal_force(mesh, gauss_points(mesh, mesh.coordinates),
@@ -64,7 +65,7 @@ TEST(VolumeLoss, RemovesExactlyItsShareOfTheArea) {
   double reached = 0;
   for (int k = 1; k <= 80; ++k) {  // the sum of increments, each on the original coordinates
     Constraints increment;
-    constrain_volume_loss(increment, mesh, reached, 0.0025 * k);
+    shrink_opening(increment, mesh, reached, 0.0025 * k);
     reached = 0.0025 * k;
     for (const auto& [dof, value] : increment) moved(dof % 2, dof / 2) += value;
   }
@@ -82,8 +83,15 @@ TEST(Constraints, ContradictionsAreRefused) {
   constrain(constraints, {4}, 0, 0);
   EXPECT_EQ(constraints.size(), 2u);
   expect_throws<std::invalid_argument>([&] { constrain(constraints, {4}, 0, 1); }, "node 4 is given two displacements");
-  expect_throws<std::invalid_argument>([&] { static_cast<void>(volume_loss_displacement({1, 1}, {0, 0}, 1)); },
-                                       "volume loss must be in");
+  expect_throws<std::invalid_argument>([&] { static_cast<void>(affine_displacement({1, 1}, {0, 0}, 0, -1)); },
+                                       "the area must not vanish");
+}
+
+TEST(AffineMotion, TurnsAndScalesAboutItsCentre) {
+  const Point centre(1, 2), x(3, 2);
+  const Point moved = x + affine_displacement(x, centre, M_PI / 2, 0.44);  // area + 44 %: lengths times 1.2
+  EXPECT_NEAR(moved.x(), 1, 1e-15);
+  EXPECT_NEAR(moved.y(), 2 + 1.2 * 2, 1e-15);
 }
 
 }  // namespace

@@ -57,17 +57,22 @@ TEST(BiaxialBvp, ElasticSpecimenFollowsTheClosedForm) {
 }
 
 TEST(BiaxialBvp, SpecimenIsHeldVerticallyAndByOneNode) {
-  const fem::Mesh mesh = fem::make_rectangle(1, 2, 2, 4);
-  const fem::Constraints constraints = platen_constraints(mesh, -0.1);
+  BiaxialBvpCase test;
+  test.width = 1;
+  test.height = 2;
+  const Scene scene = specimen_scene(test);
+  const StagePlan plan = plan_stages(scene).front();
   int horizontal = 0;
-  for (const auto& [dof, value] : constraints) {
+  for (const auto& [dof, owner] : plan.owners) {
     horizontal += dof % 2 == 0;
-    const double y = mesh.coordinates(1, dof / 2);
-    EXPECT_TRUE(y == 0 || y == 2);
-    EXPECT_EQ(value, y == 2 ? -0.1 : 0.0);
+    const fem::Point x = scene.mesh.coordinates.col(dof / 2);
+    EXPECT_TRUE(x.y() == 0 || x.y() == 2);
+    const fem::Point moved = plan.holders[owner].displacement(x, 0.01, 0.06);
+    EXPECT_EQ(moved.x(), 0);
+    EXPECT_DOUBLE_EQ(moved.y(), x.y() == 2 ? -0.1 : 0.0);
   }
   EXPECT_EQ(horizontal, 1);
-  EXPECT_EQ(constraints.size(), 5U + 5U + 1U);
+  EXPECT_EQ(plan.owners.size(), 5U + 5U + 1U);
 }
 
 }  // namespace
