@@ -1,7 +1,12 @@
 #pragma once
-/// Makes a Q8 mesh with named boundaries from four-node quadrilaterals; every mesh is made in this way.
+/// Makes a Q8 mesh with named boundaries from quadrilaterals; every mesh is made in this way.
 
+#include <algorithm>
 #include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "fem/mesh.hpp"
 
@@ -9,26 +14,29 @@ namespace voussoir::fem {
 
 using Quad = std::array<int, 4>;  ///< corners, counter-clockwise
 
-/// A mesh of four-node quadrilaterals, as a generator makes it.
+using CornerPair = std::pair<int, int>;  ///< the corners of an edge, the smaller index first
+
+[[nodiscard]] inline CornerPair corner_pair(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// A mesh of quadrilaterals, as a generator makes it.
 struct QuadMesh {
-  Coordinates corners;
+  Coordinates corners;  ///< [m]
   std::vector<Quad> quads;
+  std::map<CornerPair, Point> midsides = {};  ///< of the edges that are not straight [m]
 };
 
-/// The place of a boundary edge from a to b (soil on the left): the name of its boundary, and its place in the chain
-/// (any number that grows along the chain).
-struct BoundaryPlace {
-  std::string name;
-  double order;
-};
-using BoundaryClassifier = std::function<BoundaryPlace(const Point& a, const Point& b)>;
+/// The name of the boundary on which the outer edge from corner a to corner b (soil on the left) lies; empty: on none.
+using EdgeNamer = std::function<std::string(int a, int b)>;
 
-/// Adds midside nodes at the edges' centres, names the boundary edges and sorts them into chains. Throws
-/// std::runtime_error if an edge belongs to more than two elements or a chain is broken.
-[[nodiscard]] Mesh complete_q8(const Coordinates& corners, const std::vector<Quad>& quads,
-                               const BoundaryClassifier& classify);
+/// Adds the midside nodes (those of edges that have none given at the edges' centres), names the outer edges and sorts
+/// them into chains. The corners keep their indices; the midside nodes follow in the order in which the elements have
+/// them. Throws std::runtime_error if an edge belongs to more than two elements.
+[[nodiscard]] Mesh complete_q8(const QuadMesh& quads, const EdgeNamer& name_of);
 
 /// "base", "side", "top" or "axis" of a width x height block; an empty name where the edge is inside.
-[[nodiscard]] BoundaryPlace place_on_block(const Point& a, const Point& b, double width, double height);
+[[nodiscard]] std::string name_on_block(const Point& a, const Point& b, double width, double height);
+
+/// The node in the middle of each edge of a complete mesh.
+[[nodiscard]] std::map<CornerPair, int> midside_nodes(const Mesh& mesh);
 
 }  // namespace voussoir::fem

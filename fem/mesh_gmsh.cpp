@@ -1,12 +1,15 @@
 #include "fem/mesh_gmsh.hpp"
 
 #include <gmsh.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
-#include <string>
+#include <utility>
+#include <vector>
+
+#include "fem/mesh_gmsh_session.hpp"
 
 namespace voussoir::fem {
 
@@ -23,49 +26,76 @@ double target_size(const HalfTunnelOptions& o, const Circle& opening, double x, 
   return std::min({o.size_near + growth * from_opening, 1.5 * o.size_near + growth * from_column, o.size_far});
 }
 
-/// Owns Gmsh's global state while one mesh is made. Gmsh sets the process's OpenMP thread number to its own; the
-/// destructor restores the number, because otherwise everything after a mesh would run on one thread.
-class GmshSession {
- public:
-  GmshSession() {
-    gmsh::initialize(0, nullptr, false);
-    gmsh::option::setNumber("General.Terminal", 0);
-    gmsh::option::setNumber("General.NumThreads", 1);
-    gmsh::model::add("half_tunnel");
-  }
-  ~GmshSession() {
-    gmsh::finalize();
-    omp_set_num_threads(threads_before_);
-  }
-  GmshSession(const GmshSession&) = delete;
-  GmshSession& operator=(const GmshSession&) = delete;
-
- private:
-  int threads_before_ = omp_get_max_threads();
+/// A corner of the outline of a layer.
+struct Corner {
+  Point position;
+  bool on_circle = false;
 };
 
-/// Adds the outline, counter-clockwise from the origin; a half circle needs two arcs of less than pi.
-void add_geometry(const HalfTunnelOptions& o, const Circle& opening) {
-  namespace geo = gmsh::model::geo;
+/// Half the width of the opening at a height [m]; 0 above the crown and below the invert.
+double half_chord(const Circle& opening, double y) {
+  const double above = y - opening.centre.y();
+  return std::sqrt(std::max(0.0, (opening.radius - above) * (opening.radius + above)));
+}
+
+/// The outline of the ground between two heights, counter-clockwise from its lower left corner. A half circle needs two
+/// arcs of less than pi.
+std::vector<Corner> layer_outline(const HalfTunnelOptions& o, const Circle& opening, double y0, double y1) {
   const double yc = opening.centre.y();
-  const double r = opening.radius;
-  const int base_axis = geo::addPoint(0, 0, 0);
-  const int base_side = geo::addPoint(o.width, 0, 0);
-  const int top_side = geo::addPoint(o.width, o.height, 0);
-  const int top_axis = geo::addPoint(0, o.height, 0);
-  const int crown = geo::addPoint(0, yc + r, 0);
-  const int springline = geo::addPoint(r, yc, 0);
-  const int invert = geo::addPoint(0, yc - r, 0);
-  const int centre = geo::addPoint(0, yc, 0);
-  const std::vector<int> loop{geo::addLine(base_axis, base_side),
-                              geo::addLine(base_side, top_side),
-                              geo::addLine(top_side, top_axis),
-                              geo::addLine(top_axis, crown),
-                              geo::addCircleArc(crown, centre, springline),
-                              geo::addCircleArc(springline, centre, invert),
-                              geo::addLine(invert, base_axis)};
-  geo::addPlaneSurface({geo::addCurveLoop(loop)});
-  geo::synchronize();
+  const double crown = yc + opening.radius;
+  const double invert = yc - opening.radius;
+  const auto is_beside = [&](double y) { return invert < y && y < crown; };
+  std::vector<Corner> corners{{{half_chord(opening, y0), y0}, is_beside(y0)},
+                              {{o.width, y0}},
+                              {{o.width, y1}},
+                              {{half_chord(opening, y1), y1}, is_beside(y1)}};
+  if (y0 < crown && crown < y1) corners.push_back({{0, crown}, true});
+  if (y0 < yc && yc < y1) corners.push_back({{opening.radius, yc}, true});
+  if (y0 < invert && invert < y1) corners.push_back({{0, invert}, true});
+  return corners;
+}
+
+/// Adds points and curves to Gmsh's model, each once.
+class Geometry {
+ public:
+  int point(const Point& position) {
+    const auto [entry, is_new] = points_.try_emplace({position.x(), position.y()});
+    if (is_new) entry->second = gmsh::model::geo::addPoint(position.x(), position.y(), 0);
+    return entry->second;
+  }
+  /// The curve from a to b, negative where it was added from b to a.
+  int curve(const Corner& a, const Corner& b, const Point& centre) {
+    const int from = point(a.position);
+    const int to = point(b.position);
+    if (const auto known = curves_.find({to, from}); known != curves_.end()) return -known->second;
+    const auto [entry, is_new] = curves_.try_emplace({from, to});
+    if (is_new)
+      entry->second = a.on_circle && b.on_circle ? gmsh::model::geo::addCircleArc(from, point(centre), to)
+                                                 : gmsh::model::geo::addLine(from, to);
+    return entry->second;
+  }
+
+ private:
+  std::map<std::pair<double, double>, int> points_;
+  std::map<std::pair<int, int>, int> curves_;
+};
+
+/// Adds the outlines of the layers, from the base upwards.
+void add_geometry(const HalfTunnelOptions& o, const Circle& opening) {
+  Geometry geometry;
+  std::vector<double> heights{0};
+  heights.insert(heights.end(), o.interfaces.begin(), o.interfaces.end());
+  heights.push_back(o.height);
+  for (std::size_t layer = 0; layer + 1 < heights.size(); ++layer) {
+    const std::vector<Corner> corners = layer_outline(o, opening, heights[layer], heights[layer + 1]);
+    for (const Corner& corner : corners) geometry.point(corner.position);
+    geometry.point(opening.centre);  // the mesh's bits depend on the order in which Gmsh is given points
+    std::vector<int> loop;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      loop.push_back(geometry.curve(corners[k], corners[(k + 1) % corners.size()], opening.centre));
+    gmsh::model::geo::addPlaneSurface({gmsh::model::geo::addCurveLoop(loop)});
+  }
+  gmsh::model::geo::synchronize();
 }
 
 void generate(const HalfTunnelOptions& o, const Circle& opening) {
@@ -88,8 +118,7 @@ QuadMesh extract() {
   std::vector<int> types;
   std::vector<std::vector<std::size_t>> tags, element_nodes;
   gmsh::model::mesh::getElements(types, tags, element_nodes, 2);
-  if (types.size() != 1 || types[0] != 3)
-    throw std::runtime_error("tunnel mesh: Gmsh left other shapes than quadrilaterals");
+  if (types.size() != 1 || types[0] != 3) throw std::runtime_error("Gmsh left other shapes than quadrilaterals");
   std::vector<std::size_t> used = element_nodes[0];
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
@@ -124,6 +153,8 @@ void snap(Coordinates& corners, const HalfTunnelOptions& o, const Circle& openin
     if (std::abs(x.x() - o.width) < near) x.x() = o.width;
     if (std::abs(x.y()) < near) x.y() = 0;
     if (std::abs(x.y() - o.height) < near) x.y() = o.height;
+    for (const double y : o.interfaces)
+      if (std::abs(x.y() - y) < near) x.y() = y;
   }
 }
 
@@ -131,15 +162,14 @@ void snap(Coordinates& corners, const HalfTunnelOptions& o, const Circle& openin
 
 QuadMesh generate_quads(const HalfTunnelOptions& options) {
   const Circle opening = opening_of(options);
-  QuadMesh mesh;
-  try {
-    const GmshSession session;
-    add_geometry(options, opening);
-    generate(options, opening);
-    mesh = extract();
-  } catch (const std::string& message) {  // Gmsh 4.8 throws texts
-    throw std::runtime_error("tunnel mesh: Gmsh failed: " + message);
-  }
+  QuadMesh mesh = call_gmsh(
+      [&] {
+        const GmshSession session;
+        add_geometry(options, opening);
+        generate(options, opening);
+        return extract();
+      },
+      "tunnel mesh: Gmsh failed: ");
   snap(mesh.corners, options, opening);
   return mesh;
 }

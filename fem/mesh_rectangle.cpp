@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fem/mesh_builder.hpp"
+#include "fem/mesh_grid.hpp"
 
 namespace voussoir::fem {
 
@@ -12,18 +12,10 @@ Mesh make_rectangle(double width, double height, int nx, int ny) {
     throw std::invalid_argument("rectangle mesh: width and height must be positive and finite");
   if (nx < 1 || ny < 1 || nx > 10000 || ny > 10000)
     throw std::invalid_argument("rectangle mesh: nx and ny must be between 1 and 10000");
-  Coordinates corners(2, (nx + 1) * (ny + 1));
-  for (int j = 0; j <= ny; ++j)
-    for (int i = 0; i <= nx; ++i)
-      corners.col(j * (nx + 1) + i) << (i == nx ? width : width * i / nx), (j == ny ? height : height * j / ny);
-  std::vector<Quad> quads;
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) {
-      const int first = j * (nx + 1) + i;
-      quads.push_back({first, first + 1, first + nx + 2, first + nx + 1});
-    }
-  return complete_q8(corners, quads,
-                     [&](const Point& a, const Point& b) { return place_on_block(a, b, width, height); });
+  return make_grid({.x = {.breaks = {0, width}, .elements = {nx}},
+                    .y = {.breaks = {0, height}, .elements = {ny}},
+                    .left = {"axis"},
+                    .right = {"side"}});
 }
 
 }  // namespace voussoir::fem

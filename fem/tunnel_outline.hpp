@@ -1,5 +1,8 @@
 #pragma once
-/// The outline of half of the ground around a circular tunnel: a rectangle less half a circle on its left edge.
+/// The outline of half of the ground around a circular tunnel: a rectangle less half a circle on its left edge. Lines
+/// between layers may cross it.
+
+#include <vector>
 
 #include "fem/mesh.hpp"
 
@@ -12,6 +15,8 @@ struct HalfTunnelOptions {
   double cover = 10.0;     ///< C, from the crown to the top [m]; the invert is at y = height - C - D
   double size_near = 0.5;  ///< element edge at the opening [m]; edges between crown and surface are 1.5 times as long
   double size_far = 2.5;   ///< largest element edge [m]
+  std::vector<double> interfaces = {};  ///< heights of mesh lines between layers, ascending; also through the opening
+                                        ///< [m]
 };
 
 struct Circle {

@@ -9,24 +9,13 @@
 #include "fem/mesh.hpp"
 #include "fem/mesh_rectangle.hpp"
 #include "fem/mesh_tunnel.hpp"
+#include "tests/mesh_checks.hpp"
 #include "tests/throws.hpp"
 
 namespace voussoir::fem {
 namespace {
 
-void expect_closed_outline(const Mesh& mesh) {
-  // Every corner where one chain's edge ends, another edge starts; the area inside is the elements' area.
-  std::vector<int> balance(mesh.n_nodes(), 0);
-  double area = 0;
-  for (const auto& [name, chain] : mesh.edges) {
-    for (const Edge& edge : chain) ++balance[edge[0]], --balance[edge[2]];
-    area += area_left_of(mesh.coordinates, chain);
-  }
-  for (const int b : balance) EXPECT_EQ(b, 0);
-  double volume = 0;
-  for (const double v : gauss_points(mesh, mesh.coordinates).volumes) volume += v;
-  EXPECT_NEAR(area, volume, 1e-13 * volume);
-}
+using mesh_checks::expect_closed_outline;
 
 void check_tunnel(const HalfTunnelOptions& o) {
   SCOPED_TRACE(testing::Message() << "C/D " << o.cover / o.diameter << " size " << o.size_near);
