@@ -18,7 +18,7 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexers import get_lexer_by_name, get_lexer_for_filename
 from pygments.util import ClassNotFound
 
-from docs_site.formulas import FormulaError, letters, mathml
+from docs_site.formulas import FormulaError, mathml, plain
 
 MATH = ("math_inline", "math_inline_double", "math_block")
 LINKS = {"link_open": "href", "image": "src"}
@@ -80,7 +80,7 @@ def _source_text(tokens: Sequence[Token]) -> str:
 def _shown_text(tokens: Sequence[Token]) -> str:
     """The text of a heading as a reader sees it, after its formulas became MathML."""
     return "".join(
-        letters(token.content) if token.meta == OURS else token.content
+        plain(token.content) if token.meta == OURS else token.content
         for token in tokens
         if token.type in ("text", "code_inline") or token.meta == OURS
     )
