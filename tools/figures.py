@@ -40,7 +40,7 @@ def chosen(arguments, what):
 
 
 def output_folder(arguments, parser):
-    """Where the figures go: beside what they are drawn of, unless an option says otherwise."""
+    """Where the figures go: beside what they are drawn from, unless an option says otherwise."""
     if arguments.output:
         return arguments.output
     if len(arguments.results) > 1:

@@ -62,7 +62,7 @@ def exit_status(program: Path) -> str:
 
 
 def paper_figures(_program: Path) -> str:
-    lines = ["| in the paper | what it shows | our file | drawn of |", "|---|---|---|---|"]
+    lines = ["| in the paper | what it shows | our file | drawn from |", "|---|---|---|---|"]
     for figure in paper.FIGURES:
         number = figure.number if figure.number.startswith("Table") else f"figure {figure.number}"
         if figure.missing:

@@ -109,6 +109,8 @@ def check_pages(site):
     index = json.loads((site / "search/search_index.json").read_text())
     check((site / "search/search_index.js").read_text().startswith("var __index = {"), "no index for pages from files")
     found = {entry["location"].split("#")[0] for entry in index["docs"]}
+    texts = [entry["text"] for entry in index["docs"] if entry["location"].startswith("reference/glossary.html")]
+    check(any("√(2eijeij)" in text for text in texts), "the search has the roots of formulas without their sign")
     pages = sorted((ROOT / "docs").rglob("*.md"))
     for page in pages:
         name = page.relative_to(ROOT / "docs").as_posix()

@@ -322,7 +322,7 @@ class BadInput(unittest.TestCase):
     def test_sweeps(self):
         shutil.rmtree("nothing", ignore_errors=True)
         Path("nothing/a/b").mkdir(parents=True)
-        self.assert_one_line("nothing has no run.h5: figures are drawn of", "nothing")
+        self.assert_one_line("nothing has no run.h5: figures are drawn from", "nothing")
         Path("nothing/summary.csv").write_text("name,status\n")
         self.assert_one_line("nothing has no run with a run.h5", "nothing")
         Path("nothing/a/run.h5").write_bytes(b"half")

@@ -9,7 +9,6 @@ from tutorial_pages import Reader, follow
 from tutorial_test import PAGES
 
 SKIPPED = 77
-ADDRESS = "https://example.org/voussoir.git"  # as in docs/tutorial/first_tunnel.md
 
 
 def main():
@@ -19,12 +18,7 @@ def main():
     folder = fresh("whole").absolute()
     folder.mkdir()
     reader = Reader(folder, whole=True)
-    reader.environment |= {
-        "GIT_CONFIG_COUNT": "1",
-        "GIT_CONFIG_KEY_0": f"url.{ROOT}.insteadOf",
-        "GIT_CONFIG_VALUE_0": ADDRESS,
-        "VOUSSOIR_NO_PACKAGES": "1",
-    }
+    reader.environment["VOUSSOIR_NO_PACKAGES"] = "1"
     for page in PAGES:
         follow(ROOT / f"docs/tutorial/{page}.md", reader)
 

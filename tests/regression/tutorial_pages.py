@@ -158,6 +158,8 @@ def do_bash(block, reader):
     if reader.smaller_now:
         reader.smaller = True
         text = block.words if block.mark == "instead" else with_settings(text, block.words)
+    if block.mark == "checkout":
+        text = text.replace("ADDRESS", f"'{ROOT}'")
     run_bash(block, reader, text)
     if block.mark == "checkout":  # so that tools/setup finds its work done
         (reader.folder / ".prefix").symlink_to((ROOT / ".prefix").resolve())

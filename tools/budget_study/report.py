@@ -9,7 +9,7 @@ from .plan import Run, label_of
 from .results import RESULTS, Measured, measured
 
 HEAD_OF_DRAWS = (
-    "| result | K | draws | mean | standard deviation (95 %) | over the mean | over that of K = 1 (95 %) "
+    "| result | variety n | draws | mean | standard deviation (95 %) | over the mean | over that of n = 1 (95 %) "
     "| shift of the mean, p |"
 )
 RESAMPLES = 20000

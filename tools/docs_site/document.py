@@ -8,6 +8,7 @@ import html
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
@@ -18,7 +19,7 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexers import get_lexer_by_name, get_lexer_for_filename
 from pygments.util import ClassNotFound
 
-from docs_site.formulas import FormulaError, letters, mathml
+from docs_site.formulas import FormulaError, mathml, plain
 
 MATH = ("math_inline", "math_inline_double", "math_block")
 LINKS = {"link_open": "href", "image": "src"}
@@ -31,6 +32,9 @@ LEFT_OVER = {
     "**": "a ** outside code neither begins nor ends bold text",
     "[^": "there is no such footnote",
 }
+# A line does not end before or after these blanks: "12 %", "3 ± 1".
+TOGETHER = re.compile(r"(?<=\d) (?=%)|(?<=\d) (?=±)|(?<=±) (?=\d)")
+LONG_CELL = 40  # letters of a table's cell that needs some width on a narrow screen
 HTML_LINK = re.compile(r'\b(href|src)="([^"]*)"')
 HTML_ANCHOR = re.compile(r'\b(?:id|name)="([^"]*)"')
 
@@ -49,13 +53,15 @@ class Link:
 
 
 def code_block(text: str, language: str, file: str = "") -> str:
-    """The coloured block of a program text, as the theme expects it; a language that is not known has no colours."""
+    """The coloured block of a program text, as the theme expects it; a language that is not known has no colours. A
+    text that nobody types, such as an output, has no button to copy it, which would hide the end of its first line."""
     try:
         lexer = get_lexer_for_filename(file) if file else get_lexer_by_name(language or "text")
     except ClassNotFound:
         lexer = get_lexer_by_name("text")
     coloured = highlight(text, lexer, HtmlFormatter(nowrap=True))
-    return f'<div class="highlight"><pre><span></span><code>{coloured}</code></pre></div>\n'
+    kind = "highlight no-copy" if language == "text" else "highlight"
+    return f'<div class="{kind}"><pre><span></span><code>{coloured}</code></pre></div>\n'
 
 
 def _fence(_renderer: object, tokens: Sequence[Token], index: int, _options: object, _env: object) -> str:
@@ -80,7 +86,7 @@ def _source_text(tokens: Sequence[Token]) -> str:
 def _shown_text(tokens: Sequence[Token]) -> str:
     """The text of a heading as a reader sees it, after its formulas became MathML."""
     return "".join(
-        letters(token.content) if token.meta == OURS else token.content
+        plain(token.content) if token.meta == OURS else token.content
         for token in tokens
         if token.type in ("text", "code_inline") or token.meta == OURS
     )
@@ -112,12 +118,16 @@ class Document:
 
     def html(self, resolve: Callable[[str], str]) -> str:
         """The page's HTML; `resolve` turns the links of the repository into links of the site."""
-        for token in self._tokens:
+        for before, token in pairwise([Token("", "", 0), *self._tokens]):
+            if before.type == "td_open" and len(_shown_text(token.children or [])) > LONG_CELL:
+                before.attrSet("class", "long")
             if [part.type for part in token.children or []] == ["image"]:
                 self._open_on_click(token)
             for part in [token, *(token.children or [])]:
                 if part.type in LINKS:
                     part.attrSet(LINKS[part.type], resolve(str(part.attrGet(LINKS[part.type]))))
+                elif part.type == "text":
+                    part.content = TOGETHER.sub("\u00a0", part.content)
                 elif part.type in ("html_inline", "html_block") and part.meta != OURS:
                     part.content = HTML_LINK.sub(lambda found: f'{found[1]}="{resolve(found[2])}"', part.content)
         return self._parser.renderer.render(self._tokens, self._parser.options, self._env)

@@ -5,10 +5,12 @@ import html
 from typing import Any
 
 from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.plugins import CombinedEvent, event_priority
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 from mkdocs.structure.toc import get_toc
 
+from docs_site.formulas import without_formulas
 from docs_site.pages import Site
 from docs_site.tree import page_of, place_of
 
@@ -77,3 +79,20 @@ def on_page_content(_html: str, page: Page, config: MkDocsConfig, **_others: Any
     site, path = _site(config), page.file.src_uri
     page.toc = get_toc(_contents(site, path))
     return site.html(path)
+
+
+@event_priority(100)
+def _before_search(context: Any, page: Page, **_others: Any) -> Any:
+    """The search takes the text between tags, in which a formula would lose its roots and exponents."""
+    page.meta["drawn"] = page.content
+    page.content = without_formulas(page.content or "")
+    return context
+
+
+@event_priority(-100)
+def _after_search(context: Any, page: Page, **_others: Any) -> Any:
+    page.content = page.meta.pop("drawn")
+    return context
+
+
+on_page_context = CombinedEvent(_before_search, _after_search)

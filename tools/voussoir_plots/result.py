@@ -18,7 +18,7 @@ from .units import quantity
 
 FORMAT_VERSION = 1  # of docs/reference/files.md
 KINDS = (
-    "figures are drawn of runs of the kinds tunnel, column, biaxial_bvp, biaxial, calibrate and probe, of packings "
+    "figures are drawn from runs of the kinds tunnel, column, biaxial_bvp, biaxial, calibrate and probe, of packings "
     "(files or their folder), ensembles and sweeps"
 )
 

@@ -25,7 +25,7 @@ SORTS = {  # of runs, by their kind
 @dataclass
 class Source:
     what: str  # a key of catalogue.OF
-    data: Any  # what the figures of this sort are drawn of
+    data: Any  # what the figures of this sort are drawn from
     left_out: list[Missing] = field(default_factory=list)
     note: str = ""  # for the foot of each figure
 

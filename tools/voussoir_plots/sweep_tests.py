@@ -1,4 +1,4 @@
-"""The figures of biaxial tests, drawn of the runs of a sweep: those with several pressures, which give a strength."""
+"""The figures of biaxial tests, drawn from the runs of a sweep: those with several pressures, which give a strength."""
 
 from pathlib import Path
 

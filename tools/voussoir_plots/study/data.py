@@ -87,7 +87,7 @@ class Tunnel:
 
     @cached_property
     def representative(self) -> Result:
-        """The member whose settlement of the surface at the end is the median; fields are drawn of it. Of an even
+        """The member whose settlement of the surface at the end is the median; fields are drawn from it. Of an even
         number of members it is the lower one of the two in the middle."""
         final = [float(settlements.on_axis(member, 0.0)[self.rows(member)[-1]]) for member in self.members]
         return self.members[int(np.argsort(final)[(len(final) - 1) // 2])]
