@@ -19,9 +19,9 @@ using Constraints = std::map<int, double>;
 void constrain(Constraints& constraints, const std::vector<int>& nodes, int axis, double value);
 
 /// Displacement [m] of the affine motion about `centre` that turns by `rotation` [rad, counter-clockwise] and changes
-/// areas by the share `area` > -1: u = (s R - 1)(x - centre) with s = sqrt(1 + area) and x the original coordinates. With
-/// area = -V_l and the invert as centre it is the eccentric volume loss of eqs. (17)-(19). Increments are differences of
-/// two calls.
+/// areas by the share `area` > -1: u = (s R - 1)(x - centre) with s = sqrt(1 + area) and x the original coordinates.
+/// With area = -V_l and the invert as centre it is the eccentric volume loss of eqs. (17)-(19). Increments are
+/// differences of two calls.
 [[nodiscard]] Point affine_displacement(const Point& x, const Point& centre, double rotation, double area);
 
 using StressField = std::function<Stress(const Point&)>;  ///< Cauchy stress at a point of the boundary [Pa]

@@ -7,8 +7,8 @@
 #include "host/case/accuracy.hpp"
 #include "host/element_tests/calibration.hpp"
 #include "host/estimate/storage.hpp"
-#include "host/kinds/tunnel_scene.hpp"
 #include "host/kinds/tunnel_mesh.hpp"
+#include "host/kinds/tunnel_scene.hpp"
 #include "host/packing/packings.hpp"
 
 namespace voussoir::host {

@@ -95,8 +95,10 @@ void add_specimen_columns(Stage& stage, const fem::Mesh& mesh, SpecimenState& sp
 }  // namespace
 
 Scene specimen_scene(const BiaxialBvpCase& test) {
-  Scene scene{.input = {}, .mesh = fem::make_rectangle(test.width, test.height, test.columns, test.rows),
-              .pressure = test.pressure, .gravity = {}};
+  Scene scene{.input = {},
+              .mesh = fem::make_rectangle(test.width, test.height, test.columns, test.rows),
+              .pressure = test.pressure,
+              .gravity = {}};
   RegionCase ground;
   ground.unit_weight = 0;
   scene.input.regions = {ground};

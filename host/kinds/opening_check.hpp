@@ -10,8 +10,8 @@
 namespace voussoir::host {
 
 struct OpeningCheck {
-  double difference = 0;      ///< |reactions - tractions| over the opening's free directions [N/m]
-  double relative = 0;        ///< the same difference over |tractions| [-]
+  double difference = 0;  ///< |reactions - tractions| over the opening's free directions [N/m]
+  double relative = 0;    ///< the same difference over |tractions| [-]
 };
 /// @param before the stage in which the opening was held by tractions
 /// @param reactions forces of all supports on the ground when the opening has been fixed, n_dofs [N/m]

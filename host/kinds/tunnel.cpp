@@ -44,9 +44,9 @@ void record_start(GroundRun& run, const GroundCase& soil, const StagePlan& gravi
   run.recorder().set_table("geostatic_rows", table_of(std::span(at_rest.rows), geostatic_row_columns));
   const Eigen::VectorXd tractions = rest.force(ground.mesh.coordinates, ground.mesh.edge_set("opening"), 1.0);
   const OpeningCheck opening = check_opening(ground.mesh, gravity, reactions, tractions);
-  run.log().line(fmt::format(
-      "V_l = 0: the reactions of the opening differ from the tractions that held it by {:.2e} of these",
-      opening.relative));
+  run.log().line(
+      fmt::format("V_l = 0: the reactions of the opening differ from the tractions that held it by {:.2e} of these",
+                  opening.relative));
   run.recorder().set_table("opening_check", table_of(std::span(&opening, 1), opening_columns));
   io::Quantities columns;
   add_columns(tunnel_report(ground), tunnel_columns, columns);

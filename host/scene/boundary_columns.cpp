@@ -59,8 +59,8 @@ WatchedBoundaries watched(const std::vector<StagePlan>& plans) {
   return boundaries;
 }
 
-std::map<std::string, int> tensile_nodes(const StagePlan& plan, const fem::Mesh& mesh,
-                                         const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates) {
+std::map<std::string, int> tensile_nodes(const StagePlan& plan, const fem::Mesh& mesh, const Eigen::VectorXd& reactions,
+                                         const fem::Coordinates& coordinates) {
   const double floor = 1e-6 * reactions.cwiseAbs().maxCoeff();
   std::map<std::string, int> found;
   std::map<std::string, Eigen::VectorXd> inwards;  // boundary -> integral of -N at its nodes

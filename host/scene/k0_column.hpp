@@ -17,7 +17,7 @@ namespace voussoir::host {
 struct ColumnSetup {
   ColumnCase column = {};
   std::vector<GroundLayer> layers = {};  ///< from the surface down
-  double surcharge = 1e3;           ///< on the surface, and isotropic pressure at the start [Pa]
+  double surcharge = 1e3;                ///< on the surface, and isotropic pressure at the start [Pa]
   GravityCase gravity = {};
   MaterialCase material = {};
   StageSettings settings = {};
@@ -28,7 +28,7 @@ struct ColumnSetup {
 /// K0 (sigma_yy) of each layer's material, measured on a column under its own weight.
 struct ColumnResult {
   RunStatus status = RunStatus::finished;
-  std::vector<K0Table> k0 = {};          ///< of each layer, from the surface down; empty where the column is not finished
+  std::vector<K0Table> k0 = {};  ///< of each layer, from the surface down; empty where the column is not finished
   std::vector<StageTotals> totals = {};  ///< the column's costs
 };
 

@@ -99,7 +99,8 @@ std::vector<PlacedRecord> place_records(const Scene& scene) {
       const fem::Point x = coordinates_of(scene.mesh, *record.input.point);
       add_place(record, scene.mesh, x, 0.0);
       if (record.places.empty())
-        throw std::runtime_error(fmt::format("{}.point: ({:.6g}, {:.6g}) m lies outside the ground", key, x.x(), x.y()));
+        throw std::runtime_error(
+            fmt::format("{}.point: ({:.6g}, {:.6g}) m lies outside the ground", key, x.x(), x.y()));
     } else if (record.input.line) {
       place_line(record, scene.mesh);
       if (record.places.empty()) throw std::runtime_error(key + ".line: no point of the line lies in the ground");
@@ -128,16 +129,21 @@ void add_record_columns(const std::vector<PlacedRecord>& records, const Ground& 
   for (const PlacedRecord& record : records) {
     if (record.input.point) add_point(record, ground, stress, to);
     if (!record.input.region.empty())
-      add_region(record, ground, stress, strain, void_ratio == nullptr ? std::vector<double>{} : void_ratio->values, to);
+      add_region(record, ground, stress, strain, void_ratio == nullptr ? std::vector<double>{} : void_ratio->values,
+                 to);
   }
 }
 
 std::vector<io::TableColumn> line_table(const PlacedRecord& line, const fem::Mesh& mesh,
                                         const std::filesystem::path& folder) {
-  std::vector<io::TableColumn> table{{"increment", "-", {}},      {"s", "m", {}},
-                                     {"x", "m", {}},              {"y", "m", {}},
-                                     {"displacement_x", "m", {}}, {"displacement_y", "m", {}},
-                                     {"stress_xx", "Pa", {}},     {"stress_yy", "Pa", {}},
+  std::vector<io::TableColumn> table{{"increment", "-", {}},
+                                     {"s", "m", {}},
+                                     {"x", "m", {}},
+                                     {"y", "m", {}},
+                                     {"displacement_x", "m", {}},
+                                     {"displacement_y", "m", {}},
+                                     {"stress_xx", "Pa", {}},
+                                     {"stress_yy", "Pa", {}},
                                      {"stress_xy", "Pa", {}}};
   for (const io::IncrementInfo& info : io::read_increments(folder / "run.h5")) {
     const std::filesystem::path file = io::increment_path(folder, info.index);
@@ -154,9 +160,15 @@ std::vector<io::TableColumn> line_table(const PlacedRecord& line, const fem::Mes
       std::array<double, 3> s{missing, missing, missing};
       const auto point = static_cast<std::size_t>(fem::nearest_gauss_point(line.places[k]));
       if (stress != nullptr) std::copy_n(stress->values.begin() + static_cast<std::ptrdiff_t>(3 * point), 3, s.begin());
-      const std::array<double, 9> row{static_cast<double>(info.index), line.along[k], line.coordinates[k].x(),
-                                      line.coordinates[k].y(),         u.x(),         u.y(),
-                                      s[0],                            s[1],          s[2]};
+      const std::array<double, 9> row{static_cast<double>(info.index),
+                                      line.along[k],
+                                      line.coordinates[k].x(),
+                                      line.coordinates[k].y(),
+                                      u.x(),
+                                      u.y(),
+                                      s[0],
+                                      s[1],
+                                      s[2]};
       for (std::size_t c = 0; c < row.size(); ++c) table[c].values.push_back(row[c]);
     }
   }

@@ -16,19 +16,20 @@ namespace voussoir::host {
 /// A record with its places in the mesh as drawn.
 struct PlacedRecord {
   RecordCase input = {};
-  std::vector<fem::Located> places = {};      ///< of a point one, of a line those that lie in the ground
-  std::vector<fem::Point> coordinates = {};   ///< of the places, as drawn [m]
-  std::vector<double> along = {};             ///< of the places: distance from the line's first point [m]
-  std::vector<int> elements = {};             ///< of a region
+  std::vector<fem::Located> places = {};     ///< of a point one, of a line those that lie in the ground
+  std::vector<fem::Point> coordinates = {};  ///< of the places, as drawn [m]
+  std::vector<double> along = {};            ///< of the places: distance from the line's first point [m]
+  std::vector<int> elements = {};            ///< of a region
 };
 
 /// Throws std::runtime_error, whose text begins with the key at fault, where a point lies outside the ground or a line
 /// meets none.
 [[nodiscard]] std::vector<PlacedRecord> place_records(const Scene& scene);
 
-/// Adds, of each point NAME: displacement_NAME_x, _y [m] and the stress of the nearest Gauss point, stress_NAME_xx, _yy,
-/// _xy [Pa]; of each region NAME the means over its area p_NAME, q_NAME [Pa], q_over_p_NAME, volumetric_strain_NAME and
-/// void_ratio_NAME [-], where q is that of the mean stress and the void ratio is of grains only.
+/// Adds, of each point NAME: displacement_NAME_x, _y [m] and the stress of the nearest Gauss point, stress_NAME_xx,
+/// _yy, _xy [Pa]; of each region NAME the means over its area p_NAME, q_NAME [Pa], q_over_p_NAME,
+/// volumetric_strain_NAME and void_ratio_NAME [-], where q is that of the mean stress and the void ratio is of grains
+/// only.
 void add_record_columns(const std::vector<PlacedRecord>& records, const Ground& ground, io::Quantities& to);
 
 /// Table `line_NAME`: a row for each increment's file and each place of the line, gathered from the files of the run in

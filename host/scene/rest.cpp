@@ -36,10 +36,9 @@ void check_surface(const Scene& scene, const std::string& opening, const std::st
       const fem::Point a = scene.mesh.coordinates.col(edge[0]), b = scene.mesh.coordinates.col(edge[2]);
       if (b.x() - a.x() > -1e-6 * (b - a).norm()) continue;  // the soil is on the left, so that it looks down or aside
       if (std::abs(a.y() - surface) <= near && std::abs(b.y() - surface) <= near) continue;
-      throw std::runtime_error(
-          fmt::format("{}: needs a level surface and level layers: {} spans y = {:.6g} to {:.6g} m", key,
-                      name.empty() ? "the surface" : name, std::min({a.y(), b.y(), surface}),
-                      std::max({a.y(), b.y(), surface})));
+      throw std::runtime_error(fmt::format(
+          "{}: needs a level surface and level layers: {} spans y = {:.6g} to {:.6g} m", key,
+          name.empty() ? "the surface" : name, std::min({a.y(), b.y(), surface}), std::max({a.y(), b.y(), surface})));
     }
   };
   for (const auto& [name, edges] : scene.mesh.edges) {
@@ -63,8 +62,9 @@ std::vector<GroundLayer> level_layers(const Scene& scene, const std::string& bou
   std::vector<GroundLayer> layers;
   for (std::size_t k = 0; k < extents.size(); ++k) {
     const std::string name = mesh.region_names.empty() ? "" : mesh.region_names[k];
-    const auto first = mesh.region.empty() ? 0 : std::find(mesh.region.begin(), mesh.region.end(), static_cast<int>(k)) -
-                                                     mesh.region.begin();
+    const auto first = mesh.region.empty() ? 0
+                                           : std::find(mesh.region.begin(), mesh.region.end(), static_cast<int>(k)) -
+                                                 mesh.region.begin();
     layers.push_back({name, extents[k].bottom, extents[k].top, scene.unit_weight(static_cast<int>(first))});
   }
   std::sort(layers.begin(), layers.end(), [](const GroundLayer& a, const GroundLayer& b) { return a.top > b.top; });

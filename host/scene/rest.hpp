@@ -11,7 +11,7 @@ namespace voussoir::host {
 
 /// A level layer and the region that it is of.
 struct GroundLayer {
-  std::string region = {};  ///< empty where the mesh has no regions
+  std::string region = {};     ///< empty where the mesh has no regions
   double bottom = 0, top = 0;  ///< y [m]
   double unit_weight = 0;      ///< [N/m3]
 };
@@ -25,7 +25,7 @@ struct GroundLayer {
 struct GroundAtRest {
   std::vector<GroundLayer> layers = {};
   std::vector<K0Table> k0 = {};  ///< of each layer
-  double pressure = 0;      ///< p0 on the surface [Pa]
+  double pressure = 0;           ///< p0 on the surface [Pa]
 
   /// Nodal forces of the tractions with which the ground at rest at a load factor holds the edges [N/m].
   [[nodiscard]] Eigen::VectorXd force(const fem::Coordinates& coordinates, const std::vector<fem::Edge>& edges,

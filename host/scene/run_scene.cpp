@@ -142,7 +142,8 @@ RunStatus run_all(const Case& input, PlannedScene& planned, const ColumnResult& 
     record_stage_start(run, plan, reactions, columns.of(plan, reactions, run.ground().state.coordinates));
   };
   additions.complete = [&](const StagePlan& plan, Stage& stage) { columns.complete(plan, stage); };
-  const RunStatus status = run_stages(run, planned.scene, planned.plans, column.k0.empty() ? nullptr : &rest, additions);
+  const RunStatus status = run_stages(run, planned.scene, planned.plans, column.k0.empty() ? nullptr : &rest,
+                                      additions);
   if (const std::string tension = columns.tension_sentence(); !tension.empty()) run.log().warning(tension);
   if (status != RunStatus::interrupted) write_lines(planned, run);
   return status;

@@ -27,12 +27,11 @@ Eigen::VectorXd forces_from(const io::Checkpoint& checkpoint, const std::string&
 /// The number of the stage with which the run begins.
 std::size_t first_stage(const RunRecorder& recorder, const std::vector<StagePlan>& plans) {
   if (recorder.resumed() == nullptr) return 0;
-  const auto found = std::find_if(plans.begin(), plans.end(), [&](const StagePlan& plan) {
-    return plan.input.name == recorder.resumed_stage();
-  });
+  const auto found = std::find_if(plans.begin(), plans.end(),
+                                  [&](const StagePlan& plan) { return plan.input.name == recorder.resumed_stage(); });
   if (found == plans.end())
-    throw std::runtime_error(fmt::format("the checkpoint is of a stage {} that the case does not have",
-                                         recorder.resumed_stage()));
+    throw std::runtime_error(
+        fmt::format("the checkpoint is of a stage {} that the case does not have", recorder.resumed_stage()));
   return static_cast<std::size_t>(found - plans.begin());
 }
 

@@ -13,14 +13,15 @@ namespace voussoir::host {
 
 /// What a kind adds to the stages of its scene; each may be empty.
 struct StageAdditions {
-  /// Called when the ground has begun a stage, before its first increment, and not where a run goes on within the stage.
+  /// Called when the ground has begun a stage, before its first increment, and not where a run goes on within the
+  /// stage.
   std::function<void(const StagePlan&, const SceneLoads&, const FadingForces&)> on_start;
   /// Gives the stage its reports and its data in checkpoints.
   std::function<void(const StagePlan&, Stage&)> complete;
 };
 
-/// Starts with the first stage, or goes on in the stage of the checkpoint with which the record goes on. `scene.mesh` is
-/// the mesh of the run; its elements are dug out as the stages say.
+/// Starts with the first stage, or goes on in the stage of the checkpoint with which the record goes on. `scene.mesh`
+/// is the mesh of the run; its elements are dug out as the stages say.
 /// @param rest null where no stage presses at rest
 [[nodiscard]] RunStatus run_stages(GroundRun& run, Scene& scene, const std::vector<StagePlan>& plans,
                                    const GroundAtRest* rest, const StageAdditions& additions);

@@ -14,7 +14,7 @@ namespace voussoir::host {
 
 struct Scene {
   SceneCase input = {};
-  fem::Mesh mesh = {};         ///< `dug_out` changes from stage to stage
+  fem::Mesh mesh = {};    ///< `dug_out` changes from stage to stage
   double pressure = 1e3;  ///< p0: at the start, the stress everywhere and the pressure on all that nothing holds [Pa]
   GravityCase gravity = {};
   /// Pressures act on the first coordinates and stay as they are where the ground moves, as the surcharge of a tunnel.
@@ -29,7 +29,7 @@ struct Holder {
   bool is_boundary = true;
   std::vector<int> nodes = {};
   std::array<bool, 2> axes{};  ///< x, y
-  MoveCase move = {};               ///< without motions, the nodes stay where they are
+  MoveCase move = {};          ///< without motions, the nodes stay where they are
   fem::Point about = fem::Point::Zero();
 
   /// Displacement from one load parameter to another of a node that was at `x` when the stage began [m].
@@ -38,8 +38,8 @@ struct Holder {
 
 /// Loads of a boundary at the start and at the end of a stage; each axis has its own, because one may be held.
 struct BoundaryLoad {
-  std::string boundary = {};                                ///< empty: the edges without a name
-  std::vector<fem::Edge> edges = {};                        ///< those of elements that are not dug out
+  std::string boundary = {};                             ///< empty: the edges without a name
+  std::vector<fem::Edge> edges = {};                     ///< those of elements that are not dug out
   std::array<double, 2> pressure_from{}, pressure_to{};  ///< [Pa]
   std::array<double, 2> traction_from{}, traction_to{};  ///< [Pa]
   std::array<double, 2> rest_from{}, rest_to{};          ///< share of the tractions of ground at rest [-]
@@ -48,14 +48,14 @@ struct BoundaryLoad {
 /// One stage with everything that earlier stages have left.
 struct StagePlan {
   StageCase input = {};
-  std::vector<double> targets = {};        ///< load parameters of its increments
-  std::vector<Holder> holders = {};        ///< in the order of the owner rule: the last that names an axis of a node owns it
+  std::vector<double> targets = {};  ///< load parameters of its increments
+  std::vector<Holder> holders = {};  ///< in the order of the owner rule: the last that names an axis of a node owns it
   std::map<int, std::size_t> owners = {};  ///< degree of freedom -> index of its holder
   std::vector<int> idle_nodes = {};        ///< of no element that is left
   std::vector<BoundaryLoad> loads = {};
   double gravity_from = 0, gravity_to = 0;  ///< load factor of the weights [-]
   double tilt_from = 0, tilt_to = 0;        ///< [rad]
-  std::vector<char> dug_out = {};                ///< as fem::Mesh::dug_out, from the start of the stage on
+  std::vector<char> dug_out = {};           ///< as fem::Mesh::dug_out, from the start of the stage on
   /// Degrees of freedom whose forces fade in this stage, and the share of the force that is taken off: those that
   /// nothing holds any more, and those of the edge of what is dug out.
   std::map<int, double> fading = {};
@@ -63,8 +63,9 @@ struct StagePlan {
   [[nodiscard]] bool changes_gravity() const { return gravity_from != gravity_to || tilt_from != tilt_to; }
 };
 
-/// The stages of the scene in their order. Throws std::runtime_error, whose text begins with the key at fault, where the
-/// nouns of the scene do not fit its mesh: nothing holds the ground along an axis, a press acts on what is held, ...
+/// The stages of the scene in their order. Throws std::runtime_error, whose text begins with the key at fault, where
+/// the nouns of the scene do not fit its mesh: nothing holds the ground along an axis, a press acts on what is held,
+/// ...
 [[nodiscard]] std::vector<StagePlan> plan_stages(const Scene& scene);
 
 /// The node of a point or of coordinates that lie on a node; -1 where there is none within 1e-6 of the mesh's size.

@@ -23,23 +23,15 @@ void check_node(const Scene& scene, const std::string& key, const PlaceCase& poi
   refuse(key, fmt::format("no node of the mesh lies at ({:.6g}, {:.6g}) m", point.at[0], point.at[1]));
 }
 
-/// Whether the outward normal of a boundary has a component along the axis somewhere.
-bool faces(const fem::Mesh& mesh, const std::string& boundary, int axis) {
-  for (const fem::Edge& edge : mesh.edge_set(boundary)) {
-    const fem::Point along = mesh.coordinates.col(edge[2]) - mesh.coordinates.col(edge[0]);
-    if (std::abs(along[1 - axis]) > 1e-9 * along.norm()) return true;
-  }
-  return false;
-}
-
 void check_press(const Scene& scene, const StagePlan& plan, const PressCase& press, const std::string& key) {
   if (scene.mesh.edge_set(press.boundary).empty())
     refuse(key + ".boundary", press.boundary + " lies inside the ground: it may be held or moved, but not pressed");
   for (const Holder& holder : plan.holders) {
     if (!holder.is_boundary || holder.name != press.boundary) continue;
     for (int axis = 0; axis < 2; ++axis) {
-      const bool acts = press.kind == PressKind::traction ? press.traction[axis] != 0
-                                                          : faces(scene.mesh, press.boundary, axis);
+      const bool acts = press.kind == PressKind::traction
+                            ? press.traction[axis] != 0
+                            : faces(scene.mesh, scene.mesh.edge_set(press.boundary), axis);
       if (holder.axes[axis] && acts)
         refuse(key + ".boundary",
                fmt::format("{} is held along {}: move or release it", press.boundary, axis_names[axis]));
@@ -111,6 +103,13 @@ double shortest_edge_at(const fem::Mesh& mesh, const std::vector<int>& nodes) {
 }
 
 }  // namespace
+
+bool faces(const fem::Mesh& mesh, const std::vector<fem::Edge>& edges, int axis) {
+  return std::any_of(edges.begin(), edges.end(), [&](const fem::Edge& edge) {
+    const fem::Point along = mesh.coordinates.col(edge[2]) - mesh.coordinates.col(edge[0]);
+    return std::abs(along[1 - axis]) > 1e-9 * along.norm();
+  });
+}
 
 double step_over_edge(const Scene& scene, const StagePlan& plan, const Holder& holder) {
   double longest = 0, before = 0;

@@ -12,12 +12,15 @@ inline constexpr double most_of_an_edge = 0.25;
 /// Points of supports and moves must be nodes.
 void check_places(const Scene& scene);
 
-/// The stage with this number: nothing presses on what is held, motions of area keep to their supports, the ground cannot
-/// move as a rigid body.
+/// The stage with this number: nothing presses on what is held, motions of area keep to their supports, the ground
+/// cannot move as a rigid body.
 void check_stage(const Scene& scene, const StagePlan& plan, std::size_t number);
 
 /// No step moves a boundary by more than most_of_an_edge.
 void check_steps(const Scene& scene, const StagePlan& plan, std::size_t number);
+
+/// Whether the outward normal of edges has a component along the axis somewhere.
+[[nodiscard]] bool faces(const fem::Mesh& mesh, const std::vector<fem::Edge>& edges, int axis);
 
 /// The largest motion of one step of a holder over the shortest edge of the elements at its nodes [-].
 [[nodiscard]] double step_over_edge(const Scene& scene, const StagePlan& plan, const Holder& holder);

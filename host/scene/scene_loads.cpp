@@ -91,8 +91,7 @@ Eigen::VectorXd SceneLoads::all_forces(double parameter, const FadingForces& for
   Eigen::VectorXd force = of_stage(parameter);
   if (forces.kept.size() > 0) force += forces.kept;
   if (forces.fading.size() > 0) {
-    for (const auto& [dof, share] : plan_.fading)
-      force[dof] += (1 - share * share_of(parameter)) * forces.fading[dof];
+    for (const auto& [dof, share] : plan_.fading) force[dof] += (1 - share * share_of(parameter)) * forces.fading[dof];
   }
   return force;
 }

@@ -111,6 +111,13 @@ BoundaryLoad& load_of(StagePlan& plan, const std::string& boundary) {
   return *found;
 }
 
+void clear(BoundaryLoad& load, int axis) {
+  for (auto* values : {&load.pressure_from, &load.pressure_to, &load.traction_from, &load.traction_to, &load.rest_from,
+                       &load.rest_to}) {
+    (*values)[axis] = 0;
+  }
+}
+
 /// The forces that held the boundary fade, and its own load begins at nothing along the axes that are free now.
 void release(StagePlan& plan, const ReleaseCase& release) {
   std::array<bool, 2> freed{};
@@ -130,11 +137,7 @@ void release(StagePlan& plan, const ReleaseCase& release) {
                                  [&](const BoundaryLoad& one) { return one.boundary == release.boundary; });
   if (load == plan.loads.end()) return;
   for (int axis = 0; axis < 2; ++axis) {
-    if (!freed[axis]) continue;
-    for (auto* values : {&load->pressure_from, &load->pressure_to, &load->traction_from, &load->traction_to,
-                         &load->rest_from, &load->rest_to}) {
-      (*values)[axis] = 0;
-    }
+    if (freed[axis]) clear(*load, axis);
   }
 }
 
@@ -227,6 +230,17 @@ Standing standing_after(const StagePlan& plan) {
           .dug_out = plan.dug_out};
 }
 
+/// What holds a boundary along an axis carries its load there. A load that faces no other axis is none any more; its
+/// rounding along the boundary would be a load otherwise.
+void leave_to_holders(BoundaryLoad& load, const fem::Mesh& mesh, const std::vector<Holder>& holders) {
+  const std::array<bool, 2> held{is_held(holders, load.boundary, 0), is_held(holders, load.boundary, 1)};
+  if (!held[0] && !held[1]) return;
+  for (int axis = 0; axis < 2; ++axis) {
+    const bool loaded = !held[axis] && (faces(mesh, load.edges, axis) || load.traction_to[axis] != 0);
+    if (!loaded) clear(load, axis);
+  }
+}
+
 StagePlan plan_stage(const Scene& scene, const Standing& standing, const StageCase& input, bool first) {
   StagePlan plan = plan_on(standing, input);
   for (const ReleaseCase& one : input.releases) release(plan, one);
@@ -236,16 +250,7 @@ StagePlan plan_stage(const Scene& scene, const Standing& standing, const StageCa
   leave_out_dug(scene, plan, standing.dug_out);
   plan.owners = owners_of(plan.holders);
   std::erase_if(plan.fading, [&](const auto& entry) { return plan.owners.contains(entry.first); });
-  // What holds a boundary along an axis carries its load there.
-  for (BoundaryLoad& load : plan.loads) {
-    for (int axis = 0; axis < 2; ++axis) {
-      if (!is_held(plan.holders, load.boundary, axis)) continue;
-      for (auto* values : {&load.pressure_from, &load.pressure_to, &load.traction_from, &load.traction_to,
-                           &load.rest_from, &load.rest_to}) {
-        (*values)[axis] = 0;
-      }
-    }
-  }
+  for (BoundaryLoad& load : plan.loads) leave_to_holders(load, scene.mesh, plan.holders);
   plan.targets = targets_of(scene, plan);
   return plan;
 }

@@ -20,7 +20,7 @@ struct EarlierStages {
 struct Ground {
   const fem::Mesh& mesh;
   fem::MaterialBatch& material;
-  fem::MeshState state;                  ///< state of the current stage
+  fem::MeshState state;                       ///< state of the current stage
   std::vector<fem::PlaneTensor> strain = {};  ///< sum of the increments' strains since the stage began, n_points [-]
   EarlierStages earlier = {};
 
@@ -37,8 +37,8 @@ struct Ground {
 /// Sets displacements and strains to zero on the original coordinates; the material keeps its state.
 void begin_stage(Ground& ground);
 
-/// Begins a stage on the coordinates that the stage before has left. Displacements and strains of a stage that moved the
-/// mesh stay in the totals.
+/// Begins a stage on the coordinates that the stage before has left. Displacements and strains of a stage that moved
+/// the mesh stay in the totals.
 void go_on_to_next_stage(Ground& ground, fem::Kinematics before);
 
 }  // namespace voussoir::host

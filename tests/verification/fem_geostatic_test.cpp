@@ -63,8 +63,9 @@ class ElasticTunnel : public testing::Test {
 
   /// K0 = 1 at the initial 1 kPa; the elastic ground adds its own share of the rest.
   [[nodiscard]] static GeostaticStress at_rest(double lambda) {
-    return {{{0, gamma}}, height, surcharge, lambda,
-            [](std::size_t, double s) { return s == -surcharge ? 1.0 : (-surcharge + k0 * (s + surcharge)) / s; }};
+    return {{{0, gamma}}, height, surcharge, lambda, [](std::size_t, double s) {
+              return s == -surcharge ? 1.0 : (-surcharge + k0 * (s + surcharge)) / s;
+            }};
   }
   [[nodiscard]] Eigen::VectorXd gravity_force(double lambda) const {
     return lambda * weight_ + top_ + traction_force(mesh_.coordinates, mesh_.edge_set("opening"), at_rest(lambda));

@@ -5,8 +5,8 @@
 #include "fem/mesh_rectangle.hpp"
 #include "fem/mesh_tunnel.hpp"
 #include "tests/fem_support.hpp"
-#include "tests/throws.hpp"
 #include "tests/shrinking_opening.hpp"
+#include "tests/throws.hpp"
 
 namespace voussoir::fem {
 namespace {

@@ -12,7 +12,6 @@
 #include "host/kinds/geostatic_check.hpp"
 #include "host/kinds/opening_check.hpp"
 #include "host/kinds/tunnel.hpp"
-#include "host/kinds/tunnel.hpp"
 #include "io/increment_file.hpp"
 #include "tests/format_page.hpp"
 

@@ -15,8 +15,8 @@
 #include "host/kinds/opening_check.hpp"
 #include "host/kinds/tunnel_mesh.hpp"
 #include "host/kinds/tunnel_scene.hpp"
-#include "host/scene/scene_loads.hpp"
 #include "host/record/provenance.hpp"
+#include "host/scene/scene_loads.hpp"
 #include "host/stages/ground_checkpoint.hpp"
 
 namespace voussoir::host {
@@ -172,8 +172,8 @@ void scramble(Ground& ground) {
 
 /// Names of the members in which two grounds differ.
 std::set<std::string> differences(const Ground& one, const Ground& other) {
-  const auto& [mesh_a, material_a, a, strain_a] = one;
-  const auto& [mesh_b, material_b, b, strain_b] = other;
+  const auto& [mesh_a, material_a, a, strain_a, earlier_a] = one;
+  const auto& [mesh_b, material_b, b, strain_b, earlier_b] = other;
   std::set<std::string> found;
   const auto compare = [&](const char* name, bool same) {
     if (!same) found.insert(name);
@@ -190,6 +190,8 @@ std::set<std::string> differences(const Ground& one, const Ground& other) {
   compare("step_limit", a.step_limit == b.step_limit);
   compare("relaxation_factor", a.relaxation_factor == b.relaxation_factor);
   compare("strain", strain_a == strain_b);
+  compare("earlier", earlier_a.displacement == earlier_b.displacement && earlier_a.strain == earlier_b.strain &&
+                         earlier_a.coordinates == earlier_b.coordinates);
   compare("material", material_a.state() == material_b.state());
   return found;
 }
@@ -203,7 +205,7 @@ TEST(GroundCheckpoint, GivesBackTheSameBits) {
   ElasticGround other;
   other.material.set_stress(std::vector<fem::Stress>(other.material.size(), fem::Stress::Zero()));
   // Nothing is equal before the restoration, so that each member must come from the checkpoint.
-  EXPECT_EQ(differences(rest.ground, other.ground).size(), 13U);
+  EXPECT_EQ(differences(rest.ground, other.ground).size(), 14U);
   restore(other.ground, checkpoint);
   EXPECT_EQ(differences(rest.ground, other.ground), std::set<std::string>{});
 }
@@ -232,7 +234,8 @@ TEST(Column, MeasuresTheElasticK0) {
   const ColumnResult column = measure_k0(column_setup(input), options, provenance_of(options, input, "column"), log);
   ASSERT_EQ(column.status, RunStatus::finished);
   const double k = 0.25 / 0.75;
-  for (const double s : {2e3, 1e4, 1e5, 6e5}) EXPECT_NEAR(column.k0.front().at(s), (1e3 + k * (s - 1e3)) / s, 5e-3) << s;
+  for (const double s : {2e3, 1e4, 1e5, 6e5})
+    EXPECT_NEAR(column.k0.front().at(s), (1e3 + k * (s - 1e3)) / s, 5e-3) << s;
 }
 
 }  // namespace
