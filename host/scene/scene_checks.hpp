@@ -8,6 +8,8 @@ namespace voussoir::host {
 
 /// The largest share of an element's edge by which a boundary may move in one step.
 inline constexpr double most_of_an_edge = 0.25;
+/// The share from which on `check` advises more steps.
+inline constexpr double wide_step = 0.05;
 
 /// Points of supports and moves must be nodes.
 void check_places(const Scene& scene);

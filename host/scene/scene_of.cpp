@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "host/case/scene_names.hpp"
 #include "host/scene/scene_checks.hpp"
@@ -33,10 +34,12 @@ std::vector<GroundLayer> layers_at_rest(const Scene& scene) {
 }
 
 PlannedScene make(const Case& input) {
+  SceneMesh made = scene_mesh_with_remarks(input.scene.mesh);
   PlannedScene planned{.scene = {.input = input.scene,
-                                 .mesh = scene_mesh(input.scene.mesh),
+                                 .mesh = std::move(made.mesh),
                                  .pressure = input.packing.pressure,
-                                 .gravity = input.gravity}};
+                                 .gravity = input.gravity},
+                       .remarks = std::move(made.remarks)};
   const fem::Mesh& mesh = planned.scene.mesh;
   check_scene_names(input, {names_of(mesh.nodes), mesh.region_names, names_of(mesh.points)});
   planned.plans = plan_stages(planned.scene);

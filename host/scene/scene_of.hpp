@@ -14,6 +14,7 @@ struct PlannedScene {
   Scene scene;
   std::vector<StagePlan> plans = {};
   std::vector<PlacedRecord> records = {};
+  std::vector<std::string> remarks = {};  ///< what is worth telling about the mesh
   std::vector<GroundLayer> layers = {};  ///< from the surface down; empty where no stage presses at rest
 };
 

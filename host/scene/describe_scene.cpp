@@ -1,0 +1,201 @@
+#include "host/scene/describe_scene.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "fem/gauss_points.hpp"
+#include "host/scene/scene_checks.hpp"
+
+namespace voussoir::host {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+struct Chain {
+  double length = 0;  ///< [m]
+  int pieces = 0;
+};
+
+Chain measure(const fem::Mesh& mesh, const std::vector<fem::Edge>& edges) {
+  Chain chain;
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const fem::Edge& edge = edges[k];
+    if (k == 0 || edges[k - 1][2] != edge[0]) ++chain.pieces;
+    chain.length += (mesh.coordinates.col(edge[1]) - mesh.coordinates.col(edge[0])).norm() +
+                    (mesh.coordinates.col(edge[2]) - mesh.coordinates.col(edge[1])).norm();
+  }
+  return chain;
+}
+
+std::string mesh_line(const fem::Mesh& mesh) {
+  const fem::Point size = mesh.coordinates.rowwise().maxCoeff() - mesh.coordinates.rowwise().minCoeff();
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const fem::ElementNodes& element : mesh.elements) {
+    for (int k = 0; k < 4; ++k)
+      shortest = std::min(shortest,
+                          (mesh.coordinates.col(element[(k + 1) % 4]) - mesh.coordinates.col(element[k])).norm());
+  }
+  return fmt::format("mesh: {} elements, {} nodes, {} points, {:.4g} x {:.4g} m; the shortest edge has {:.3g} m",
+                     mesh.n_elements(), mesh.n_nodes(), mesh.n_points(), size.x(), size.y(), shortest);
+}
+
+std::string boundaries_line(const fem::Mesh& mesh) {
+  std::vector<std::string> parts;
+  for (const auto& [name, edges] : mesh.edges) {
+    if (edges.empty()) {
+      parts.push_back(fmt::format("{} inside the ground ({} nodes)", name, mesh.node_set(name).size()));
+      continue;
+    }
+    const Chain chain = measure(mesh, edges);
+    parts.push_back(fmt::format("{} {:.4g} m ({} edge{}{})", name, chain.length, edges.size(),
+                                edges.size() == 1 ? "" : "s",
+                                chain.pieces > 1 ? fmt::format(" in {} pieces", chain.pieces) : ""));
+  }
+  if (!mesh.unnamed_edges.empty())
+    parts.push_back(fmt::format("{:.4g} m without a name", measure(mesh, mesh.unnamed_edges).length));
+  return fmt::format("boundaries: {}", fmt::join(parts, ", "));
+}
+
+std::vector<std::string> region_lines(const Scene& scene) {
+  const fem::GaussPoints points = fem::gauss_points(scene.mesh, scene.mesh.coordinates);
+  std::vector<std::string> lines;
+  for (const RegionCase& region : scene.input.regions) {
+    double area = 0;
+    int elements = 0;
+    for (int e = 0; e < scene.mesh.n_elements(); ++e) {
+      if (!scene.mesh.region.empty() && scene.mesh.region_names[scene.mesh.region[e]] != region.name) continue;
+      ++elements;
+      for (int p = 4 * e; p < 4 * e + 4; ++p) area += points.volumes[p];
+    }
+    const std::string material =
+        region.elastic ? fmt::format("linear elastic, {:.4g} MPa", region.elastic->modulus * 1e-6)
+                       : fmt::format("grains, {} packing{} of {} grains", region.packing.variety,
+                                     region.packing.variety == 1 ? "" : "s", region.packing.grains);
+    lines.push_back(fmt::format("region {}: {}; {:.4g} m2, {:.4g} kN/m, {} points", region.name, material, area,
+                                area * region.unit_weight * 1e-3, 4 * elements));
+  }
+  return lines;
+}
+
+/// Where p0 acts, and how much ground would press as it does.
+std::string pressure_line(const PlannedScene& planned) {
+  const Scene& scene = planned.scene;
+  std::vector<std::string> pressed;
+  for (const BoundaryLoad& load : planned.plans.front().loads) {
+    if (load.edges.empty() || (load.pressure_from[0] == 0 && load.pressure_from[1] == 0)) continue;
+    pressed.push_back(fmt::format("{} ({:.4g} m)", load.boundary.empty() ? "edges without a name" : load.boundary,
+                                  measure(scene.mesh, load.edges).length));
+  }
+  std::string line = fmt::format("packing.pressure = {:.4g} kPa acts on {}", scene.pressure * 1e-3,
+                                 pressed.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(pressed, ", ")));
+  double heaviest = 0;
+  for (const RegionCase& region : scene.input.regions) heaviest = std::max(heaviest, region.unit_weight);
+  if (heaviest == 0 || pressed.empty()) return line;
+  const double height = scene.mesh.coordinates.row(1).maxCoeff() - scene.mesh.coordinates.row(1).minCoeff();
+  const double depth = scene.pressure / heaviest;
+  return line + fmt::format(": as much as {:.3g} m of ground, {:.2g} % of the height", depth, 100 * depth / height);
+}
+
+std::string motion_of(const Holder& holder, double end) {
+  const MoveCase& move = holder.move;
+  std::vector<std::string> parts;
+  if (move.x || move.y)
+    parts.push_back(fmt::format("by ({:.4g}, {:.4g}) m", move.x.value_or(0) * end, move.y.value_or(0) * end));
+  if (move.rotation) parts.push_back(fmt::format("by {:.4g} deg", *move.rotation * end / degree));
+  if (move.area) parts.push_back(fmt::format("its area changes by {:.4g} %", 100 * *move.area * end));
+  return fmt::format("{} moves: {}", holder.name, fmt::join(parts, ", "));
+}
+
+std::string name_of(const Holder& holder) {
+  return holder.name.empty() ? std::string("a point") : holder.name;
+}
+
+std::string held_by(const StagePlan& plan) {
+  std::vector<std::string> parts;
+  for (const Holder& holder : plan.holders)
+    parts.push_back(fmt::format("{} {}{}", name_of(holder), holder.axes[0] ? "x" : "", holder.axes[1] ? "y" : ""));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string stage_line(const Scene& scene, const StagePlan& plan, std::size_t number) {
+  std::string line = fmt::format("stage {} {}: {} steps, {}; held: {}", number, plan.input.name, plan.targets.size(),
+                                 plan.input.geometry == LossGeometry::fixed_mesh ? "fixed_mesh" : "updated_lagrangian",
+                                 held_by(plan));
+  if (plan.gravity_from != plan.gravity_to)
+    line += fmt::format("; the weights go from {:.4g} to {:.4g} of their full value", plan.gravity_from, plan.gravity_to);
+  if (plan.tilt_from != plan.tilt_to)
+    line += fmt::format("; gravity turns from {:.4g} to {:.4g} deg", plan.tilt_from / degree, plan.tilt_to / degree);
+  for (const PressCase& press : plan.input.presses) {
+    line += press.kind == PressKind::pressure
+                ? fmt::format("; {} is pressed by {:.4g} kPa", press.boundary, press.pressure * 1e-3)
+            : press.kind == PressKind::traction
+                ? fmt::format("; {} bears ({:.4g}, {:.4g}) kPa", press.boundary, press.traction[0] * 1e-3,
+                              press.traction[1] * 1e-3)
+                : fmt::format("; ground at rest presses on {}", press.boundary);
+  }
+  for (const ReleaseCase& release : plan.input.releases)
+    line += fmt::format("; {} is released by {:.4g} %", release.boundary, 100 * release.share);
+  for (const ExcavateCase& dug : plan.input.excavations) line += fmt::format("; {} is dug out", dug.region);
+  for (const Holder& holder : plan.holders) {
+    const double share = step_over_edge(scene, plan, holder);
+    if (share > 0)
+      line += fmt::format("; {}, {:.2g} of an element's edge a step{}", motion_of(holder, plan.input.end), share,
+                          share > wide_step ? ", which is much: more steps are safer" : "");
+  }
+  return line;
+}
+
+/// Nodes that several holders name on one axis, each pair of holders once.
+std::vector<std::string> owner_lines(const Scene& scene, const StagePlan& plan) {
+  struct Shared {
+    std::vector<int> nodes;
+    std::string axes;
+  };
+  std::map<std::pair<std::size_t, std::size_t>, Shared> shared;  // loser, owner
+  for (std::size_t k = 0; k < plan.holders.size(); ++k) {
+    const Holder& holder = plan.holders[k];
+    for (int axis = 0; axis < 2; ++axis) {
+      for (const int node : holder.nodes) {
+        if (!holder.axes[axis]) continue;
+        const std::size_t owner = plan.owners.at(2 * node + axis);
+        const bool moved = plan.holders[owner].move.x || plan.holders[owner].move.y || plan.holders[owner].move.is_affine();
+        if (owner == k || !moved) continue;
+        Shared& entry = shared[{k, owner}];
+        if (std::find(entry.nodes.begin(), entry.nodes.end(), node) == entry.nodes.end()) entry.nodes.push_back(node);
+        const char name = axis == 0 ? 'x' : 'y';
+        if (entry.axes.find(name) == std::string::npos) entry.axes += name;
+      }
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [pair, entry] : shared) {
+    const fem::Point x = scene.mesh.coordinates.col(entry.nodes.front());
+    lines.push_back(fmt::format("stage {}: {} (moved) owns {} before {} at {} node{}, the first at ({:.4g}, {:.4g}) m",
+                                plan.input.name, name_of(plan.holders[pair.second]), entry.axes,
+                                name_of(plan.holders[pair.first]), entry.nodes.size(),
+                                entry.nodes.size() == 1 ? "" : "s", x.x(), x.y()));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> describe(const PlannedScene& planned) {
+  const Scene& scene = planned.scene;
+  std::vector<std::string> lines{mesh_line(scene.mesh), boundaries_line(scene.mesh)};
+  for (std::string& line : region_lines(scene)) lines.push_back(std::move(line));
+  lines.push_back(pressure_line(planned));
+  for (std::size_t k = 0; k < planned.plans.size(); ++k) lines.push_back(stage_line(scene, planned.plans[k], k + 1));
+  for (const StagePlan& plan : planned.plans) {
+    for (std::string& line : owner_lines(scene, plan)) lines.push_back(std::move(line));
+  }
+  for (const std::string& remark : planned.remarks) lines.push_back(remark);
+  return lines;
+}
+
+}  // namespace voussoir::host

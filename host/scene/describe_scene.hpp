@@ -1,0 +1,15 @@
+#pragma once
+/// A scene in sentences, for `voussoir check`.
+
+#include <string>
+#include <vector>
+
+#include "host/scene/scene_of.hpp"
+
+namespace voussoir::host {
+
+/// Mesh, boundaries, regions, the pressure at the start, stages with what is held, moved, pressed, released and dug out,
+/// and the nodes at which the owner rule decides.
+[[nodiscard]] std::vector<std::string> describe(const PlannedScene& planned);
+
+}  // namespace voussoir::host
