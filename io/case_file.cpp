@@ -51,6 +51,7 @@ KeyInfo& with_limits(KeyInfo& info, const ListRule& rule) {
   info.least_entries = rule.least;
   info.most_entries = rule.most;
   info.different = rule.different;
+  info.or_one = rule.or_one;
   return info;
 }
 
@@ -73,6 +74,7 @@ void refuse_count(const CaseNode& node, const KeyInfo& info, const char* bound, 
 template <class T, class Default, class ReadOne>
 std::vector<T> read_array(CaseNode& node, const KeyInfo& info, const std::optional<std::vector<Default>>& fallback,
                           ReadOne read_one) {
+  if (info.or_one && node.written && node.kind != Kind::array) return {read_one(node, std::optional<Default>{})};
   if (node.written) {
     expect(node, Kind::array);
     if (node.children.size() > info.most_entries) refuse_count(node, info, "at most ", info.most_entries);
@@ -136,6 +138,13 @@ double Table::quantity(const Key& key, Dimension dimension, const QuantityRule& 
   return read_quantity(node, dimension, rule, rule.fallback);
 }
 
+std::optional<double> Table::optional_quantity(const Key& key, Dimension dimension, const QuantityRule& rule) const {
+  CaseNode& node = take(key.name, true);
+  with_limits(note(node, key, KeyType::quantity), dimension, rule);
+  if (!node.written) return std::nullopt;
+  return read_quantity(node, dimension, rule, {});
+}
+
 std::int64_t Table::integer(const Key& key, const IntegerRule& rule) const {
   CaseNode& node = take(key.name, rule.fallback.has_value());
   with_limits(note(node, key, KeyType::integer, rule.fallback ? fmt::format("{}", *rule.fallback) : "", !rule.fallback),
@@ -184,9 +193,11 @@ std::optional<std::string> Table::optional_text(const Key& key, const TextRule& 
 }
 
 std::string Table::choice(const Key& key, const std::vector<std::string>& choices,
-                          const std::optional<std::string>& fallback) const {
+                          const std::optional<std::string>& fallback, const std::string& default_words) const {
   CaseNode& node = take(key.name, fallback.has_value());
-  note(node, key, KeyType::choice, fallback ? toml_text(*fallback) : "", !fallback).choices = choices;
+  KeyInfo& info = note(node, key, KeyType::choice, fallback ? toml_text(*fallback) : "", !fallback);
+  info.choices = choices;
+  info.default_words = default_words;
   return read_choice(node, choices, fallback);
 }
 
@@ -233,11 +244,34 @@ std::vector<std::int64_t> Table::integers(const Key& key, const IntegerRule& rul
   });
 }
 
-std::vector<std::string> Table::texts(const Key& key, const std::optional<std::vector<std::string>>& fallback) const {
+std::vector<std::string> Table::texts(const Key& key, const std::optional<std::vector<std::string>>& fallback,
+                                      const TextRule& rule, const ListRule& list) const {
   CaseNode& node = take(key.name, fallback.has_value());
   KeyInfo& info = note(node, key, KeyType::text, list_as_toml(fallback, toml_text), !fallback, true);
-  with_limits(info, ListRule{});
-  return read_array<std::string>(node, info, fallback, read_text);
+  with_limits(info, list);
+  info.pattern = rule.pattern;
+  info.default_words = rule.default_words;
+  return read_array<std::string>(node, info, fallback, [&](CaseNode& entry, const auto& entry_fallback) {
+    std::string value = read_text(entry, entry_fallback);
+    expect_pattern(entry, value, rule);
+    return value;
+  });
+}
+
+std::optional<Place> Table::optional_place(const Key& key, const QuantityRule& rule) const {
+  CaseNode& node = take(key.name, true);
+  with_limits(note(node, key, KeyType::place), Dimension::length, rule);
+  if (!node.written) return std::nullopt;
+  return read_place(node, rule);
+}
+
+std::vector<Place> Table::places(const Key& key, const QuantityRule& rule, const ListRule& list) const {
+  CaseNode& node = take(key.name, true);
+  KeyInfo& info = with_limits(note(node, key, KeyType::place, "", false, true), list);
+  with_limits(info, Dimension::length, rule);
+  if (!node.written) return {};
+  return read_array<Place>(node, info, std::optional<std::vector<std::string>>{},
+                           [&](CaseNode& entry, const std::optional<std::string>&) { return read_place(entry, rule); });
 }
 
 std::vector<std::string> Table::chosen(const Key& key, const std::vector<std::string>& choices) const {

@@ -8,6 +8,7 @@
 ///                                    {.fallback = "35 m", .positive = true});
 ///     file.finish();  // unknown keys are reported here
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -55,8 +56,23 @@ struct ListRule {
   std::size_t least = 0;
   std::size_t most = most_list_entries;
   bool different = false;  ///< no two entries are the same
+  bool or_one = false;     ///< one value may stand in place of an array of one
 };
 
+/// A place in the plane: the name of a point, or two coordinates.
+struct Place {
+  std::string name = {};          ///< empty: `at` counts
+  std::array<double, 2> at = {};  ///< [m]
+};
+
+/// What one table does not take over from another (Table::take_over).
+struct TakeOverRule {
+  /// Keys that exclude one another: where a table has one of a group, it takes none of the group over.
+  std::vector<std::vector<std::string_view>> alternatives = {};
+  std::vector<std::string_view> without = {};  ///< keys that are never taken over
+};
+
+class CaseFile;
 struct CaseNode;   // a key of the file, its place, and the value that was read from it
 struct CaseState;  // the whole file
 
@@ -69,6 +85,9 @@ class Table {
 
   /// The SI value of a text such as "5 mm"; Dimension::none takes plain numbers and "%".
   [[nodiscard]] double quantity(const Key& key, Dimension dimension, const QuantityRule& rule = {}) const;
+  /// A quantity that may be left out; the rule's fallback is not used.
+  [[nodiscard]] std::optional<double> optional_quantity(const Key& key, Dimension dimension,
+                                                        const QuantityRule& rule = {}) const;
   [[nodiscard]] std::int64_t integer(const Key& key, const IntegerRule& rule = {}) const;
   /// An integer that may be left out; the rule's fallback is not used.
   [[nodiscard]] std::optional<std::int64_t> optional_integer(const Key& key, const IntegerRule& rule = {}) const;
@@ -79,7 +98,8 @@ class Table {
   [[nodiscard]] std::optional<std::string> optional_text(const Key& key, const TextRule& rule = {}) const;
   /// A text that is one of `choices`; the message of an error lists them.
   [[nodiscard]] std::string choice(const Key& key, const std::vector<std::string>& choices,
-                                   const std::optional<std::string>& fallback = {}) const;
+                                   const std::optional<std::string>& fallback = {},
+                                   const std::string& default_words = {}) const;
   /// An existing file that can be read, or none where the key is left out. The name is relative to the folder of the
   /// file that says it, with --set to that of the case file.
   [[nodiscard]] std::optional<std::filesystem::path> optional_path(const Key& key) const;
@@ -95,7 +115,13 @@ class Table {
                                                    const std::optional<std::vector<std::int64_t>>& fallback = {},
                                                    const ListRule& list = {}) const;
   [[nodiscard]] std::vector<std::string> texts(const Key& key,
-                                               const std::optional<std::vector<std::string>>& fallback = {}) const;
+                                               const std::optional<std::vector<std::string>>& fallback = {},
+                                               const TextRule& rule = {}, const ListRule& list = {}) const;
+  /// A place, written as the name of a point or as two lengths; none where the key is left out.
+  [[nodiscard]] std::optional<Place> optional_place(const Key& key, const QuantityRule& rule = {}) const;
+  /// An array of places; none where the key is left out.
+  [[nodiscard]] std::vector<Place> places(const Key& key, const QuantityRule& rule = {},
+                                          const ListRule& list = {}) const;
   /// Texts each of which is one of `choices`; none where the key is left out.
   [[nodiscard]] std::vector<std::string> chosen(const Key& key, const std::vector<std::string>& choices) const;
 
@@ -107,6 +133,13 @@ class Table {
   /// A table, or the tables of an array, that have been read before.
   [[nodiscard]] Table known_table(std::string_view key) const;
   [[nodiscard]] std::vector<Table> known_tables(std::string_view key) const;
+
+  /// The files that this key of the table names, read as `extends` at the top of a file reads them; none where the key
+  /// is left out. The key itself decides no result: what is taken over does.
+  [[nodiscard]] std::optional<CaseFile> extended(const Key& key) const;
+  /// Takes over the keys that `other` was given and this table was not, with their values and places, table by table.
+  /// @param origin says where they come from in the resolved case; without it, the place does
+  void take_over(const Table& other, const TakeOverRule& rule, const std::string& origin = {}) const;
 
   /// Declares that this key, which the program has read, does not count in this case: `reason` completes the sentence
   /// "KEY is not used: ...". The key may be a path ("relax_below", "class[0].modulus") or "" for the whole table. Only
@@ -178,6 +211,7 @@ class CaseFile {
   [[nodiscard]] std::string fingerprint(std::span<const std::string> without = {}) const;
 
  private:
+  friend class Table;
   explicit CaseFile(std::shared_ptr<CaseState> state) : state_(std::move(state)) {}
   std::shared_ptr<CaseState> state_;
 };

@@ -27,11 +27,12 @@ void note(const CaseNode& node, const std::string& reason, std::vector<Idle>& al
   idle.keys.push_back(node.key);
 }
 
-/// Collects the written values below `node`. A reason holds for all that lies below the node that has it.
+/// Collects the written values below `node`, without those that another table was given and this one has taken over. A
+/// reason holds for all that lies below the node that has it.
 void collect(const CaseNode& node, const std::string& inherited, std::vector<Idle>& all) {
   const std::string& reason = node.idle.empty() ? inherited : node.idle;
   const bool is_value = !node.resolved.empty();
-  if (is_value && node.written && !reason.empty()) note(node, reason, all);
+  if (is_value && node.written && node.origin.empty() && !reason.empty()) note(node, reason, all);
   if (is_value) return;  // the entries of an array belong to their key
   for (const auto& child : node.children) collect(*child, reason, all);
 }

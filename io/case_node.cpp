@@ -218,26 +218,38 @@ std::vector<std::string> extended_names(const toml::node& written, const std::st
   return names;
 }
 
-/// Reads the files that this file extends, in their order, then this file over them.
-void fill_from_file(CaseNode& root, const std::filesystem::path& path, int depth) {
+/// The key that names files, its place, and how many files lead to it.
+struct Extension {
+  std::string key, place;
+  int depth;
+};
+
+void fill_from_file(CaseNode& root, const std::filesystem::path& path, int depth);
+
+/// Reads the files that a key `extends` names, in their order.
+void fill_from_extended(CaseNode& root, const std::filesystem::path& folder,  // NOLINT(misc-no-recursion)
+                        const std::vector<std::string>& names, const Extension& at) {
   constexpr int most_files = 8;  // deeper chains are taken for circles
+  for (const auto& name : names) {
+    const std::string fault = name.empty() ? "is no name of a file" : file_fault(folder / name);
+    if (!fault.empty()) {
+      throw InputError(at.place, at.key, fmt::format("{} {}", in_one_line((folder / name).string()), fault));
+    }
+    if (at.depth == most_files) {
+      throw InputError(at.place, at.key, "the files extend one another in a circle, or more than eight deep");
+    }
+    fill_from_file(root, folder / name, at.depth + 1);
+  }
+}
+
+/// Reads the files that this file extends, in their order, then this file over them.
+void fill_from_file(CaseNode& root, const std::filesystem::path& path, int depth) {  // NOLINT(misc-no-recursion)
   const auto folder = path.parent_path();
   auto parsed = parse_toml(read_whole(path), path.string());
   const Origin origin{path.string(), folder};
   if (const toml::node* written = parsed.get(extends_key.name)) {
     const std::string place = origin.place(*written);
-    for (const auto& name : extended_names(*written, place)) {
-      const std::string fault = name.empty() ? "is no name of a file" : file_fault(folder / name);
-      if (!fault.empty()) {
-        throw InputError(place, std::string(extends_key.name),
-                         fmt::format("{} {}", in_one_line((folder / name).string()), fault));
-      }
-      if (depth == most_files) {
-        throw InputError(place, std::string(extends_key.name),
-                         "the files extend one another in a circle, or more than eight deep");
-      }
-      fill_from_file(root, folder / name, depth + 1);
-    }
+    fill_from_extended(root, folder, extended_names(*written, place), {std::string(extends_key.name), place, depth});
     parsed.erase(extends_key.name);
   }
   fill(root, parsed, origin);
@@ -273,6 +285,25 @@ std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path, const s
   for (const auto& item : overrides) {
     apply_override(state->root, item);
   }
+  return state;
+}
+
+std::shared_ptr<CaseState> parse_extended(const CaseNode& node, const std::filesystem::path& folder_of_case) {
+  std::vector<std::string> names;
+  const auto take = [&](const CaseNode& entry) {
+    if (entry.kind != CaseNode::Kind::text) {
+      throw InputError(node.place, node.key, "must be the name of a case file, or an array of such names");
+    }
+    names.push_back(std::get<std::string>(entry.value));
+  };
+  if (node.kind != CaseNode::Kind::array) take(node);
+  for (const auto& entry : node.children) take(*entry);
+  auto state = std::make_shared<CaseState>();
+  state->path = node.place;
+  state->root.kind = CaseNode::Kind::table;
+  state->root.read = true;
+  fill_from_extended(state->root, node.place == "--set" ? folder_of_case : node.folder, names,
+                     {node.key, node.place, 0});
   return state;
 }
 

@@ -31,6 +31,7 @@ struct CaseNode {
   std::string meaning = {};          ///< value in SI, the same however it was written; the fingerprint is made of these
   std::string idle = {};             ///< why the key does not count in this case; empty where it counts
   std::optional<KeyInfo> info = {};  ///< type and limits, once read
+  std::string origin = {};           ///< from where the value was taken over; empty where it is the table's own
   std::string placeholder = {};      ///< stands for the name in lists of keys, where the user has chosen the name
 
   [[nodiscard]] CaseNode* find(std::string_view child_name);
@@ -54,6 +55,11 @@ inline constexpr Key extends_key{"extends",
 
 /// The same for a text in place of a file; `name` stands for the file in messages. Throws InputError.
 [[nodiscard]] std::shared_ptr<CaseState> parse_case_text(const std::string& text, const std::string& name);
+
+/// Reads the files that a node names under `extends`, as if a file extended them. `folder_of_case` is the one to which
+/// names given with --set are relative. Throws InputError.
+[[nodiscard]] std::shared_ptr<CaseState> parse_extended(const CaseNode& node,
+                                                        const std::filesystem::path& folder_of_case);
 
 /// "a number", "a table", ... for messages.
 [[nodiscard]] std::string_view kind_name(CaseNode::Kind kind);

@@ -109,6 +109,8 @@ std::vector<std::vector<std::string>> Table::lists_of_texts(const Key& key) cons
     is_right = is_right && !list.empty() && list.size() == entry->children.size();
   }
   if (!is_right) throw error(key.name, R"(must be an array of arrays of texts, such as [["a", "b"]])");
+  node.resolved = written_as_toml(node);
+  node.meaning = node.resolved;
   return lists;
 }
 

@@ -10,27 +10,13 @@
 #include "io/case_file.hpp"
 #include "io/case_node.hpp"
 #include "io/hash.hpp"
+#include "io/nearest_name.hpp"
 
 namespace voussoir::io {
 
 namespace {
 
 using Kind = CaseNode::Kind;
-
-/// The Levenshtein distance of two names.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
 
 void collect_known(const CaseNode& node, std::vector<const CaseNode*>& known) {
   for (const auto& child : node.children) {
@@ -44,18 +30,11 @@ void collect_known(const CaseNode& node, std::vector<const CaseNode*>& known) {
 /// A hint at a known key with nearly this name in the same table, or with this very name in another table; empty when
 /// there is none.
 std::string hint(const CaseNode& root, const CaseNode& parent, const CaseNode& unknown) {
-  std::size_t best = unknown.name.size() / 3 + 1;
-  std::string name;
+  std::vector<std::string> names;
   for (const auto& sibling : parent.children) {
-    if (!sibling->read || sibling->name.front() == '[') {
-      continue;  // before any distance is computed: that of a very long name from itself takes seconds
-    }
-    const std::size_t distance = edit_distance(sibling->name, unknown.name);
-    if (distance <= best) {
-      best = distance;
-      name = sibling->name;
-    }
+    if (sibling->read && sibling->name.front() != '[') names.push_back(sibling->name);
   }
+  std::string name = nearest_name(names, unknown.name);
   if (name.empty()) {
     std::vector<const CaseNode*> known;
     collect_known(root, known);
@@ -81,10 +60,11 @@ bool is_array_of_tables(const CaseNode& node) {
   return node.kind == Kind::array && !node.children.empty() && node.children.front()->kind == Kind::table;
 }
 
-std::string_view origin_comment(const CaseNode& node) {
+std::string origin_comment(const CaseNode& node) {
   if (!node.written) {
     return "  # default";
   }
+  if (!node.origin.empty()) return "  # " + node.origin;
   return node.place == "--set" ? "  # --set" : "";
 }
 

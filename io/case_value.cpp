@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "io/text_file.hpp"
 
@@ -125,6 +126,25 @@ std::string read_choice(CaseNode& node, const std::vector<std::string>& choices,
                            value.empty() ? "empty" : in_one_line(value)));
   }
   return value;
+}
+
+Place read_place(CaseNode& node, const QuantityRule& rule) {
+  if (node.kind == Kind::text) {
+    std::string name = read_text(node, {});
+    if (name.empty()) fail(node, "must be the name of a point or two lengths, is empty");
+    return {.name = std::move(name)};
+  }
+  if (node.kind != Kind::array || node.children.size() != 2) {
+    fail(node, R"(must be the name of a point or two lengths, such as ["1 m", "2 m"])");
+  }
+  Place place;
+  for (std::size_t k = 0; k < 2; ++k) {
+    node.children[k]->read = true;
+    place.at.at(k) = read_quantity(*node.children[k], Dimension::length, rule, {});
+  }
+  node.resolved = fmt::format("[{}, {}]", node.children[0]->resolved, node.children[1]->resolved);
+  node.meaning = fmt::format("[{}, {}]", node.children[0]->meaning, node.children[1]->meaning);
+  return place;
 }
 
 std::filesystem::path read_path(CaseNode& node, const std::filesystem::path& folder_of_case) {

@@ -25,6 +25,8 @@ std::int64_t read_integer(CaseNode& node, const IntegerRule& rule, const std::op
 std::string read_text(CaseNode& node, const std::optional<std::string>& fallback);
 std::string read_choice(CaseNode& node, const std::vector<std::string>& choices,
                         const std::optional<std::string>& fallback);
+/// The name of a point, or an array of two lengths within the limits of the rule.
+Place read_place(CaseNode& node, const QuantityRule& rule);
 /// An existing file. A path that is written with --set is relative to `folder_of_case`.
 std::filesystem::path read_path(CaseNode& node, const std::filesystem::path& folder_of_case);
 

@@ -50,6 +50,8 @@ std::string_view name_of(KeyType type) {
       return "choice";
     case KeyType::path:
       return "path";
+    case KeyType::place:
+      return "place";
     case KeyType::value:
       return "value";
     case KeyType::list_of_text:

@@ -17,6 +17,7 @@ enum class KeyType {
   text,
   choice,
   path,
+  place,  ///< the name of a point, or two lengths
   value,  ///< any number, text, boolean or array of these, which is handed on as it is written
   list_of_text,
   table

@@ -139,6 +139,8 @@ std::string type_of(const KeyInfo& info) {
       return fmt::format("{}", fmt::join(as_codes(info.choices), ", "));
     case KeyType::path:
       return "file";
+    case KeyType::place:
+      return "name of a point, or two lengths";
     case KeyType::value:
       return "value";
     case KeyType::list_of_text:

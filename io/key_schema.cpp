@@ -81,6 +81,11 @@ Json value_schema(const KeyInfo& info) {
     case KeyType::text:
       schema = text_schema(info.pattern);
       break;
+    case KeyType::place: {
+      const Json length{{"type", "string"}, {"pattern", pattern_of(info)}};
+      schema["anyOf"] = {text_schema(""), {{"type", "array"}, {"items", length}, {"minItems", 2}, {"maxItems", 2}}};
+      break;
+    }
     case KeyType::value:
       schema["type"] = {"number", "string", "boolean"};
       break;

@@ -155,12 +155,31 @@ void read_recipe(const io::Table& table, PackingCase& packing) {
        "Void ratio of the finished packing, for which the program searches `consolidation_friction`; 0 leaves "
        "that value as it is given."},
       Dimension::none, packing.void_ratio, {.at_least = "0", .at_most = "1"});
+}
+
+/// Reads the keys that are the same for all packings of a mesh.
+void read_common(const io::Table& table, PackingCase& packing) {
   read_quantity(
       table,
       {"pressure",
        "Isotropic pressure of the finished packing. A tunnel and a column start from it, so that it must equal "
-       "`ground.surcharge`."},
+       "`ground.surcharge`; in a scene every boundary that nothing holds carries it."},
       Dimension::pressure, packing.pressure, {.at_least = "100 Pa", .at_most = "10 MPa"});
+  packing.mirrored = table.boolean({"mirrored",
+                                    "Gives every second Gauss point of a mesh the mirror image of its packing, so that "
+                                    "what a packing prefers to the "
+                                    "left and to the right cancels out."},
+                                   packing.mirrored);
+  packing.folder = table.text({"folder",
+                               "Folder in which finished packings are kept and looked for, so that each is made once; "
+                               "it may be a new one. It is "
+                               "relative to the folder in which the program was started."},
+                              packing.folder.string());
+  std::error_code failure;
+  const auto folder = std::filesystem::status(packing.folder, failure).type();
+  const bool usable = folder == std::filesystem::file_type::directory ||
+                      folder == std::filesystem::file_type::not_found;
+  if (packing.folder.empty() || !usable) throw table.error("folder", "must name a folder, which may be a new one");
 }
 
 /// The packing in a file. The whole file is read, so that a fault in it is found before a run.
@@ -252,24 +271,30 @@ SoilCase read_soil(const io::Table& table) {
 PackingCase read_packing(const io::Table& table, bool on_a_mesh) {
   PackingCase packing;
   read_recipe(table, packing);
-  packing.mirrored = table.boolean({"mirrored",
-                                    "Gives every second Gauss point of a mesh the mirror image of its packing, so that "
-                                    "what a packing prefers to the "
-                                    "left and to the right cancels out."},
-                                   packing.mirrored);
-  packing.folder = table.text({"folder",
-                               "Folder in which finished packings are kept and looked for, so that each is made once; "
-                               "it may be a new one. It is "
-                               "relative to the folder in which the program was started."},
-                              packing.folder.string());
-  std::error_code failure;
-  const auto folder = std::filesystem::status(packing.folder, failure).type();
-  const bool usable = folder == std::filesystem::file_type::directory ||
-                      folder == std::filesystem::file_type::not_found;
-  if (packing.folder.empty() || !usable) throw table.error("folder", "must name a folder, which may be a new one");
+  read_common(table, packing);
   read_files(table, packing);
   read_variety(table, on_a_mesh, packing);
   return packing;
+}
+
+PackingCase read_region_packing(const io::Table& table, const PackingCase& common) {
+  PackingCase packing;
+  packing.pressure = common.pressure;
+  packing.mirrored = common.mirrored;
+  packing.folder = common.folder;
+  read_recipe(table, packing);
+  read_files(table, packing);
+  read_variety(table, true, packing);
+  check_variety(table, packing);
+  check_no_state(table, packing);
+  return packing;
+}
+
+void check_no_state(const io::Table& table, const PackingCase& packing) {
+  if (packing.has_state()) {
+    throw table.error(
+        "file", "is a stored state: only kind = \"probe\" can start from it, all other kinds need isotropic pressure");
+  }
 }
 
 void check_variety(const io::Table& table, const PackingCase& packing) {

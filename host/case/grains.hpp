@@ -1,6 +1,9 @@
 #pragma once
 /// The tables of the grains: [soil], [packing]. All readers throw io::InputError.
 
+#include <array>
+#include <string_view>
+
 #include "host/case/case.hpp"
 #include "io/case_file.hpp"
 
@@ -16,6 +19,15 @@ inline constexpr io::Key size_maximum_key{"size_maximum",
 [[nodiscard]] SoilCase read_soil(const io::Table& table);
 /// @param on_a_mesh true for kinds with a mesh, where `variety` counts
 [[nodiscard]] PackingCase read_packing(const io::Table& table, bool on_a_mesh);
+
+/// The packings of a region of a scene. What is not a region's own is that of `common`, which [packing] says.
+[[nodiscard]] PackingCase read_region_packing(const io::Table& table, const PackingCase& common);
+
+/// The keys of [packing] that are no region's own.
+inline constexpr std::array<std::string_view, 3> common_packing_keys{"pressure", "mirrored", "folder"};
+
+/// Throws where `file` is a stored state, from which only a probe can start.
+void check_no_state(const io::Table& table, const PackingCase& packing);
 
 /// Throws where `variety` asks for more packings than the recipe's candidates, seeds or files are.
 void check_variety(const io::Table& table, const PackingCase& packing);

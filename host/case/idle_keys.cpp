@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "host/case/grains.hpp"
@@ -40,6 +41,18 @@ bool has_own_pressure(const Case& c) {
   return runs_tests(c) || c.kind == CaseKind::probe || c.kind == CaseKind::biaxial_bvp;
 }
 
+bool has_stage_of_gravity(const Case& c) {
+  return std::any_of(c.scene.stages.begin(), c.scene.stages.end(), [](const StageCase& s) { return s.steps == 0; });
+}
+bool has_at_rest(const Case& c) {
+  return std::any_of(c.scene.stages.begin(), c.scene.stages.end(), [](const StageCase& stage) {
+    return std::any_of(stage.presses.begin(), stage.presses.end(),
+                       [](const PressCase& press) { return press.kind == PressKind::at_rest; });
+  });
+}
+bool needs_no_column(const Case& c) { return c.kind == CaseKind::scene && !has_at_rest(c); }
+bool needs_no_gravity(const Case& c) { return needs_no_column(c) && !has_stage_of_gravity(c); }
+
 /// The rules go from the widest reason to the narrowest, because a key is reported with the first reason that holds.
 const std::vector<IdleRule>& rules() {
   static const std::vector<IdleRule> all{
@@ -53,6 +66,8 @@ const std::vector<IdleRule>& rules() {
       {"newton", {"tangent", "tangent_strain"}, is_elastic, "material is \"linear_elastic\""},
       {"output", {"microstructure", "rves"}, is_elastic, "material is \"linear_elastic\", which has no grains"},
       {"elastic", {}, [](const Case& c) { return on_a_mesh(c) && !is_elastic(c); }, "material is \"grains\""},
+      {"column", {}, needs_no_column, "no stage has a press with at_rest = true"},
+      {"gravity", {}, needs_no_gravity, "no stage puts gravity on alone, and none has a press with at_rest = true"},
       {"engine", {}, is_pack, "packings are made with settings of their own"},
       {"engine",
        {"inertial_number", "hold_cap", "minimum_steps", "maximum_steps"},
@@ -116,17 +131,40 @@ void declare_class_defaults(const io::Table& soil) {
   }
 }
 
+void declare(const io::Table& owner, const IdleRule& rule) {
+  const io::Table table = owner.known_table(rule.table);
+  if (rule.keys.empty()) table.declare_idle("", rule.reason);
+  for (const char* key : rule.keys) {
+    if (table.has(key)) table.declare_idle(key, rule.reason);
+  }
+}
+
+/// The tables of a region of grains follow the rules of those at the top of the case.
+void declare_in_region(const io::Table& entry, const RegionCase& region, const Case& input) {
+  if (region.elastic) {
+    if (is_elastic(input)) entry.declare_idle("elastic", "material is \"linear_elastic\", which is that of [elastic]");
+    return;
+  }
+  Case alone = input;
+  alone.soil = region.soil;
+  alone.packing = region.packing;
+  for (const IdleRule& rule : rules()) {
+    const std::string_view table = rule.table;
+    if ((table == "soil" || table == "packing") && rule.when(alone)) declare(entry, rule);
+  }
+  if (!region.soil.sizes.empty()) declare_sizes(entry.known_table("soil"));
+  declare_class_defaults(entry.known_table("soil"));
+}
+
 }  // namespace
 
 void declare_idle_keys(const io::Table& root, const Case& input) {
   for (const IdleRule& rule : rules()) {
-    if (!rule.when(input)) continue;
-    const io::Table table = root.known_table(rule.table);
-    if (rule.keys.empty()) table.declare_idle("", rule.reason);
-    for (const char* key : rule.keys) {
-      if (table.has(key)) table.declare_idle(key, rule.reason);
-    }
+    if (rule.when(input)) declare(root, rule);
   }
+  const std::vector<io::Table> entries = root.known_tables("region");
+  for (std::size_t k = 0; k < input.scene.regions.size(); ++k)
+    declare_in_region(entries[k], input.scene.regions[k], input);
   const io::Table soil = root.known_table("soil");
   if (!input.soil.sizes.empty()) declare_sizes(soil);
   // A calibration searches parameters as factors of [soil], which therefore counts.

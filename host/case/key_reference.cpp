@@ -38,7 +38,7 @@ io::KeyReference case_reference(CaseKind kind) { return reference_of({kind}); }
 io::KeyReference case_reference() {
   std::vector<CaseKind> kinds;
   for (const auto& [kind, name] : case_kind_names) kinds.push_back(kind);
-  std::reverse(kinds.begin(), kinds.end());  // the tunnel, which has the most tables, comes first
+  std::reverse(kinds.begin(), kinds.end());  // scenes and tunnels, which have the most tables, come first
   return reference_of(kinds);
 }
 

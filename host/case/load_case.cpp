@@ -15,6 +15,9 @@
 #include "host/case/idle_keys.hpp"
 #include "host/case/mesh.hpp"
 #include "host/case/packing_origin.hpp"
+#include "host/case/scene_keys.hpp"
+#include "host/case/scene_names.hpp"
+#include "host/case/scene_samples.hpp"
 #include "host/case/tables.hpp"
 #include "io/case_file.hpp"
 #include "io/hash.hpp"
@@ -30,7 +33,8 @@ CaseKind read_kind(const io::Table& root) {
       {"kind",
        "What the case computes: packings (`pack`), responses of one packing to small strains (`probe`), biaxial tests "
        "on packings (`biaxial`) or on a mesh (`biaxial_bvp`), a search of the grains' parameters (`calibrate`), a "
-       "column for K0 (`column`), or a tunnel (`tunnel`)."},
+       "column for K0 (`column`), a tunnel (`tunnel`), or any problem of plane strain that is said in meshes, regions, "
+       "supports and stages (`scene`)."},
       names);
   for (const auto& [kind, name] : case_kind_names) {
     if (wanted == name) return kind;
@@ -48,10 +52,7 @@ void read_grain_tables(const io::Table& root, Case& input) {
         "accuracy", "is for RVEs that are strained in increments; tests have the rate of biaxial.inertial_number");
   }
   if (input.kind == CaseKind::probe) input.probe = read_probe(root.table(tables::probe));
-  if (input.kind != CaseKind::probe && input.packing.has_state()) {
-    throw root.known_table("packing").error(
-        "file", "is a stored state: only kind = \"probe\" can start from it, all other kinds need isotropic pressure");
-  }
+  if (input.kind != CaseKind::probe) check_no_state(root.known_table("packing"), input.packing);
   if (runs_on_a_mesh(input.kind)) check_variety(root.known_table("packing"), input.packing);
   if (!runs_on_a_mesh(input.kind) && input.packing.files.size() > 1) {
     throw root.known_table("packing").error("file", "names several files, but only kinds with a mesh mix packings");
@@ -74,6 +75,12 @@ void read_mesh_tables(const io::Table& root, Case& input) {
   input.newton = read_newton(root.table(tables::newton));
   input.output = read_output(root.table(tables::output));
   if (input.kind == CaseKind::biaxial_bvp) input.biaxial_bvp = read_biaxial_bvp(root.table(tables::biaxial_bvp));
+}
+
+void read_scene_tables(const io::Table& root, Case& input) {
+  input.column = read_column(root.table(tables::column));
+  input.gravity = read_gravity(root.table(tables::gravity));
+  input.scene = read_scene(root, input);
 }
 
 void read_ground_tables(const io::Table& root, Case& input) {
@@ -144,6 +151,7 @@ Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
   if (runs_on_a_mesh(input.kind)) read_mesh_tables(root, input);
   if (input.engine.backend == Backend::gpu) check_gpu(root, input);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) read_ground_tables(root, input);
+  if (input.kind == CaseKind::scene) read_scene_tables(root, input);
   check_packing_origin(root, input);
   declare_idle_keys(root, input);
   text.finish();
@@ -158,21 +166,42 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   for (std::string& line : text.idle_keys()) input.remarks.push_back(std::move(line));
   input.resolved = text.resolved();
   input.places = text.places();
+  if (input.kind == CaseKind::scene && input.scene.mesh.shape != MeshShape::file)
+    check_scene_names(input, names_of_shape(input.scene.mesh));
   input.fingerprint = text.fingerprint(keys_without_results);
-  for (const std::filesystem::path& packing : input.packing.files)
-    input.fingerprint = io::fingerprint_of(input.fingerprint + packing_content(packing));
+  const auto add = [&](const std::string& content) {
+    input.fingerprint = io::fingerprint_of(input.fingerprint + content);
+  };
+  for (const std::filesystem::path& packing : input.packing.files) add(packing_content(packing));
+  for (const RegionCase& region : input.scene.regions) {
+    for (const std::filesystem::path& packing : region.packing.files) add(packing_content(packing));
+  }
+  if (!input.scene.mesh.file.empty()) add(bytes_of(input.scene.mesh.file));
   return input;
 }
 
+namespace {
+
+/// The keys of one case, which is given as text.
+io::KeyList keys_in(const std::string& text, const std::string& name) {
+  const io::CaseFile file = io::CaseFile::of_text(text, name);
+  static_cast<void>(read_case(file, "case.toml"));
+  return {file.keys(), file.tables()};
+}
+
+}  // namespace
+
 io::KeyList keys_of(CaseKind kind, const std::string& more) {
+  const std::string name = "keys of " + to_string(kind);
   std::string text = "kind = \"" + to_string(kind) + "\"\n";
   // One entry of each array of tables, and what cannot be left out: the values do not matter.
   text += "[[soil.class]]\nsize_to = \"1 m\"\n" + more;
   if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
   if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
-  const io::CaseFile file = io::CaseFile::of_text(text, "keys of " + to_string(kind));
-  static_cast<void>(read_case(file, "case.toml"));
-  return {file.keys(), file.tables()};
+  if (kind != CaseKind::scene) return keys_in(text, name);
+  std::vector<io::KeyList> lists;
+  for (const std::string& scene : scene_samples()) lists.push_back(keys_in(text + scene, name));
+  return join_scene_keys(lists);
 }
 
 }  // namespace voussoir::host

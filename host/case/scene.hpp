@@ -30,6 +30,9 @@ struct SceneMeshCase {
   std::vector<std::int64_t> columns, rows;          ///< elements of each interval
   std::vector<double> x_ratio, y_ratio;             ///< [-]
   std::vector<std::string> base, top, left, right;  ///< names of the boundaries, by interval
+  /// Names of the regions of a grid whose regions change along x, too: a row for each interval of y, upwards, with an
+  /// entry for each interval of x; empty: `layers` counts.
+  std::vector<std::vector<std::string>> regions;
 
   // half_tunnel, tunnel
   double width = 35.0, height = 35.0, diameter = 5.0, cover_ratio = 2.0;  ///< as in GroundCase; `tunnel`: whole width

@@ -47,4 +47,44 @@ inline constexpr io::Key calibrate{
     "Search of the rolling resistance and the thickness with which the tests of `[biaxial]` show a wanted strength. "
     "Classes of grains keep their ratios to `[soil]`."};
 
+inline constexpr io::Key mesh{
+    "mesh",
+    "The elements of a scene, with named boundaries, regions and points: a file of Gmsh, or one of four shapes."};
+inline constexpr io::Key region{
+    "region",
+    "A named part of the mesh and what it is made of: grains, or a linear elastic material. Each region of the mesh "
+    "needs one such table."};
+inline constexpr io::Key region_elastic{"elastic", "The linear elastic material of this region, in place of grains."};
+inline constexpr io::Key region_soil{"soil",
+                                     "Grains and contacts of this region. A key that the region does not give has the "
+                                     "value of the file under `extends`, else that of `[soil]`."};
+inline constexpr io::Key region_packing{
+    "packing",
+    "Packings of this region. A key that the region does not give has the value of the file under `extends`, else that "
+    "of `[packing]`; pressure, folder and mirror images are those of `[packing]` in all regions."};
+inline constexpr io::Key support{
+    "support",
+    "What holds boundaries or a point from the start. Where two supports name one axis of a node, the later one owns "
+    "it; what nothing holds carries `packing.pressure`."};
+inline constexpr io::Key stage{
+    "stage",
+    "A part of the loading, in which a parameter goes from 0 to 1. It changes what it names, and all else stays as it "
+    "stands at its beginning."};
+inline constexpr io::Key stage_move{
+    "move", "A boundary or a point that is moved. The axes that the table names are held from then on."};
+inline constexpr io::Key stage_press{
+    "press",
+    "A boundary whose load changes linearly from what loads it at the stage's beginning. It must not be held."};
+inline constexpr io::Key stage_release{
+    "release",
+    "A boundary that is no longer held: the forces that held it at the stage's beginning are taken off step by step."};
+inline constexpr io::Key stage_excavate{
+    "excavate",
+    "A region that is dug out: its elements are taken away, and the forces that they put on the rest are taken off "
+    "step by step."};
+inline constexpr io::Key record{
+    "record",
+    "What is written besides the fields and the columns of the boundaries: values at a point, along a line or, as "
+    "means, of a region."};
+
 }  // namespace voussoir::host::tables
