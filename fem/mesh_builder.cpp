@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "fem/mesh_outline.hpp"
@@ -9,6 +10,13 @@
 namespace voussoir::fem {
 
 namespace {
+
+[[noreturn]] void refuse_edge(const Coordinates& x, int a, int b) {
+  std::ostringstream text;
+  text << "an edge belongs to more than two elements: from (" << x(0, a) << ", " << x(1, a) << ") to (" << x(0, b)
+       << ", " << x(1, b) << ")";
+  throw std::runtime_error(text.str());
+}
 
 /// The names of a loop's edges, and the loop turned so that no boundary's piece is cut by the loop's start.
 std::vector<std::string> name_loop(std::vector<Edge>& loop, const EdgeNamer& name_of) {
@@ -58,7 +66,7 @@ Mesh complete_q8(const QuadMesh& quads, const EdgeNamer& name_of) {
       const int b = quad[(k + 1) % 4];
       const auto [entry, is_new] = sides.try_emplace(corner_pair(a, b));
       if (is_new) entry->second.edge = {a, next, b}, ++next;
-      if (++entry->second.elements > 2) throw std::runtime_error("mesh: an edge belongs to more than two elements");
+      if (++entry->second.elements > 2) refuse_edge(quads.corners, a, b);
       nodes[4 + k] = entry->second.edge[1];
     }
     mesh.elements.push_back(nodes);

@@ -129,7 +129,7 @@ Mesh complete_half_tunnel(const HalfTunnelOptions& options, const QuadMesh& quad
     if (is_on_circle(options, quads.corners.col(a)) && is_on_circle(options, quads.corners.col(b))) return "opening";
     return name_on_block(quads.corners.col(a), quads.corners.col(b), options.width, options.height);
   });
-  if (!mesh.unnamed_edges.empty()) throw std::runtime_error("mesh: an outer edge is on no named boundary");
+  if (!mesh.unnamed_edges.empty()) throw std::runtime_error("tunnel mesh: an outer edge is on no named boundary");
   check_outline(mesh, opening.centre.y());
   finish(mesh, opening);
   return mesh;

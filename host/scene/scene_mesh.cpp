@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "fem/mesh_file.hpp"
 #include "fem/mesh_grid.hpp"
 #include "fem/mesh_tunnel.hpp"
 
@@ -120,12 +121,22 @@ fem::Mesh tunnel(const SceneMeshCase& m) {
   return mesh;
 }
 
+SceneMesh file(const SceneMeshCase& m) {
+  require(is_length(m.unit), "unit: it must be positive and finite");
+  try {
+    fem::MeshFile read = fem::read_mesh_file(m.file, m.unit);
+    return {std::move(read.mesh), std::move(read.remarks)};
+  } catch (const std::runtime_error& fault) {
+    throw std::runtime_error(std::string("mesh.file: ") + fault.what());
+  }
+}
+
 }  // namespace
 
 SceneMesh scene_mesh_with_remarks(const SceneMeshCase& mesh) {
   switch (mesh.shape) {
     case MeshShape::file:
-      break;
+      return file(mesh);
     case MeshShape::grid:
       return {grid(mesh), {}};
     case MeshShape::ring:
@@ -134,7 +145,7 @@ SceneMesh scene_mesh_with_remarks(const SceneMeshCase& mesh) {
     case MeshShape::tunnel:
       return {tunnel(mesh), {}};
   }
-  throw std::logic_error("mesh files are not read yet");
+  throw std::logic_error("a mesh of a shape that does not exist");
 }
 
 fem::Mesh scene_mesh(const SceneMeshCase& mesh) { return scene_mesh_with_remarks(mesh).mesh; }
