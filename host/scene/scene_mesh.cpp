@@ -40,7 +40,8 @@ fem::Mesh grid(const SceneMeshCase& m) {
                            .top = names_or(m.top, "top"),
                            .left = names_or(m.left, "left"),
                            .right = names_or(m.right, "right"),
-                           .layers = names_or(m.layers, "ground")});
+                           .layers = names_or(m.layers, "ground"),
+                           .regions = m.regions});
   });
 }
 
