@@ -41,11 +41,18 @@ void tally(NewtonReport& whole, NewtonReport&& part) {
 
 }  // namespace
 
-void SubstepFactor::learn(double driving, double left) {
+void SubstepFactor::learn(double driving, double left, double residual) {
   if (needs_new_matrix()) {  // the last substep has made it
-    value_ = 1;
-    overshoots_ = 0;
+    if (in_vain_ >= options_.most_in_vain)
+      options_.largest_factor = std::max(options_.least_cap, 0.5 * options_.largest_factor);
+    value_ = std::min(1.0, options_.largest_factor);
+    overshoots_ = in_vain_ = 0;
     return;
+  }
+  ++in_vain_;
+  if (residual < 0.9 * least_residual_) {
+    least_residual_ = residual;
+    in_vain_ = 0;
   }
   const double spent = driving > 0 ? 1 - left / driving : 0;
   const double wanted = spent > 0 ? value_ / spent : options_.largest_factor;
@@ -76,7 +83,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
       const double driving = increment.residual.dot(part.displacement);
       const double left = part.residual.dot(part.displacement);
       answer.viscous_work = 0.5 * (driving + left);
-      factor.learn(driving, left);
+      factor.learn(driving, left, answer.residual);
     }
     const NewtonStatus status = answer.status;
     if (answer.residual <= answer.residual_bound) ++settling;
