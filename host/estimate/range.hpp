@@ -13,7 +13,10 @@ struct Foretold {
   std::vector<std::string> warnings;  ///< what of them is beyond the law's range (packing/law_range.hpp)
 };
 
-/// The largest pressure of the case's own loads, and what it does to the grains. Paths of `probe` are not foretold.
-[[nodiscard]] Foretold foretell(const Case& input);
+/// The largest pressure of the case's own loads, and what it does to the grains. Paths of `probe` are not foretold. In
+/// a scene every region with grains is pressed as the deepest point of its mesh is; the line is that of the region
+/// whose grains overlap most.
+/// @param height of a scene's mesh [m]
+[[nodiscard]] Foretold foretell(const Case& input, double height);
 
 }  // namespace voussoir::host
