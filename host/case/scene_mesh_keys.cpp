@@ -126,8 +126,6 @@ void read_grid_regions(const io::Table& table, SceneMeshCase& mesh) {
     return;
   }
   if (table.has("layers")) throw table.error("layers", "is given beside regions: one of the two names the regions");
-  static_cast<void>(read_names(table, layers_key, "ground"));
-  mesh.layers.clear();
   if (mesh.regions.size() != rows)
     throw table.error("regions", fmt::format("must have a list for each of the {} intervals of y, has {}", rows,
                                              mesh.regions.size()));
