@@ -43,7 +43,8 @@ inline std::pair<std::string, int> scene_with(const std::string& key, const std:
   const std::size_t own = text.find(header);
   if (own == std::string::npos && !table.empty()) {
     const std::size_t owner = text.find("\n[[support]]");  // behind the last region, to which its tables then belong
-    text.insert(table.starts_with("region") ? text.find("[[region]]\nname = \"elastic\"") : owner + 1, header);
+    const std::string needed = table == "soil.class[]" ? "size_to = \"1 m\"\n" : "";
+    text.insert(table.starts_with("region") ? text.find("[[region]]\nname = \"elastic\"") : owner + 1, header + needed);
   }
   const std::size_t begin = table.empty() ? 0 : text.find(header) + header.size();
   const std::size_t end = std::min(text.find("\n[", begin), text.size());

@@ -91,8 +91,7 @@ NEEDED = {  # what an entry of an array of tables cannot be without
 
 
 def scene_tables(settings):
-    """The tiny scene whose shape has these keys. What it moves is changed by a key of a move, and left out where another
-    table of the stage has a key."""
+    """The tiny scene whose shape has these keys. Its move is left out where another table of the stage has a key."""
     names = [key.removeprefix("mesh.") for key in settings if key.startswith("mesh.")]
     wanted = LIKE.get(names[0], names[0]) if names else "x"
     shape = next((one for one, keys in MESHES.items() if wanted in keys), "grid")
@@ -198,9 +197,7 @@ def lines_of(kind, settings):
             if key in ("stage[].move[].rotation", "stage[].move[].area"):
                 tables[table] = {"boundary": '"top"', name: value, "about": '["0 m", "0 m"]'}
     lines, place = ["", f'kind = "{kind}"'], {"kind": 2}
-    arrays = [name for name in tables if "[]" in name]
-    for table in sorted(tables, key=lambda name: (name != "", name in arrays, name.split("[]")[0] if name in arrays else "",
-                                                  name)):  # fmt: skip
+    for table in sorted(tables, key=lambda name: (name != "", "[]" in name, name)):
         if table:
             plain = table.replace("[]", "")
             lines.append(f"[[{plain}]]" if table.endswith("[]") else f"[{plain}]")
@@ -230,6 +227,9 @@ def parts(limit):
 
 def written(key, number, unit):
     value = f'"{number} {unit}"' if unit else f"{number}"
+    if key["type"].endswith("place"):
+        place = f'[{value}, "0 m"]'
+        return f'[{place}, ["0 m", "0 m"]]' if key["type"].startswith("list") else place
     if not key["type"].startswith("list"):
         return value
     limit = f"{number} {unit}".strip()

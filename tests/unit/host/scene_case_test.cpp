@@ -133,7 +133,7 @@ TEST(SceneCase, OverridesReachIntoArraysOfTables) {
   EXPECT_DOUBLE_EQ(input.scene.stages[1].moves[0].y.value_or(0), -0.1);
   EXPECT_DOUBLE_EQ(input.scene.stages[1].moves[0].x.value_or(1), 0.0);
   EXPECT_EQ(input.scene.regions[0].soil.modulus, 1e9);
-  EXPECT_EQ(said_of(text, {"stage[1].move[1].y=-10 cm"}), "--set: stage[1].move: has no entry [1]");
+  EXPECT_EQ(said_of(text, {"stage[1].move[1].y=-10 cm"}), "--set stage[1].move: has no entry [1]");
 }
 
 TEST(SceneCase, ARegionTakesOverFilesThenTheScene) {
@@ -252,7 +252,7 @@ TEST(SceneCase, NamesOfAMeshFileAreCheckedWhenItIsKnown) {
   EXPECT_EQ(said({{"floor", "door"}, {"bank", "foundation"}, {}}),
             "scene.toml:6: region[0].name: the mesh has no region 'ground'; it has bank, foundation");
   EXPECT_EQ(said({{"floor"}, {"ground"}, {}}),
-            "scene.toml:8: support[0].boundary: the mesh has no boundary 'door'; it has floor");
+            "scene.toml:8: support[0].boundary: the mesh has no boundary 'door'; it has floor; did you mean 'floor'?");
   EXPECT_EQ(said({{"floor", "the door"}, {"ground"}, {}}),
             "scene.toml:3: mesh.file: the boundary 'the door' names columns of results: it must have 1 to 64 letters, "
             "digits, _ or -");
@@ -278,7 +278,7 @@ TEST(SceneCase, StagesHaveTheStepsAndTheGeometryOfWhatTheyChange) {
               "stage[0].gravity: is not 0, but no region has a unit_weight above 0");
   EXPECT_EQ(said_of(head + grid + region + support),
             "scene.toml:1: stage: is missing: a scene needs at least one [[stage]]");
-  expect_said(head + grid + region + gravity + gravity, "name = \"gravity\"",
+  expect_said(head + grid + region + gravity + "[[stage]]\nname = \"gravity\"\nsteps = 1\ntilt = \"1 deg\"\n", "name = \"gravity\"",
               "stage[1].name: 'gravity' is the name of an earlier one, too");
   expect_said(head + grid + region + "[[stage]]\nname = \"a b\"\n", "name = \"a b\"",
               "stage[0].name: names columns of results: it must have 1 to 64 letters, digits, _ or -");
@@ -361,7 +361,7 @@ TEST(SceneCase, ShapesHaveKeysOfTheirOwn) {
               "mesh.columns: must be one number for a ring");
   expect_said(mesh("shape = \"grid\"\nx = [\"0 m\", \"1 m\", \"2 m\"]\ncolumns = 2\n"), "columns",
               "mesh.columns: must have one entry for each of the 2 intervals of x, has 1");
-  expect_said(mesh("shape = \"grid\"\nx = [\"0 m\", \"1 m\", \"1 m\"]\n"), "x =", "mesh.x: must ascend");
+  expect_said(mesh("shape = \"grid\"\nx = [\"0 m\", \"1 m\", \"1 m\"]\n"), "x = [", "mesh.x: must ascend");
   expect_said(mesh("shape = \"grid\"\nx = [\"0 m\", \"1 m\"]\ncolumns = 20\nx_ratio = 10\n"), "x_ratio",
               "mesh.x_ratio: makes 20 elements whose lengths differ by more than a million");
   expect_said(head + grid + "top = [\"a\", \"b\", \"c\"]\n" + rest, "top",
