@@ -192,7 +192,7 @@ std::string kinds_note(const ListedKey& listed, const std::vector<std::string>& 
 std::string rows_of(const std::string& table, const std::vector<std::string>& kinds, const KeyReference& reference) {
   std::string rows, named;  // keys whose names the user chooses come last
   for (const ListedKey& listed : reference.keys) {
-    if (parent_of(listed.info.key) != table) continue;
+    if (parent_of(listed.info.key) != table || !listed.info.like.empty()) continue;
     (listed.info.named_by_user ? named : rows) += fmt::format(
         "| {} | {} | {} | {}{} |\n", as_code(last_part(listed.info.key)), default_of(listed), values_of(listed.info),
         kinds_note(listed, kinds), with_links(listed.info.help));
@@ -224,6 +224,7 @@ std::string kinds_table(const KeyReference& reference) {
   for (std::size_t k = 0; k < reference.kinds.size(); ++k) out += ":-:|";
   out += "\n";
   for (const ListedKey& table : reference.tables) {
+    if (!table.info.like.empty()) continue;
     out += fmt::format("| `{}` |", heading_of(table.info));
     for (const std::string& kind : reference.kinds) {
       const bool used = std::find(table.kinds.begin(), table.kinds.end(), kind) != table.kinds.end();
@@ -241,7 +242,9 @@ std::string part_of(const KeyReference& reference) {
   if (reference.kinds.size() > 1) out += kinds_table(reference);
   out += "### At the top of the file\n\nThese keys stand before the first table.\n\n";
   out += rows_of("", reference.kinds, reference);
-  for (const ListedKey& table : reference.tables) out += section_of(table, reference);
+  for (const ListedKey& table : reference.tables) {
+    if (table.info.like.empty()) out += section_of(table, reference);
+  }
   return out;
 }
 

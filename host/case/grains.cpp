@@ -123,14 +123,16 @@ void read_classes(const io::Table& table, SoilCase& soil) {
   if (soil.classes.size() > 255) throw table.error("class", "has more than 255 entries");
 }
 
-/// Reads how packings are made from loose grains.
-void read_recipe(const io::Table& table, PackingCase& packing) {
+void read_grains(const io::Table& table, PackingCase& packing) {
   read_integer(
       table,
       {"grains",
        "Number of grains in one representative volume element. The time of a run grows with it, and the scatter "
        "among packings falls: docs/validation/trade.md has the strength of packings of 100 to 700 grains."},
       packing.grains, {.at_least = 30, .at_most = 20000});
+}
+
+void read_seeds(const io::Table& table, PackingCase& packing) {
   packing.seed = table.integer(
       {"seed",
        "Seed of the random places and sizes of the grains, the first one where several packings "
@@ -139,6 +141,10 @@ void read_recipe(const io::Table& table, PackingCase& packing) {
   packing.seeds = table.integers(
       {"seeds", "Seeds of the packings, in place of the consecutive ones that `seed` and `candidates` name."},
       {.at_least = 0, .at_most = largest_seed}, std::vector<std::int64_t>{}, {.most = most_seeds, .different = true});
+}
+
+/// Reads how loose grains become a packing.
+void read_consolidation(const io::Table& table, PackingCase& packing) {
   read_quantity(table,
                 {"consolidation_friction",
                  "Friction coefficient of the contacts while a packing is consolidated, which decides its density: 0 "
@@ -270,7 +276,9 @@ SoilCase read_soil(const io::Table& table) {
 
 PackingCase read_packing(const io::Table& table, bool on_a_mesh) {
   PackingCase packing;
-  read_recipe(table, packing);
+  read_grains(table, packing);
+  read_seeds(table, packing);
+  read_consolidation(table, packing);
   read_common(table, packing);
   read_files(table, packing);
   read_variety(table, on_a_mesh, packing);
@@ -282,7 +290,10 @@ PackingCase read_region_packing(const io::Table& table, const PackingCase& commo
   packing.pressure = common.pressure;
   packing.mirrored = common.mirrored;
   packing.folder = common.folder;
-  read_recipe(table, packing);
+  packing.seed = common.seed;
+  packing.seeds = common.seeds;
+  read_grains(table, packing);
+  read_consolidation(table, packing);
   read_files(table, packing);
   read_variety(table, true, packing);
   check_variety(table, packing);

@@ -183,7 +183,7 @@ def excuse_of(value):
 def wrong_values(key):
     """(value, why a schema may accept it) of a key."""
     for _, _, outside, _ in limits_of(key):
-        yield outside, UNIT if key["dimension"] else ""
+        yield outside, UNIT if key["dimension"] or "place" in key["type"] else ""
     for form in wrong_forms(key):
         yield form, excuse_of(form)
 
