@@ -5,9 +5,11 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "host/case/element_tests.hpp"
 #include "host/case/engine.hpp"
@@ -150,11 +152,61 @@ Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
   return input;
 }
 
+/// A case of this kind in which every key has been read; `more` is added to its text.
+io::CaseFile known_case(CaseKind kind, const std::string& more) {
+  std::string text = "kind = \"" + to_string(kind) + "\"\n";
+  // One entry of each array of tables, and what cannot be left out: the values do not matter.
+  text += "[[soil.class]]\nsize_to = \"1 m\"\n" + more;
+  if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
+  if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
+  io::CaseFile file = io::CaseFile::of_text(text, "keys of " + to_string(kind));
+  static_cast<void>(read_case(file, "case.toml"));
+  return file;
+}
+
+/// Throws InputError for a key that the kind of this case does not have; of a case without a kind, or with a wrong one,
+/// for a key that no kind has.
+void refuse_unknown_keys(const io::CaseFile& text) {
+  std::vector<CaseKind> kinds;
+  for (const auto& [kind, name] : case_kind_names) kinds.push_back(kind);
+  try {
+    kinds = {read_kind(text.root())};
+  } catch (const io::InputError&) {  // the reader has said so already
+  }
+  std::vector<io::CaseFile> known;
+  try {
+    for (const CaseKind kind : kinds) known.push_back(known_case(kind, ""));
+  } catch (const io::InputError&) {  // a default does not hold here, such as the folder of packings: the keys stay open
+    return;
+  }
+  std::optional<io::InputError> unknown;
+  for (const io::CaseFile& all : known) {
+    try {
+      text.finish_as(all);
+      return;
+    } catch (const io::InputError& found) {
+      unknown.emplace(found);
+    }
+  }
+  throw *unknown;
+}
+
+/// Reads the case. Where a value is missing or wrong and a key is unknown, the unknown key is reported: it is often a
+/// misspelt one, and then the reason why the value is missing.
+Case checked_case(const io::CaseFile& text, const std::filesystem::path& file) {
+  try {
+    return read_case(text, file);
+  } catch (const io::InputError&) {
+    refuse_unknown_keys(text);
+    throw;
+  }
+}
+
 }  // namespace
 
 Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const io::CaseFile text = io::CaseFile::load(file, overrides);
-  Case input = read_case(text, file);
+  Case input = checked_case(text, file);
   for (std::string& line : text.idle_keys()) input.remarks.push_back(std::move(line));
   input.resolved = text.resolved();
   input.places = text.places();
@@ -165,13 +217,7 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
 }
 
 io::KeyList keys_of(CaseKind kind, const std::string& more) {
-  std::string text = "kind = \"" + to_string(kind) + "\"\n";
-  // One entry of each array of tables, and what cannot be left out: the values do not matter.
-  text += "[[soil.class]]\nsize_to = \"1 m\"\n" + more;
-  if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
-  if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
-  const io::CaseFile file = io::CaseFile::of_text(text, "keys of " + to_string(kind));
-  static_cast<void>(read_case(file, "case.toml"));
+  const io::CaseFile file = known_case(kind, more);
   return {file.keys(), file.tables()};
 }
 
