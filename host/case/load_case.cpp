@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -164,31 +163,42 @@ io::CaseFile known_case(CaseKind kind, const std::string& more) {
   return file;
 }
 
+/// The kind of the case; all kinds where it has none or a wrong one, of which the reader has told.
+std::vector<CaseKind> possible_kinds(const io::Table& root) {
+  try {
+    return {read_kind(root)};
+  } catch (const io::InputError&) {
+    std::vector<CaseKind> kinds;
+    for (const auto& [kind, name] : case_kind_names) kinds.push_back(kind);
+    return kinds;
+  }
+}
+
+/// Cases of these kinds in which every key has been read; none where a default does not hold on this machine, such as
+/// the folder of packings.
+std::vector<io::CaseFile> known_cases(const std::vector<CaseKind>& kinds) {
+  try {
+    std::vector<io::CaseFile> known;
+    for (const CaseKind kind : kinds) known.push_back(known_case(kind, ""));
+    return known;
+  } catch (const io::InputError&) {
+    return {};
+  }
+}
+
 /// Throws InputError for a key that the kind of this case does not have; of a case without a kind, or with a wrong one,
 /// for a key that no kind has.
 void refuse_unknown_keys(const io::CaseFile& text) {
-  std::vector<CaseKind> kinds;
-  for (const auto& [kind, name] : case_kind_names) kinds.push_back(kind);
-  try {
-    kinds = {read_kind(text.root())};
-  } catch (const io::InputError&) {  // the reader has said so already
-  }
-  std::vector<io::CaseFile> known;
-  try {
-    for (const CaseKind kind : kinds) known.push_back(known_case(kind, ""));
-  } catch (const io::InputError&) {  // a default does not hold here, such as the folder of packings: the keys stay open
-    return;
-  }
-  std::optional<io::InputError> unknown;
-  for (const io::CaseFile& all : known) {
+  std::vector<io::InputError> unknown;
+  for (const io::CaseFile& known : known_cases(possible_kinds(text.root()))) {
     try {
-      text.finish_as(all);
+      text.finish_as(known);
       return;
     } catch (const io::InputError& found) {
-      unknown.emplace(found);
+      unknown.push_back(found);
     }
   }
-  throw *unknown;
+  if (!unknown.empty()) throw io::InputError(unknown.back());
 }
 
 /// Reads the case. Where a value is missing or wrong and a key is unknown, the unknown key is reported: it is often a

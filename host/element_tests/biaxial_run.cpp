@@ -151,12 +151,13 @@ void print_common_angles(const Summary& summary, double window) {
   if (psi.empty()) return;
   const CommonDilatancy dilatancy = common_dilatancy(psi);
   const std::string scatter = psi.size() > 1 ? fmt::format(" +- {:.1f}", dilatancy.deviation / degree) : "";
+  const std::string tests = psi.size() > 1 ? fmt::format("the mean of {} tests", psi.size()) : "one test";
   std::printf(
-      "all valid tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f%s deg (the mean of %zu tests, smoothed over %.1f "
-      "%% of axial strain)\n",
+      "all valid tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f%s deg (%s, smoothed over %.1f %% of axial "
+      "strain)\n",
       common_angle(summary.of_valid(summary.peak), summary.of_valid(summary.peak_p)) / degree,
       common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
-      dilatancy.mean / degree, scatter.c_str(), psi.size(), window * 100.0);
+      dilatancy.mean / degree, scatter.c_str(), tests.c_str(), window * 100.0);
 }
 
 /// Number of tests that a case asks for; tests whose packing does not come to rest are left out later. A file gives one

@@ -4,6 +4,7 @@ tests of strength; and no alarm at 800 kPa."""
 from pathlib import Path
 
 import h5py
+import numpy as np
 from program import PROGRAM, ROOT, check, fresh, run, table
 
 PACKING = '[packing]\ngrains = 60\nseeds = [1]\nfolder = "packings"\n'
@@ -75,8 +76,15 @@ check("is refused and left out: its void ratio of" in refused.stdout, f"not refu
 check(len(list(Path("packings").glob("*.h5"))) == kept, "an interpenetrating packing is kept")
 
 # Tests of strength: valid at 800 kPa, invalid at 2 MPa, where the packing itself is still within the range.
-done = run(words("run", "test.toml", folder="test"))
-check(done.stdout.count("  valid\n") == 1 and "converged" not in done.stdout, f"800 kPa: {done.stdout}")
+# The closing line has the mean of the dilatancy angles with their standard deviation.
+done = run(words("run", "test.toml", "packing.seeds=[1, 2]", folder="test"))
+check(done.stdout.count("  valid\n") == 2 and "converged" not in done.stdout, f"800 kPa: {done.stdout}")
+with h5py.File("test/run.h5") as opened:
+    psi = opened["tables/strength/dilatancy_angle"][()]
+mean, deviation = np.degrees(np.arcsin(np.sin(psi).mean())), np.degrees(psi.std(ddof=1))
+check(psi.max() - psi.min() > np.radians(0.3), "the two tests have the same dilatancy")
+said = f"psi_max {mean:.1f} +- {deviation:.1f} deg (the mean of 2 tests, smoothed over 1.0 % of axial strain)"
+check(said in done.stdout, f"{said}: {done.stdout}")
 done = run(words("run", "test.toml", 'biaxial.pressures=["2 MPa"]', "biaxial.strain=14 %", folder="beyond"), code=3)
 check(
     "beyond the contact law's range" in done.stdout and "are invalid because" in done.stderr, done.stdout + done.stderr

@@ -208,7 +208,7 @@ class Paths(unittest.TestCase):
         result.case = {}
         self.assertIn("K0 by 10 % (standard deviations, docs", result.draw_note())
         result.case = {"packing": {"void_ratio": 0.234}}
-        self.assertIn("(standard deviations of dense sand; this soil was not measured, docs", result.draw_note())
+        self.assertIn("(standard deviations in dense sand, not in this soil, docs", result.draw_note())
 
     def test_contraction(self):
         until = lambda v: np.interp(LOSS, [0, v, 0.2], [0, 0.01, -0.01])  # noqa: E731

@@ -191,7 +191,7 @@ class Result(RunIndex):
         if not all(len(scatter.get(name, ())) == 1 for name in names):
             return ""
         parts = [f"{said} by {100 * scatter[name][0]:.0f} %" for name, said in names.items()]
-        of_other_soil = "" if self.soil == "dense sand" else " of dense sand; this soil was not measured"
+        of_other_soil = "" if self.soil == "dense sand" else " in dense sand, not in this soil"
         return (
             f"One draw of the packings: another one moves {', '.join(parts)} (standard deviations{of_other_soil}, "
             "docs/validation/trust.md); `voussoir ensemble` gives bands."
