@@ -63,13 +63,14 @@ AskedFor references_of(const std::string& name) {
 
 Outcome command_keys(const std::optional<std::string>& name, KeyForm form) {
   if (name && name->empty()) throw io::InputError("keys", "", "the name is an empty text; leave it out for all keys");
-  const auto [references, whole] = references_of(name.value_or(""));
+  const std::string wanted = name.value_or("");
+  const auto [references, whole] = references_of(wanted);
   switch (form) {
     case KeyForm::page:
       return print_answer(whole ? io::key_page(references) : io::key_sections(references));
     case KeyForm::schema:  // cases and sweep files have one each: without a name it is that of cases
       if (!whole)
-        throw io::InputError("keys", "", "--json-schema is of a kind of case or of sweep files, not of " + *name);
+        throw io::InputError("keys", "", "--json-schema is of a kind of case or of sweep files, not of " + wanted);
       return print_answer(io::key_schema(references.front()));
     case KeyForm::table:
       break;
