@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "host/case/element_tests.hpp"
 #include "host/case/engine.hpp"
@@ -150,11 +151,72 @@ Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
   return input;
 }
 
+/// A case of this kind in which every key has been read; `more` is added to its text.
+io::CaseFile known_case(CaseKind kind, const std::string& more) {
+  std::string text = "kind = \"" + to_string(kind) + "\"\n";
+  // One entry of each array of tables, and what cannot be left out: the values do not matter.
+  text += "[[soil.class]]\nsize_to = \"1 m\"\n" + more;
+  if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
+  if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
+  io::CaseFile file = io::CaseFile::of_text(text, "keys of " + to_string(kind));
+  static_cast<void>(read_case(file, "case.toml"));
+  return file;
+}
+
+/// The kind of the case; all kinds where it has none or a wrong one, of which the reader has told.
+std::vector<CaseKind> possible_kinds(const io::Table& root) {
+  try {
+    return {read_kind(root)};
+  } catch (const io::InputError&) {
+    std::vector<CaseKind> kinds;
+    for (const auto& [kind, name] : case_kind_names) kinds.push_back(kind);
+    return kinds;
+  }
+}
+
+/// Cases of these kinds in which every key has been read; none where a default does not hold on this machine, such as
+/// the folder of packings.
+std::vector<io::CaseFile> known_cases(const std::vector<CaseKind>& kinds) {
+  try {
+    std::vector<io::CaseFile> known;
+    for (const CaseKind kind : kinds) known.push_back(known_case(kind, ""));
+    return known;
+  } catch (const io::InputError&) {
+    return {};
+  }
+}
+
+/// Throws InputError for a key that the kind of this case does not have; of a case without a kind, or with a wrong one,
+/// for a key that no kind has.
+void refuse_unknown_keys(const io::CaseFile& text) {
+  std::vector<io::InputError> unknown;
+  for (const io::CaseFile& known : known_cases(possible_kinds(text.root()))) {
+    try {
+      text.finish_as(known);
+      return;
+    } catch (const io::InputError& found) {
+      unknown.push_back(found);
+    }
+  }
+  if (!unknown.empty()) throw io::InputError(unknown.back());
+}
+
+/// Reads the case. Where a value is missing or wrong and a key is unknown, the unknown key is reported: it is often a
+/// misspelt one, and then the reason why the value is missing.
+Case checked_case(const io::CaseFile& text, const std::filesystem::path& file) {
+  try {
+    return read_case(text, file);
+  } catch (const io::InputError&) {
+    refuse_unknown_keys(text);
+    throw;
+  }
+}
+
 }  // namespace
 
 Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const io::CaseFile text = io::CaseFile::load(file, overrides);
-  Case input = read_case(text, file);
+  Case input = checked_case(text, file);
   for (std::string& line : text.idle_keys()) input.remarks.push_back(std::move(line));
   input.resolved = text.resolved();
   input.places = text.places();
@@ -165,13 +227,7 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
 }
 
 io::KeyList keys_of(CaseKind kind, const std::string& more) {
-  std::string text = "kind = \"" + to_string(kind) + "\"\n";
-  // One entry of each array of tables, and what cannot be left out: the values do not matter.
-  text += "[[soil.class]]\nsize_to = \"1 m\"\n" + more;
-  if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
-  if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
-  const io::CaseFile file = io::CaseFile::of_text(text, "keys of " + to_string(kind));
-  static_cast<void>(read_case(file, "case.toml"));
+  const io::CaseFile file = known_case(kind, more);
   return {file.keys(), file.tables()};
 }
 

@@ -9,6 +9,7 @@
 #include "host/packing/grading.hpp"
 #include "host/packing/law_range.hpp"
 #include "io/packing_file.hpp"
+#include "io/units.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -60,16 +61,54 @@ kernels::Packing grains_of(const Case& input) {
   return packing_of(soil, radii, soil.thickness);
 }
 
+/// Warns of a unit weight that no ground has, such as 2 kN/m3 by mistake for 20. docs/explanation/range.md has the
+/// reasons for the limits.
+void add_unit_weight(const Case& input, std::vector<std::string>& warnings) {
+  constexpr double least = 7e3;  // loose quartz sand under water [N/m3]
+  constexpr double most = 30e3;  // the heaviest common rock [N/m3]
+  const double weight = input.ground.unit_weight;
+  const bool has_weight = input.kind == CaseKind::column || input.kind == CaseKind::tunnel;
+  if (!has_weight || (weight >= least && weight <= most)) return;
+  warnings.push_back(
+      fmt::format("ground.unit_weight ({}) is {:.4g} kN/m3, but ground weighs {:.0f} kN/m3 (loose sand under water) to "
+                  "{:.0f} kN/m3 (heavy rock) (docs/explanation/range.md)",
+                  place_of(input, "ground.unit_weight"), weight * 1e-3, least * 1e-3, most * 1e-3));
+}
+
+/// Warns of contacts that are softer or stiffer than those of all measurements. A packing is made at little pressure
+/// and strained later, under a pressure that this case does not know.
+void add_softness(const Case& input, const kernels::Packing& grains, double pressure,
+                  std::vector<std::string>& warnings) {
+  constexpr double usual = 1e5;  // of a test, or of some 5 m of ground [Pa]
+  const double compared = input.kind == CaseKind::pack ? usual : std::min(pressure, usual);
+  const double soft = stiffness_number(grains, compared), stiff = stiffness_number(grains, usual);
+  const bool is_soft = soft < least_usual_stiffness;
+  if (!is_soft && stiff <= most_usual_stiffness) return;
+  const std::string modulus = input.soil.classes.empty()
+                                  ? "soil.modulus of " +
+                                        io::format_quantity(input.soil.modulus, io::Dimension::pressure)
+                                  : "soil.class";
+  warnings.push_back(fmt::format(
+      "{} with soil.thickness of {} makes {} contacts: kappa = {:.3g} at {:.4g} kPa, outside of {:.0f} to {:.0f}; {} "
+      "(docs/explanation/range.md)",
+      modulus, io::format_quantity(input.soil.thickness, io::Dimension::length), is_soft ? "soft" : "stiff",
+      is_soft ? soft : stiff, (is_soft ? compared : usual) * 1e-3, least_usual_stiffness, most_usual_stiffness,
+      is_soft ? "sand with 51 had little more than half of its strength, and softer sand was not measured"
+              : "stiffer sand than 5060 was not measured, and it needs more steps"));
+}
+
 }  // namespace
 
 Foretold foretell(const Case& input) {
+  Foretold out;
+  add_unit_weight(input, out.warnings);
   const bool has_state = input.packing.has_state();  // its pressure is known when it is read
-  if ((runs_on_a_mesh(input.kind) && input.material != MaterialKind::grains) || has_state) return {};
+  if ((runs_on_a_mesh(input.kind) && input.material != MaterialKind::grains) || has_state) return out;
   const Load load = largest_load(input);
   const kernels::Packing grains = grains_of(input);
   const double kappa = stiffness_number(grains, load.pressure);
   const double overlap = foretold_overlap(kappa) * (load.sheared ? overlap_of_shear : 1.0);
-  Foretold out;
+  add_softness(input, grains, load.pressure, out.warnings);
   out.line = fmt::format(
       "mean stress {:.5g} kPa {}: kappa = {:.3g}, mean overlap about {:.2g} % of r_i + r_j (the contact "
       "law is good for {:.0f} %, docs/explanation/range.md)",
