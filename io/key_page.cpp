@@ -235,27 +235,41 @@ std::string kinds_table(const KeyReference& reference) {
   return out + "\n";
 }
 
-std::string part_of(const KeyReference& reference) {
-  const bool has_kinds = !reference.kinds.empty() && reference.title == "case";
-  std::string out = fmt::format("## Keys of {} files\n\n", reference.title);
-  if (!has_kinds) out += about_sweeps;
-  if (reference.kinds.size() > 1) out += kinds_table(reference);
-  out += "### At the top of the file\n\nThese keys stand before the first table.\n\n";
-  out += rows_of("", reference.kinds, reference);
+/// The tables of the keys, under the heading of the file; `about` stands between them.
+std::string part_of(const KeyReference& reference, const std::string& about) {
+  std::string out = fmt::format("## Keys of {} files\n\n", reference.title) + about;
+  const std::string top = rows_of("", reference.kinds, reference);
+  if (!top.empty()) out += "### At the top of the file\n\nThese keys stand before the first table.\n\n" + top;
   for (const ListedKey& table : reference.tables) {
     if (table.info.like.empty()) out += section_of(table, reference);
   }
   return out;
 }
 
+/// What stands before the tables of a whole reference.
+std::string about(const KeyReference& reference) {
+  const bool has_kinds = !reference.kinds.empty() && reference.title == "case";
+  return (has_kinds ? "" : about_sweeps) + (reference.kinds.size() > 1 ? kinds_table(reference) : "");
+}
+
+std::string without_last_line(std::string out) {
+  while (out.ends_with("\n\n")) out.pop_back();
+  return out;
+}
+
 }  // namespace
+
+std::string key_sections(const std::vector<KeyReference>& references) {
+  std::string out;
+  for (const KeyReference& reference : references) out += part_of(reference, "");
+  return without_last_line(out);
+}
 
 std::string key_page(const std::vector<KeyReference>& references) {
   std::string out;
   if (references.size() > 1) out += introduction + units_table() + how_values + how_editors;
-  for (const KeyReference& reference : references) out += part_of(reference);
-  while (out.ends_with("\n\n")) out.pop_back();
-  return out;
+  for (const KeyReference& reference : references) out += part_of(reference, about(reference));
+  return without_last_line(out);
 }
 
 }  // namespace voussoir::io

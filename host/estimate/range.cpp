@@ -11,6 +11,7 @@
 #include "host/packing/grading.hpp"
 #include "host/packing/law_range.hpp"
 #include "io/packing_file.hpp"
+#include "io/units.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -81,11 +82,59 @@ kernels::Packing grains_of(const Case& input, const SoilRecipe& recipe) {
   return packing_of(soil, radii, soil.thickness);
 }
 
+/// Warns of a unit weight that no ground has, such as 2 kN/m3 by mistake for 20. docs/explanation/range.md has the
+/// reasons for the limits.
+void add_unit_weight(const Case& input, const std::string& key, double weight, std::vector<std::string>& warnings) {
+  constexpr double least = 7e3;  // loose quartz sand under water [N/m3]
+  constexpr double most = 30e3;  // the heaviest common rock [N/m3]
+  if (weight >= least && weight <= most) return;
+  warnings.push_back(
+      fmt::format("{} ({}) is {:.4g} kN/m3, but ground weighs {:.0f} kN/m3 (loose sand under water) to "
+                  "{:.0f} kN/m3 (heavy rock) (docs/explanation/range.md)",
+                  key, place_of(input, key), weight * 1e-3, least * 1e-3, most * 1e-3));
+}
+
+/// Warns of the weights of the ground. Regions of a scene may be without weight, as those of a test, and elastic ones
+/// may be of any material.
+void add_unit_weights(const Case& input, std::vector<std::string>& warnings) {
+  if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel)
+    add_unit_weight(input, "ground.unit_weight", input.ground.unit_weight, warnings);
+  for (std::size_t k = 0; k < input.scene.regions.size(); ++k) {
+    const RegionCase& region = input.scene.regions[k];
+    if (!region.elastic && region.unit_weight > 0)
+      add_unit_weight(input, fmt::format("region[{}].unit_weight", k), region.unit_weight, warnings);
+  }
+}
+
+/// Warns of contacts that are softer or stiffer than those of all measurements. A packing is made at little pressure
+/// and strained later, under a pressure that this case does not know.
+void add_softness(const Case& input, const SoilCase& soil, const kernels::Packing& grains, double pressure,
+                  std::vector<std::string>& warnings) {
+  constexpr double usual = 1e5;  // of a test, or of some 5 m of ground [Pa]
+  const double compared = input.kind == CaseKind::pack ? usual : std::min(pressure, usual);
+  const double soft = stiffness_number(grains, compared), stiff = stiffness_number(grains, usual);
+  const bool is_soft = soft < least_usual_stiffness;
+  if (!is_soft && stiff <= most_usual_stiffness) return;
+  const std::string modulus = soil.classes.empty()
+                                  ? "soil.modulus of " +
+                                        io::format_quantity(soil.modulus, io::Dimension::pressure)
+                                  : "soil.class";
+  warnings.push_back(fmt::format(
+      "{} with soil.thickness of {} makes {} contacts: kappa = {:.3g} at {:.4g} kPa, outside of {:.0f} to {:.0f}; {} "
+      "(docs/explanation/range.md)",
+      modulus, io::format_quantity(soil.thickness, io::Dimension::length), is_soft ? "soft" : "stiff",
+      is_soft ? soft : stiff, (is_soft ? compared : usual) * 1e-3, least_usual_stiffness, most_usual_stiffness,
+      is_soft ? "sand with 51 had little more than half of its strength, and softer sand was not measured"
+              : "stiffer sand than 5060 was not measured, and it needs more steps"));
+}
+
 /// What the load does to these grains, and their mean overlap [-]. @param said of the region before each sentence
-std::pair<Foretold, double> foretell_grains(const Load& load, const kernels::Packing& grains, const std::string& said) {
+std::pair<Foretold, double> foretell_grains(const Case& input, const SoilCase& soil, const Load& load,
+                                            const kernels::Packing& grains, const std::string& said) {
+  Foretold out;
   const double kappa = stiffness_number(grains, load.pressure);
   const double overlap = foretold_overlap(kappa) * (load.sheared ? overlap_of_shear : 1.0);
-  Foretold out;
+  add_softness(input, soil, grains, load.pressure, out.warnings);
   out.line = fmt::format(
       "{}mean stress {:.5g} kPa {}: kappa = {:.3g}, mean overlap about {:.2g} % of r_i + r_j (the contact "
       "law is good for {:.0f} %, docs/explanation/range.md)",
@@ -114,11 +163,12 @@ std::pair<Foretold, double> foretell_grains(const Load& load, const kernels::Pac
 
 Foretold foretell(const Case& input, double height) {
   Foretold out;
+  add_unit_weights(input, out.warnings);
   double most = -1;
   for (const SoilRecipe& recipe : recipes_of(input)) {
     if (recipe.packing->has_state()) continue;  // its pressure is known when it is read
     const std::string said = recipe.name.empty() ? "" : fmt::format("region {}: ", recipe.name);
-    auto [one, overlap] = foretell_grains(largest_load(input, height), grains_of(input, recipe), said);
+    auto [one, overlap] = foretell_grains(input, *recipe.soil, largest_load(input, height), grains_of(input, recipe), said);
     out.warnings.insert(out.warnings.end(), one.warnings.begin(), one.warnings.end());
     if (overlap > most) out.line = std::move(one.line);
     most = std::max(most, overlap);
