@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 
 #include "fem/load_stepper.hpp"
@@ -162,15 +161,15 @@ void replace_rest_of_release(StagePlan& plan, const std::string& boundary) {
   plan.part_released.erase(boundary);
 }
 
-/// @param first_pressure p0 where no weights have acted yet: there it is what ground at rest presses with
-void press(StagePlan& plan, const PressCase& press, std::optional<double> first_pressure) {
+/// @param no_weights the ground has no weight until now, so that ground at rest presses with its own pressure
+void press(StagePlan& plan, const PressCase& press, double own_pressure, bool no_weights) {
   replace_rest_of_release(plan, press.boundary);
   BoundaryLoad& load = load_of(plan, press.boundary);
   for (int axis = 0; axis < 2; ++axis) {
     load.pressure_to[axis] = press.kind == PressKind::pressure ? press.pressure : 0.0;
     load.traction_to[axis] = press.kind == PressKind::traction ? press.traction[axis] : 0.0;
     load.rest_to[axis] = press.kind == PressKind::at_rest ? 1.0 : 0.0;
-    const bool is_at_rest = first_pressure && load.pressure_from[axis] == *first_pressure &&
+    const bool is_at_rest = no_weights && load.pressure_from[axis] == own_pressure &&
                             load.traction_from[axis] == 0 && load.rest_from[axis] == 0;
     if (press.kind == PressKind::at_rest && is_at_rest) {
       load.pressure_from[axis] = 0;
@@ -271,8 +270,7 @@ StagePlan plan_stage(const Scene& scene, const Standing& standing, const StageCa
   for (const ReleaseCase& one : input.releases) release(plan, one);
   for (const ExcavateCase& one : input.excavations) excavate(scene, plan, one);
   for (const MoveCase& move : input.moves) plan.holders.push_back(holder_of(scene, move));
-  const std::optional<double> first = standing.gravity == 0 ? std::optional(scene.pressure) : std::nullopt;
-  for (const PressCase& one : input.presses) press(plan, one, first);
+  for (const PressCase& one : input.presses) press(plan, one, scene.pressure, standing.gravity == 0);
   leave_out_dug(scene, plan, standing.dug_out);
   plan.owners = owners_of(plan.holders);
   std::erase_if(plan.fading, [&](const auto& entry) { return plan.owners.contains(entry.first); });
