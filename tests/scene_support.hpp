@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,6 +23,12 @@ inline host::SupportCase support(std::vector<std::string> boundaries, const std:
           .point = {},
           .x = axes.find('x') != std::string::npos,
           .y = axes.find('y') != std::string::npos};
+}
+
+inline host::SupportCase point_support(host::PlaceCase point, const std::string& axes) {
+  host::SupportCase one = support({}, axes);
+  one.point = std::move(point);
+  return one;
 }
 
 inline host::MoveCase move_by(const std::string& boundary, std::optional<double> x, std::optional<double> y) {
@@ -42,15 +49,15 @@ inline host::MoveCase affine(const std::string& boundary, double rotation, doubl
 }
 
 inline host::PressCase pressure_on(const std::string& boundary, double pressure) {
-  return {.boundary = boundary, .kind = host::PressKind::pressure, .pressure = pressure};
+  return {.boundary = boundary, .kind = host::PressKind::pressure, .pressure = pressure, .traction = {}};
 }
 
 inline host::PressCase traction_on(const std::string& boundary, double tx, double ty) {
-  return {.boundary = boundary, .kind = host::PressKind::traction, .traction = {tx, ty}};
+  return {.boundary = boundary, .kind = host::PressKind::traction, .pressure = 0, .traction = {tx, ty}};
 }
 
 inline host::PressCase at_rest_on(const std::string& boundary) {
-  return {.boundary = boundary, .kind = host::PressKind::at_rest};
+  return {.boundary = boundary, .kind = host::PressKind::at_rest, .pressure = 0, .traction = {}};
 }
 
 /// A stage of one step without changes; on a fixed mesh, where linear elastic ground is nearly linear.

@@ -169,7 +169,7 @@ double residual_at_start(const Scene& scene) {
 
 TEST(StateZero, IsInEquilibriumInAnyGeometry) {
   Scene slope = scene_on(
-      fem::read_mesh_file(std::filesystem::path(VOUSSOIR_SOURCE_DIR) / "tests/meshes/slope_quad4.msh").mesh, 20e3);
+      fem::read_mesh_file(std::filesystem::path(VOUSSOIR_SOURCE_DIR) / "tests/meshes/slope_quad4.msh", 1.0).mesh, 20e3);
   slope.input.supports = {support({"base"}, "xy"), support({"left", "right"}, "x")};
   slope.input.stages = {gravity_stage()};
   EXPECT_LT(residual_at_start(slope), 1e-12);
@@ -178,8 +178,8 @@ TEST(StateZero, IsInEquilibriumInAnyGeometry) {
   distorted.mesh.coordinates = fem_support::mapped(distorted.mesh, [](const fem::Point& x) {
                                  return fem::Point(x.x() + 0.1 * std::sin(3 * x.y()), x.y() + 0.2 * std::sin(x.x()));
                                }).coordinates;
-  distorted.input.supports = {{.point = {.name = "base_left"}, .x = true, .y = true},
-                              {.point = {.name = "base_right"}, .y = true}};
+  distorted.input.supports = {point_support({.name = "base_left", .at = {}}, "xy"),
+                              point_support({.name = "base_right", .at = {}}, "y")};
   distorted.input.stages = {gravity_stage()};
   EXPECT_LT(residual_at_start(distorted), 1e-12);
 }
@@ -191,7 +191,7 @@ TEST(Refused, WhatNothingHolds) {
   expect_refused(scene, "support: nothing holds the ground along y");
   scene.input.supports = {support({"base"}, "y")};
   expect_refused(scene, "support: nothing holds the ground along x");
-  scene.input.supports = {{.point = {.name = "base_left"}, .x = true, .y = true}};
+  scene.input.supports = {point_support({.name = "base_left", .at = {}}, "xy")};
   expect_refused(scene, "support: nothing keeps the ground from turning");
   scene.input.supports = {support({"base"}, "xy")};
   StageCase let_go = stage("let_go");
@@ -209,7 +209,7 @@ TEST(Refused, APieceThatNothingHolds) {
   scene.input.stages = {gravity_stage(), dig};
   expect_refused(scene, "stage[1]: nothing holds the piece of ground about (2, 2.5) m along");
   scene.input.supports.push_back(support({"top"}, "y"));
-  scene.input.supports.push_back({.point = {.name = "top_left"}, .x = true});
+  scene.input.supports.push_back(point_support({.name = "top_left", .at = {}}, "x"));
   EXPECT_EQ(plan_stages(scene).size(), 2U);
 }
 
@@ -327,7 +327,7 @@ TEST(Refused, MotionsThatAreTooWide) {
 
 TEST(Refused, APointThatIsNoNode) {
   Scene scene = bed();
-  scene.input.supports.push_back({.point = {.name = "", .at = {0.3, 0.3}}, .x = true});
+  scene.input.supports.push_back(point_support({.name = "", .at = {0.3, 0.3}}, "x"));
   scene.input.stages = {gravity_stage()};
   expect_refused(scene, "support[2].point: no node of the mesh lies at (0.3, 0.3) m");
 }

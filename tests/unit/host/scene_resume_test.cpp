@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "host/scene/run_stages.hpp"
 #include "io/result_file.hpp"
 #include "tests/scene_support.hpp"
 
