@@ -42,7 +42,8 @@ struct SceneMeshCase {
   std::vector<std::string> layers = {"ground"};  ///< names of regions, from the base upwards (grid, half_tunnel,
                                                  ///< tunnel)
 
-  // ring about (0, 0); its boundaries are "cavity", "far" and, where it is not whole, "x0" (x = 0) and "y0" (y = 0)
+  // ring about (0, 0); its boundaries are "cavity", "far", "x0" (x = 0; not of a whole ring) and "y0" (y = 0; of a quarter);
+  // half a ring lies at x >= 0
   double radius = 1.0, outer = 10.0;  ///< [m]
   int ring_columns = 16;              ///< elements around
   int ring_rows = 16;                 ///< elements outwards

@@ -164,7 +164,7 @@ std::vector<std::string> owner_lines(const Scene& scene, const StagePlan& plan) 
         if (!holder.axes[axis]) continue;
         const std::size_t owner = plan.owners.at(2 * node + axis);
         const bool moved = plan.holders[owner].move.x || plan.holders[owner].move.y || plan.holders[owner].move.is_affine();
-        if (owner == k || !moved) continue;
+        if (!moved || plan.holders[owner].name == holder.name) continue;
         Shared& entry = shared[{k, owner}];
         if (std::find(entry.nodes.begin(), entry.nodes.end(), node) == entry.nodes.end()) entry.nodes.push_back(node);
         const char name = axis == 0 ? 'x' : 'y';
