@@ -92,6 +92,9 @@ void check_names(const GridOptions& o) {
   check_names(o.left, ny, "left");
   check_names(o.right, ny, "right");
   if (!o.layers.empty()) check_names(o.layers, ny, "layers");
+  if (o.regions.empty()) return;
+  require_count(o.regions.size(), ny, "regions", "rows");
+  for (const std::vector<std::string>& row : o.regions) check_names(row, nx, "regions");
 }
 
 QuadMesh quads_of(const Lines& x, const Lines& y) {
@@ -107,6 +110,27 @@ QuadMesh quads_of(const Lines& x, const Lines& y) {
       mesh.quads.push_back({first, first + 1, first + nx + 2, first + nx + 1});
     }
   return mesh;
+}
+
+void name_regions(Mesh& mesh, const GridOptions& o, const Lines& x, const Lines& y) {
+  if (o.layers.empty() && o.regions.empty()) return;
+  std::vector<std::string> names = o.layers;
+  std::vector<int> name_of;
+  if (!o.regions.empty()) names.clear();
+  for (const std::vector<std::string>& row : o.regions) {
+    for (std::size_t i = 0; i + 1 < o.x.breaks.size(); ++i) names.push_back(row.size() == 1 ? row.front() : row[i]);
+  }
+  const int intervals = static_cast<int>(o.x.breaks.size()) - 1;
+  const auto rows = static_cast<int>(o.regions.size());
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    const int row = y.interval[e / x.elements()];
+    if (rows > 0) {
+      name_of.push_back((rows == 1 ? 0 : row) * intervals + x.interval[e % x.elements()]);
+    } else {
+      name_of.push_back(names.size() == 1 ? 0 : row);
+    }
+  }
+  set_layers(mesh, names, name_of);
 }
 
 }  // namespace
@@ -155,10 +179,7 @@ Mesh make_grid(const GridOptions& o) {
   });
   mesh.points = {
       {"base_left", 0}, {"base_right", nx}, {"top_left", ny * (nx + 1)}, {"top_right", (ny + 1) * (nx + 1) - 1}};
-  if (o.layers.empty()) return mesh;
-  std::vector<int> layer;
-  for (int e = 0; e < mesh.n_elements(); ++e) layer.push_back(o.layers.size() == 1 ? 0 : y.interval[e / nx]);
-  set_layers(mesh, o.layers, layer);
+  name_regions(mesh, o, x, y);
   return mesh;
 }
 

@@ -24,6 +24,9 @@ struct GridOptions {
   std::vector<std::string> base = {"base"}, top = {"top"};      ///< of the boundaries, by interval of x
   std::vector<std::string> left = {"left"}, right = {"right"};  ///< by interval of y
   std::vector<std::string> layers = {};                         ///< of the regions, by interval of y; empty: no regions
+  /// Names of regions where they change along x, too: a row for each interval of y, upwards, with a name for each
+  /// interval of x. Empty: `layers` counts.
+  std::vector<std::vector<std::string>> regions = {};
 };
 
 /// The corners of `elements` elements from a to b, both included, of which each is `ratio` times as long as the one

@@ -7,6 +7,31 @@
 
 namespace voussoir::host {
 
+namespace {
+
+/// Each region with grains must draw its packings by packing.seed.
+void expect_draws_of_regions(const Case& input) {
+  bool grains = false;
+  for (std::size_t k = 0; k < input.scene.regions.size(); ++k) {
+    const RegionCase& region = input.scene.regions[k];
+    if (region.elastic) continue;
+    grains = true;
+    const PackingCase& packing = region.packing;
+    const char* fault = !packing.files.empty()                     ? "names its packings"
+                        : !packing.seeds.empty()                   ? "names its seeds"
+                        : packing.seed != input.packing.seed       ? "has a seed of its own"
+                                                                   : nullptr;
+    if (fault == nullptr) continue;
+    const std::string key = fmt::format("region[{}]", k);
+    throw io::InputError(place_of(input, key), key,
+                         fmt::format("{}: the members of an ensemble draw by packing.seed", fault));
+  }
+  if (!grains)
+    throw io::InputError(place_of(input, "region"), "region", "has no grains: all members would be the same");
+}
+
+}  // namespace
+
 std::int64_t seed_of(const Case& input, std::size_t member) {
   return input.packing.seed + static_cast<std::int64_t>(member * count_of_packings(input.packing));
 }
@@ -23,11 +48,12 @@ void expect_a_draw(const Case& input) {
   };
   if (!runs_on_a_mesh(input.kind)) {
     refuse("kind", fmt::format("is {}: an ensemble needs a kind with a mesh, which draws its packings by packing.seed: "
-                               "biaxial_bvp, column or tunnel",
+                               "biaxial_bvp, column, tunnel or scene",
                                to_string(input.kind)));
   }
   if (input.material != MaterialKind::grains)
     refuse("material", fmt::format("is {}: without grains all members would be the same", to_string(input.material)));
+  if (input.kind == CaseKind::scene) return expect_draws_of_regions(input);
   if (!input.packing.files.empty())
     refuse("packing.file", "names the packings: all members of an ensemble would be the same");
   if (!input.packing.seeds.empty()) {

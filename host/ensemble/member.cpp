@@ -13,6 +13,7 @@
 
 #include "host/ensemble/trough_fit.hpp"
 #include "host/kinds/tunnel_scene.hpp"
+#include "host/scene/scene_of.hpp"
 #include "io/increment_file.hpp"
 
 namespace voussoir::host {
@@ -28,10 +29,11 @@ const std::vector<std::int64_t>* boundary(const io::MeshData& mesh, const std::s
   return found == mesh.boundaries.end() ? nullptr : &found->second;
 }
 
-/// The nodes of the surface from the axis outwards; none where they are too few for a curve.
+/// The nodes of the surface from the axis x = 0 outwards; none where they are too few for a curve.
 std::vector<std::size_t> surface_nodes(const io::MeshData& mesh) {
   std::vector<std::size_t> nodes;
   if (const auto* top = boundary(mesh, "top")) nodes.assign(top->begin(), top->end());
+  std::erase_if(nodes, [&](std::size_t node) { return mesh.coordinates[2 * node] < 0; });
   std::sort(nodes.begin(), nodes.end(),
             [&](std::size_t a, std::size_t b) { return mesh.coordinates[2 * a] < mesh.coordinates[2 * b]; });
   nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -118,6 +120,10 @@ bool is_at_end(const Case& input, const std::vector<io::IncrementInfo>& incremen
       return last.stage_index == static_cast<int>(gravity_targets(input.ground, input.gravity).size());
     case CaseKind::biaxial_bvp:
       return last.stage_index == input.biaxial_bvp.increments();
+    case CaseKind::scene: {
+      const StagePlan plan = planned_scene(input).plans.back();
+      return last.stage == plan.input.name && last.stage_index == static_cast<int>(plan.targets.size());
+    }
     default:
       return false;
   }

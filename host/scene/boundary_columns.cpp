@@ -102,6 +102,20 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
   to["tensile_nodes"] = {static_cast<double>(pulled), "-"};
 }
 
+std::vector<std::string> column_names(const WatchedBoundaries& boundaries, const fem::Mesh& mesh) {
+  std::vector<std::string> names;
+  for (const std::string& name : boundaries.held) {
+    for (const char* axis : axis_names) {
+      names.push_back(fmt::format("reaction_{}_{}", name, axis));
+      names.push_back(fmt::format("displacement_{}_{}", name, axis));
+      if (!mesh.edge_set(name).empty()) names.push_back(fmt::format("traction_{}_{}", name, axis));
+    }
+    if (boundaries.with_area.contains(name)) names.push_back("area_" + name);
+  }
+  names.emplace_back("tensile_nodes");
+  return names;
+}
+
 double lost_area(const Ground& ground, const std::string& boundary) {
   const std::vector<fem::Edge>& chain = ground.mesh.edge_set(boundary);
   const Eigen::VectorXd displacement = ground.total_displacement();

@@ -30,6 +30,9 @@ struct WatchedBoundaries {
 void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& plan, const Ground& ground,
                           const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates, io::Quantities& to);
 
+/// The names of these columns.
+[[nodiscard]] std::vector<std::string> column_names(const WatchedBoundaries& boundaries, const fem::Mesh& mesh);
+
 /// The area that an opening, closed or on the line x = 0, has lost, over its first area [-].
 [[nodiscard]] double lost_area(const Ground& ground, const std::string& boundary);
 

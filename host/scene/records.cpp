@@ -134,6 +134,22 @@ void add_record_columns(const std::vector<PlacedRecord>& records, const Ground& 
   }
 }
 
+std::vector<std::string> column_names(const std::vector<PlacedRecord>& records) {
+  std::vector<std::string> names;
+  for (const PlacedRecord& record : records) {
+    const std::string& name = record.input.name;
+    if (record.input.point) {
+      for (const char* column : {"displacement_{}_x", "displacement_{}_y", "stress_{}_xx", "stress_{}_yy",
+                                 "stress_{}_xy"})
+        names.push_back(fmt::format(fmt::runtime(column), name));
+    }
+    if (record.input.region.empty()) continue;
+    for (const char* column : {"p", "q", "q_over_p", "volumetric_strain", "void_ratio"})
+      names.push_back(fmt::format("{}_{}", column, name));
+  }
+  return names;
+}
+
 std::vector<io::TableColumn> line_table(const PlacedRecord& line, const fem::Mesh& mesh,
                                         const std::filesystem::path& folder) {
   std::vector<io::TableColumn> table{{"increment", "-", {}},

@@ -32,6 +32,9 @@ struct PlacedRecord {
 /// only.
 void add_record_columns(const std::vector<PlacedRecord>& records, const Ground& ground, io::Quantities& to);
 
+/// The names of these columns.
+[[nodiscard]] std::vector<std::string> column_names(const std::vector<PlacedRecord>& records);
+
 /// Table `line_NAME`: a row for each increment's file and each place of the line, gathered from the files of the run in
 /// `folder`. A field that a file lacks is NaN.
 [[nodiscard]] std::vector<io::TableColumn> line_table(const PlacedRecord& line, const fem::Mesh& mesh,

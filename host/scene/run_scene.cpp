@@ -22,7 +22,7 @@ namespace {
 
 io::MeshData data_of(const PlannedScene& planned) {
   const Scene& scene = planned.scene;
-  io::MeshData data = mesh_data(scene.mesh);
+  io::MeshData data = mesh_data(scene.mesh, BoundaryNames::of_mesh);
   const Eigen::RowVectorXd y = scene.mesh.coordinates.row(1);
   data.geometry = {{"surface_y", y.maxCoeff()}, {"surcharge", scene.pressure}};
   if (scene.input.regions.size() == 1) data.geometry["unit_weight"] = scene.input.regions.front().unit_weight;

@@ -201,13 +201,16 @@ void leave_out_dug(const Scene& scene, StagePlan& plan, const std::vector<char>&
   }
 }
 
-/// The largest vertical stress of the weights at load factor 1 [Pa].
+}  // namespace
+
 double weight_stress(const Scene& scene) {
   const Eigen::RowVectorXd y = scene.mesh.coordinates.row(1);
   double heaviest = 0;
   for (const RegionCase& region : scene.input.regions) heaviest = std::max(heaviest, region.unit_weight);
   return heaviest * (y.maxCoeff() - y.minCoeff());
 }
+
+namespace {
 
 std::vector<double> targets_of(const Scene& scene, const StagePlan& plan) {
   std::vector<double> targets;
