@@ -6,7 +6,7 @@ import time
 from program import PROGRAM, ROOT, fresh
 from tutorial_pages import Reader, follow
 
-PAGES = ("first_tunnel", "one_rve", "own_soil")
+PAGES = ("first_tunnel", "one_rve", "own_soil", "own_problem")
 
 
 def checkout(folder):
