@@ -26,24 +26,23 @@ def _sides(connectivity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def interfaces(result: Result, there: np.ndarray | None = None) -> np.ndarray:
     """Sides between two regions of the elements that are there, as their three nodes (side, 3)."""
+    sides = interfaces_with_elements(result)
+    if there is not None:
+        sides = sides[there[sides[:, 3]] & there[sides[:, 4]]]
+    return sides[:, :3]
+
+
+def interfaces_with_elements(result: Result) -> np.ndarray:
+    """Sides between two regions: three nodes and the two elements (side, 5)."""
     if result.regions is None:
-        return np.zeros((0, 3), dtype=int)
+        return np.zeros((0, 5), dtype=int)
     nodes, element = remembered(result, "sides", lambda: _sides(result.connectivity))
-    kept = np.ones(len(nodes), dtype=bool) if there is None else there[element]
-    nodes, region = nodes[kept], result.regions[element[kept]]
     # A midside node belongs to one side of one or two elements.
     order = np.argsort(nodes[:, 1], kind="stable")
-    nodes, region = nodes[order], region[order]
-    between = (nodes[1:, 1] == nodes[:-1, 1]) & (region[1:] != region[:-1])
-    return nodes[1:][between]
-
-
-def outer_sides(result: Result, there: np.ndarray | None = None) -> np.ndarray:
-    """Sides of only one element that is there, as their three nodes (side, 3)."""
-    nodes, element = remembered(result, "sides", lambda: _sides(result.connectivity))
-    nodes = nodes if there is None else nodes[there[element]]
-    _, first, count = np.unique(nodes[:, 1], return_index=True, return_counts=True)
-    return nodes[first[count == 1]]
+    nodes, element = nodes[order], element[order]
+    region = result.regions[element]
+    between = np.flatnonzero((nodes[1:, 1] == nodes[:-1, 1]) & (region[1:] != region[:-1]))
+    return np.column_stack([nodes[between], element[between], element[between + 1]])
 
 
 def all_sides(result: Result) -> np.ndarray:
