@@ -28,6 +28,7 @@ from . import (
     scene_ground,
     scene_lines,
     scene_records,
+    scene_sweep,
     settlements,
     specimen,
     strength_figures,
@@ -106,6 +107,7 @@ SWEEP: Figures = {
     "rve_size_variation.png": rve_size_figures.draw_variation,
     "rve_size_curves.png": rve_size_figures.draw_curves,
     "rve_size.md": rve_size_figures.write_table,
+    "boundary_curves.png": scene_sweep.draw,
     **OF_SWEEP,
 }
 

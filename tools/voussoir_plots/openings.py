@@ -25,7 +25,7 @@ def enclosed(points: np.ndarray, centre: np.ndarray) -> float:
 
 
 def pressure(result: Result, motion: Motion, increments: Sequence[Increment]) -> np.ndarray:
-    """The pressure of the support on the ground at each increment [Pa]; zero where nothing holds the boundary."""
+    """The pressure of the support on the ground at each increment [Pa]."""
     if motion.name not in result.boundaries:
         raise Missing(f"run.h5 has no boundary {motion.name}")
     nodes = result.boundaries[motion.name]
@@ -36,11 +36,6 @@ def pressure(result: Result, motion: Motion, increments: Sequence[Increment]) ->
     found = []
     for increment in increments:
         x = result.coordinates + increment.field("node/displacement")
-        work = np.sum(increment.field("node/reaction")[nodes] * (x[nodes] - centre)) if _held(increment, motion) else 0
+        work = np.sum(increment.field("node/reaction")[nodes] * (x[nodes] - centre))
         found.append(work / (2 * enclosed(x[chain], centre)))
     return np.array(found)
-
-
-def _held(increment: Increment, motion: Motion) -> bool:
-    """True where the boundary itself is held: else its nodes on a line of symmetry alone have reactions."""
-    return any(increment.attributes.get(f"reaction_{motion.name}_{axis}", 0) != 0 for axis in scene.AXES)

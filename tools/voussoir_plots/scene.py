@@ -4,7 +4,7 @@ A scene is a run of the kind `scene`: stages one after another, in which boundar
 released, and regions are dug out.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
@@ -93,37 +93,55 @@ class Motion:
 
 def motions(result: Result) -> list[Motion]:
     """The boundaries that any stage moves or releases, in the order of the case. At least one, or Missing is raised."""
-    found = remembered(result, "motions", lambda: list(_motions(result)))
+
+    def values(name: str) -> np.ndarray | None:
+        return column(result.increments, name) if has(result, name) else None
+
+    return remembered(result, "motions", lambda: motions_of(result.case, values))
+
+
+def motions_of(case: dict[str, Any], values: Callable[[str], np.ndarray | None]) -> list[Motion]:
+    """The same from a case and a function that gives a column over the increments, or None."""
+    known: dict[str, list[dict[str, Any]]] = {}
+    for stage in case.get("stage", []):
+        for change in [*stage.get("move", []), *stage.get("release", [])]:
+            for name in names_in(change):
+                known.setdefault(name, []).append(change)
+    found = [
+        _motion(name, changes, values) for name, changes in known.items() if values(f"displacement_{name}_y") is not None
+    ]
     if not found:
         raise Missing("no boundary of the scene is moved or released")
     return found
 
 
-def _motions(result: Result) -> Iterator[Motion]:
-    known: dict[str, list[dict[str, Any]]] = {}
-    for stage in result.case.get("stage", []):
-        for change in [*stage.get("move", []), *stage.get("release", [])]:
-            if _written(change, "boundary"):
-                names = change["boundary"] if isinstance(change["boundary"], list) else [change["boundary"]]
-                for name in names:
-                    known.setdefault(str(name), []).append(change)
-    for name, changes in known.items():
-        if not has(result, f"displacement_{name}_y"):
-            continue
-        areas = [change for change in changes if _written(change, "area")]
-        ends = {axis: column(result.increments, f"displacement_{name}_{axis}") for axis in AXES}
-        named = [axis for axis in AXES if any(_written(change, axis) for change in changes)]
-        axis = max(named or AXES, key=lambda a: np.nanmax(np.abs(ends[a]), initial=0))
-        furthest = ends[axis][np.nanargmax(np.abs(ends[axis]))] if np.isfinite(ends[axis]).any() else 0.0
-        with_area = bool(areas) and has(result, f"area_{name}")
-        yield Motion(name, axis, with_area, areas[0].get("about") if areas else None, bool(furthest >= 0))
+def first_sign(reaction: np.ndarray) -> float:
+    """The sign of the first values that are not nearly zero; 1 where there are none."""
+    reaction = np.nan_to_num(reaction)
+    there = np.flatnonzero(np.abs(reaction) > 1e-6 * np.abs(reaction).max(initial=0))
+    return float(np.sign(reaction[there[0]])) if len(there) else 1.0
+
+
+def names_in(table: dict[str, Any]) -> list[str]:
+    """The boundaries that a table of the case names: one, several or none."""
+    written = table.get("boundary", [])
+    return [str(name) for name in written] if isinstance(written, list) else [str(written)] if written else []
+
+
+def _motion(name: str, changes: list[dict[str, Any]], values: Callable[[str], np.ndarray | None]) -> Motion:
+    areas = [change for change in changes if _written(change, "area")]
+    moved = {axis: np.nan_to_num(values(f"displacement_{name}_{axis}")) for axis in AXES}
+    named = [axis for axis in AXES if any(_written(change, axis) for change in changes)]
+    axis = max(named or AXES, key=lambda a: np.abs(moved[a]).max(initial=0))
+    furthest = moved[axis][np.argmax(np.abs(moved[axis]))] if len(moved[axis]) else 0.0
+    with_area = bool(areas) and values(f"area_{name}") is not None
+    return Motion(name, axis, with_area, areas[0].get("about") if areas else None, bool(furthest >= 0))
 
 
 def released_share(stage: Stage, boundary: str) -> float:
     """The share of the forces on a boundary that a stage takes off [-]; 0 where it does not release it."""
     for release in stage.case.get("release", []):
-        names = release.get("boundary", [])
-        if boundary in (names if isinstance(names, list) else [names]):
+        if boundary in names_in(release):
             return quantity(release.get("share", 1.0))
     return 0.0
 

@@ -33,9 +33,7 @@ class Curve:
 
 def push(result: Result, motion: Motion) -> float:
     """1 where the support at first pushes the ground to the right or upwards, -1 where it pushes the other way."""
-    reaction = np.nan_to_num(scene.column(result.increments, f"reaction_{motion.name}_{motion.axis}"))
-    pushing = np.flatnonzero(np.abs(reaction) > 1e-6 * np.abs(reaction).max())
-    return float(np.sign(reaction[pushing[0]])) if len(pushing) else 1.0
+    return scene.first_sign(scene.column(result.increments, f"reaction_{motion.name}_{motion.axis}"))
 
 
 def reaction_curve(result: Result, motion: Motion, kind: str = "reaction") -> Curve:
@@ -57,8 +55,9 @@ def reaction_curve(result: Result, motion: Motion, kind: str = "reaction") -> Cu
 
 
 def held(stage: Stage, motion: Motion, values: np.ndarray) -> np.ndarray:
-    """Values of a boundary that is held; NaN in a stage that releases it, where it has no reaction."""
-    return np.full_like(values, np.nan) if scene.released_share(stage, motion.name) else values
+    """Values of a boundary where it is held; NaN where nothing holds it, so that it has no reaction."""
+    reactions = [scene.column(stage.increments, f"reaction_{motion.name}_{axis}") for axis in scene.AXES]
+    return np.where(np.all(np.array(reactions) == 0, axis=0), np.nan, values)
 
 
 def release_curve(result: Result, motion: Motion) -> Curve:

@@ -64,8 +64,7 @@ def _supports(case: dict[str, Any], name: str) -> str:
     """Along which axes a boundary is held from the start: "x", "y", "x and y" or nothing."""
     held = set()
     for support in case.get("support", []):
-        names = support.get("boundary", [])
-        if name in (names if isinstance(names, list) else [names]):
+        if name in scene.names_in(support):
             held |= set(str(support.get("fix", "")))
     return " and ".join(sorted(held & set(scene.AXES)))
 

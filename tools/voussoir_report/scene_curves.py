@@ -50,7 +50,8 @@ def _of_boundary(result: Result, motion: Motion, frames: dict[int, int]) -> list
 
 
 def plain(label: str) -> str:
-    return label.replace("  [", " [").replace("$", "")
+    """A label without the figure's signs, and short enough for a chart's height."""
+    return label.replace("  [", " [").replace("$", "").replace(" on the ground,", "")
 
 
 def _over_stages(result: Result, title: str, label: str, columns: dict[str, tuple[str, float]]) -> Chart:
