@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -66,10 +65,10 @@ struct Draft {
   std::size_t clockwise = 0, first_clockwise = 0, four_node = 0;
   std::map<CornerPair, std::string> curve_of;  ///< names of the edges on physical curves
 
-  [[nodiscard]] std::optional<int> corner(std::size_t tag) const {
+  /// The corner with this tag, or none (-1).
+  [[nodiscard]] int corner(std::size_t tag) const {
     const auto place = std::lower_bound(corner_tags.begin(), corner_tags.end(), tag);
-    if (place == corner_tags.end() || *place != tag) return std::nullopt;
-    return static_cast<int>(place - corner_tags.begin());
+    return place == corner_tags.end() || *place != tag ? -1 : static_cast<int>(place - corner_tags.begin());
   }
 };
 
@@ -112,7 +111,7 @@ Coordinates positions_of(const std::vector<std::size_t>& tags, const FileNodes& 
 void add_element(const GmshBlock& block, std::size_t e, const std::size_t* of_element, const FileNodes& nodes,
                  Draft& draft) {
   Quad quad{};
-  for (int k = 0; k < 4; ++k) quad[k] = *draft.corner(of_element[k]);
+  for (int k = 0; k < 4; ++k) quad[k] = draft.corner(of_element[k]);
   if (block.nodes_each == 4) ++draft.four_node;
   for (int k = 0; k < 4 && block.nodes_each == 8; ++k) {
     const Point a = nodes.at(of_element[k]);
@@ -175,17 +174,16 @@ void add_curves(const GmshFile& file, Draft& draft) {
   std::set<std::string> lost_names;
   for_elements(file, 1, [&](const GmshBlock& block, std::size_t, const std::size_t* of_element) {
     if (block.groups.empty()) return;
-    const std::optional<int> a = draft.corner(of_element[0]);
-    const std::optional<int> b = draft.corner(of_element[1]);
-    if (!a || !b || edges.count(corner_pair(*a, *b)) == 0) {
+    const CornerPair edge = corner_pair(draft.corner(of_element[0]), draft.corner(of_element[1]));
+    if (edges.count(edge) == 0) {
       ++lost;
       lost_names.insert(block.groups.begin(), block.groups.end());
       return;
     }
     for (const std::string& name : block.groups) {
-      const auto [entry, is_new] = draft.curve_of.try_emplace(corner_pair(*a, *b), name);
+      const auto [entry, is_new] = draft.curve_of.try_emplace(edge, name);
       if (entry->second != name)
-        refuse(edge_text(draft, entry->first) + " is on the boundaries " + entry->second + " and " + name);
+        refuse(edge_text(draft, edge) + " is on the boundaries " + entry->second + " and " + name);
     }
   });
   if (lost == 0) return;
@@ -222,17 +220,17 @@ void add_points(const GmshFile& file, const Draft& draft, MeshFile& result) {
   });
   for (const auto& [name, tags] : nodes) {
     int k = 0;
-    std::string names;
+    std::vector<std::string> places;
     for (const std::size_t tag : tags) {
-      const std::optional<int> corner = draft.corner(tag);
-      if (!corner) refuse("the point " + name + " is a corner of no element");
+      const int corner = draft.corner(tag);
+      if (corner < 0) refuse("the point " + name + " is a corner of no element");
       const std::string own = tags.size() == 1 ? name : name + "_" + std::to_string(++k);
-      result.mesh.points[own] = *corner;
-      names += (names.empty() ? "" : ", ") + own + " at " + place_text(draft.quads.corners.col(*corner));
+      result.mesh.points[own] = corner;
+      places.push_back(own + " at " + place_text(draft.quads.corners.col(corner)));
     }
     if (tags.size() > 1)
       result.remarks.push_back("the physical point " + name + " has " + std::to_string(tags.size()) +
-                               " points: " + names);
+                               " points: " + joined(places));
   }
 }
 
@@ -290,6 +288,7 @@ GmshFile read_file(const std::filesystem::path& path) {
 
 MeshFile read_mesh_file(const std::filesystem::path& path, double unit) {
   check_is_mesh(path);
+  check_nodes_of_version_2(path);
   const GmshFile file = read_file(path);
   check_has_end(path);
   return mesh_of(file, unit);

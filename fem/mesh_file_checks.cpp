@@ -9,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <unordered_set>
 
 #include "fem/gauss_points.hpp"
 #include "fem/mesh_grid.hpp"
@@ -104,6 +105,31 @@ void check_is_mesh(const std::filesystem::path& path) {
   std::error_code none;
   if (std::filesystem::exists(path.string() + ".opt", none))
     refuse(name + ".opt lies beside the mesh, and Gmsh would run it as a script; move it away");
+}
+
+void check_nodes_of_version_2(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  std::getline(file, line);  // version, 0 for text, bytes of a number
+  std::istringstream format(line);
+  double version = 0;
+  int is_binary = 1;
+  if (!(format >> version >> is_binary) || version < 2 || version >= 3 || is_binary != 0) return;
+  std::unordered_set<std::size_t> nodes;
+  std::string section;
+  while (std::getline(file, line)) {
+    std::istringstream numbers(line);
+    if (line.rfind('$', 0) == 0) numbers >> section;
+    if (std::size_t tag = 0; section == "$Nodes" && numbers >> tag) nodes.insert(tag);
+    std::size_t element = 0, type = 0, n_tags = 0, number = 0;
+    if (section != "$Elements" || !(numbers >> element >> type >> n_tags)) continue;
+    for (std::size_t k = 0; k < n_tags; ++k) numbers >> number;
+    while (numbers >> number)
+      if (nodes.count(number) == 0)
+        refuse("element " + std::to_string(element) + " has the node " + std::to_string(number) +
+               ", which the file lacks");
+  }
 }
 
 void check_has_end(const std::filesystem::path& path) {

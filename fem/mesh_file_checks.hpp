@@ -20,6 +20,9 @@ namespace voussoir::fem {
 /// with it (FILE.opt).
 void check_is_mesh(const std::filesystem::path& path);
 
+/// A text file of version 2 has all nodes that its elements name: Gmsh 4.8 crashes where it has not.
+void check_nodes_of_version_2(const std::filesystem::path& path);
+
 /// The file's last section is complete. Gmsh takes a file that is cut off within its last number as a whole one.
 void check_has_end(const std::filesystem::path& path);
 

@@ -24,11 +24,11 @@ void check_interfaces(const HalfTunnelOptions& o) {
   const Circle opening = opening_of(o);
   double below = 0;
   for (const double y : o.interfaces) {
-    require(std::isfinite(y) && y > below, "interfaces must ascend and lie above the base");
-    require(y < o.height, "interfaces must lie below the top");
+    require(std::isfinite(y) && y > below, "the interfaces must ascend and lie above the base");
+    require(y < o.height, "the interfaces must lie below the top");
     for (const double end : {opening.centre.y() - opening.radius, opening.centre.y() + opening.radius})
       require(std::abs(y - end) >= 0.5 * o.size_near,
-              "an interface must be half of size_near away from crown and invert");
+              "an interface must be half the element size at the opening away from crown and invert");
     below = y;
   }
 }

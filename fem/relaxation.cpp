@@ -39,30 +39,42 @@ void tally(NewtonReport& whole, NewtonReport&& part) {
   whole = std::move(part);
 }
 
-/// The factor with which a linear response would have left no work. `driving` and `left` are the work along the last
-/// substep of R at the substep's start and of R at its end [J/m].
-double next_factor(double factor, double driving, double left, const RelaxationOptions& options) {
-  const double spent = driving > 0 ? 1 - left / driving : 0;
-  const double wanted = spent > 0 ? factor / spent : options.largest_factor;
-  return std::clamp(std::min(wanted, options.factor_growth * factor), options.least_factor, options.largest_factor);
-}
-
 }  // namespace
+
+void SubstepFactor::learn(double driving, double left, double residual) {
+  if (needs_new_matrix()) {  // the last substep has made it
+    if (in_vain_ >= options_.most_in_vain)
+      options_.largest_factor = std::max(options_.least_cap, 0.5 * options_.largest_factor);
+    value_ = std::min(1.0, options_.largest_factor);
+    overshoots_ = in_vain_ = 0;
+    return;
+  }
+  ++in_vain_;
+  if (residual < 0.9 * least_residual_) {
+    least_residual_ = residual;
+    in_vain_ = 0;
+  }
+  const double spent = driving > 0 ? 1 - left / driving : 0;
+  const double wanted = spent > 0 ? value_ / spent : options_.largest_factor;
+  overshoots_ = wanted < options_.least_factor ? overshoots_ + 1 : 0;
+  value_ = std::clamp(std::min(wanted, options_.factor_growth * value_), options_.least_factor,
+                      options_.largest_factor);
+}
 
 NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path, double to, const NewtonReport& attempt,
                    Increment& increment, const RelaxationOptions& options) {
   const MeshState before = state;
   const std::shared_ptr<const HeldState> material_before = solver.material().hold();
   NewtonReport report = attempt;
-  double factor = state.relaxation_factor;
+  SubstepFactor factor(state.relaxation_factor, options);
   int settling = 0;
   solver.commit(state, increment);
   for (int substep = 0; substep < options.max_substeps; ++substep) {
     IncrementLoad load{path.external_force(to), path.prescribed_increment(to, to), 0, path.reference_force};
-    load.first_step = factor * solver.linear_solver().solve(increment.residual);
+    load.first_step = factor.value() * solver.linear_solver().solve(increment.residual);
     load.moved = increment.displacement.norm();
     load.max_iterations = 1;
-    load.keep_matrix = true;
+    load.keep_matrix = !factor.needs_new_matrix();
     load.settle = settling < options.max_settling;
     Increment part;
     NewtonReport answer = solver.solve_increment(state, load, part);
@@ -71,7 +83,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
       const double driving = increment.residual.dot(part.displacement);
       const double left = part.residual.dot(part.displacement);
       answer.viscous_work = 0.5 * (driving + left);
-      factor = next_factor(factor, driving, left, options);
+      factor.learn(driving, left, answer.residual);
     }
     const NewtonStatus status = answer.status;
     if (answer.residual <= answer.residual_bound) ++settling;
@@ -81,7 +93,7 @@ NewtonReport relax(NewtonSolver& solver, MeshState& state, const LoadPath& path,
     append(increment, std::move(part));
     if (status != NewtonStatus::converged) continue;
     state.last_increment = increment.displacement;
-    state.relaxation_factor = factor;
+    state.relaxation_factor = factor.value();
     return report;
   }
   state = before;

@@ -5,6 +5,7 @@
 /// substep is committed, so that grains which have collapsed stay collapsed. The state at the end must meet the same
 /// criterion as that of any increment, without the viscous force.
 
+#include <limits>
 #include <vector>
 
 #include "fem/load_path.hpp"
@@ -24,7 +25,39 @@ struct RelaxationOptions {
   /// factor with which the relaxation before it ended, or 1 at the start of a stage [-].
   double least_factor = 0.25;
   double largest_factor = 3;   ///< the matrix of eq. (4) is too stiff by no more than this [-]
+  /// Substeps in turn that overshoot even with the least factor, after which the matrix is made anew: grains that have
+  /// touched again since the last one are stiffer than it says, so that the mesh would swing about them without end.
+  int most_overshoots = 3;
+  /// Substeps without a residual of 0.9 of the least so far, after which the matrix is made anew, too, and the largest
+  /// factor is halved: a few stiff points overshoot with the factor that suits all others, and the mesh swings.
+  int most_in_vain = 20;
+  double least_cap = 0.5;  ///< the largest factor is not halved below this [-]
   double factor_growth = 1.5;  ///< largest growth of the factor per substep: softening ground would let it grow on [-]
+};
+
+/// The factor on K^-1 R of the next substep of a relaxation, and whether K serves for it.
+class SubstepFactor {
+ public:
+  SubstepFactor(double first, const RelaxationOptions& options) : value_(first), options_(options) {}
+
+  [[nodiscard]] double value() const { return value_; }
+  /// Whether the next substep has to make a new matrix: the last ones have overshot although they had the
+  /// least factor, or have brought the residual no further.
+  [[nodiscard]] bool needs_new_matrix() const {
+    return overshoots_ >= options_.most_overshoots || in_vain_ >= options_.most_in_vain;
+  }
+
+  /// Takes the factor with which a linear response to the last substep would have left no work; behind a new matrix it
+  /// is 1, or the largest one where that is less. `driving` and `left` are the work along the substep of R at its start
+  /// and of R at its end [J/m], `residual` is |R| at its end [N/m].
+  void learn(double driving, double left, double residual);
+
+ private:
+  double value_;
+  RelaxationOptions options_;
+  int overshoots_ = 0;  ///< substeps in turn that wanted less than the least factor
+  int in_vain_ = 0;     ///< substeps since the residual has last fallen below the least one
+  double least_residual_ = std::numeric_limits<double>::infinity();  ///< [N/m]
 };
 
 /// Relaxes an increment to the parameter `to` that Newton's iterates could not bring to equilibrium. `attempt` is their

@@ -284,10 +284,6 @@ std::vector<std::string> Table::chosen(const Key& key, const std::vector<std::st
                                  });
 }
 
-InputError Table::error(std::string_view key, const std::string& sentence) const {
-  return {place(key), full_key(key), sentence};
-}
-
 CaseFile CaseFile::load(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
   return CaseFile(parse_case(path, overrides));
 }

@@ -72,6 +72,9 @@ struct TakeOverRule {
   std::vector<std::string_view> without = {};  ///< keys that are never taken over
 };
 
+/// The order that the entries of a list have to keep.
+enum class Order { ascending, not_falling };
+
 class CaseFile;
 struct CaseNode;   // a key of the file, its place, and the value that was read from it
 struct CaseState;  // the whole file
@@ -160,9 +163,19 @@ class Table {
 
   /// "sweep.toml:12", where the key stands; the table's own place where the file does not hold the key.
   [[nodiscard]] std::string place(std::string_view key) const;
+  /// A value that has been read, as the user wrote it, or its default: "20 cm"; for messages.
+  [[nodiscard]] std::string shown(std::string_view key) const;
+  /// An entry of an array that has been read: "entry 3 (20 cm)"; `index` counts from 0, the user from 1.
+  [[nodiscard]] std::string entry_shown(std::string_view key, std::size_t index) const;
+  /// Throws InputError, which names both entries, where an entry of an array is not larger (Order::ascending) or is
+  /// smaller (Order::not_falling) than the entry before it. `values` are what `quantities` has read.
+  void expect_order(std::string_view key, std::span<const double> values, Order order) const;
+
   /// An error at this key's place in the file, for checks that need more than one value; with an empty key one of the
-  /// table itself.
+  /// table itself. Where the user has not written the key, the sentence says so, with the default that holds.
   [[nodiscard]] InputError error(std::string_view key, const std::string& sentence) const;
+  /// The same at the place of an entry of an array, for a sentence that names the entry.
+  [[nodiscard]] InputError entry_error(std::string_view key, std::size_t index, const std::string& sentence) const;
 
  private:
   friend class CaseFile;
@@ -182,7 +195,8 @@ class CaseFile {
   /// TOML, or else taken as text, so that quotes may be left out: "mesh.size=0.5 m". A table in
   /// braces is joined with the table of the file.
   /// `extends = "other.toml"` (or an array of such names, relative to the file) takes over the keys of other files:
-  /// later ones go before earlier ones, the file's own keys before all; an array is taken over or replaced as a whole.
+  /// a key of a file that is named later overrides that of an earlier one, and the file's own keys override all; an
+  /// array is taken over or replaced as a whole.
   /// Throws InputError: no such file, bad TOML (with its line), bad override.
   [[nodiscard]] static CaseFile load(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
   /// A case file that is given as text; `name` stands for the file in messages.
@@ -192,6 +206,11 @@ class CaseFile {
 
   /// Throws InputError for the first key that the program has not read, with the nearest known name as a hint.
   void finish() const;
+
+  /// The same for a file whose reading has failed, so that not all keys have been read: a misspelt key is often why a
+  /// value is missing or wrong. `known` is a file of which all keys of this sort have been read; the entries of its
+  /// arrays of tables stand for all entries, and its keys whose names the user chooses stand for all names.
+  void finish_as(const CaseFile& known) const;
 
   /// The place of each key of a written or read table ("case.toml:12", "--set"), for checks that know only the values.
   [[nodiscard]] std::map<std::string, std::string> places() const;

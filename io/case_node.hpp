@@ -45,9 +45,10 @@ struct CaseState {
 
 /// The key `extends`, which is used up while the file is read.
 inline constexpr Key extends_key{"extends",
-                                 "Another file of the same sort, or an array of them, whose keys this file takes over: "
-                                 "later ones go before earlier ones, and "
-                                 "the keys of this file before all. An array is taken over or replaced as a whole."};
+                                 "Another file of the same sort, or an array of such files, whose keys this file takes "
+                                 "over. Where several of these files have one key, the value of the file that is named "
+                                 "last holds; a value that stands in this file overrides them all. An array is taken "
+                                 "over or replaced as a whole."};
 
 /// Reads the file over the files that it extends, and applies the overrides. Throws InputError.
 [[nodiscard]] std::shared_ptr<CaseState> parse_case(const std::filesystem::path& path,

@@ -10,7 +10,7 @@
 #include "io/case_file.hpp"
 #include "io/case_node.hpp"
 #include "io/hash.hpp"
-#include "io/nearest_name.hpp"
+#include "io/near_names.hpp"
 
 namespace voussoir::io {
 
@@ -45,14 +45,44 @@ std::string hint(const CaseNode& root, const CaseNode& parent, const CaseNode& u
   return name.empty() ? "" : fmt::format("; did you mean \"{}\"?", name);
 }
 
+[[noreturn]] void refuse(const CaseNode& root, const CaseNode& parent, const CaseNode& unknown) {
+  throw InputError(unknown.place, unknown.key, "unknown key" + hint(root, parent, unknown));
+}
+
 void refuse_unknown(const CaseNode& root, const CaseNode& node) {
   for (const auto& child : node.children) {
-    if (!child->read) {
-      throw InputError(child->place, child->key, "unknown key" + hint(root, node, *child));
-    }
+    if (!child->read) refuse(root, node, *child);
     if (child->kind == Kind::table || child->kind == Kind::array) {
       refuse_unknown(root, *child);
     }
+  }
+}
+
+/// What a file of all keys knows under this name: the key itself, any entry of an array, or the key whose name the user
+/// chooses; null where there is none.
+const CaseNode* known_under(const CaseNode& known, const std::string& name) {
+  const CaseNode* any = nullptr;
+  for (const auto& child : known.children) {
+    if (!child->read) continue;
+    if (child->name == name) return child.get();
+    if (!child->placeholder.empty() || child->name.front() == '[') any = child.get();
+  }
+  return any;
+}
+
+/// The same for a file that was not read to its end: `known` is the node of another file in which all keys were read.
+void refuse_unknown(const CaseNode& known_root, const CaseNode& known, const CaseNode& node) {
+  for (const auto& child : node.children) {
+    if (child->read && child->children.empty()) continue;
+    const CaseNode* twin = known_under(known, child->name);
+    if (twin == nullptr) {
+      if (!child->read) refuse(known_root, known, *child);
+      continue;
+    }
+    const bool is_one_for_many = child->kind == Kind::table && twin->kind == Kind::array && !twin->children.empty();
+    if (is_one_for_many) twin = twin->children.front().get();  // [grid] in place of [[grid]]
+    const bool holds_keys = !twin->info || twin->info->type == KeyType::table;
+    if (holds_keys && twin->kind == child->kind) refuse_unknown(known_root, *twin, *child);
   }
 }
 
@@ -115,6 +145,10 @@ void collect_meanings(const CaseNode& node, std::span<const std::string> without
 }  // namespace
 
 void CaseFile::finish() const { refuse_unknown(state_->root, state_->root); }
+
+void CaseFile::finish_as(const CaseFile& known) const {
+  refuse_unknown(known.state_->root, known.state_->root, state_->root);
+}
 
 std::string CaseFile::resolved() const {
   std::string out;

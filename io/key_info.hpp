@@ -41,6 +41,7 @@ struct KeyInfo {
   std::vector<std::string> choices = {};    ///< of a choice
   std::string pattern = {};                 ///< regular expression that a text matches whole; empty: any text
   std::string help = {};                    ///< the sentences that explain the key
+  std::string like = {};                    ///< a key that is the same elsewhere, in whose place a page names its table
   bool named_by_user = false;               ///< `key` ends in a placeholder, for which the user chooses the name
 
   [[nodiscard]] bool operator==(const KeyInfo& other) const = default;

@@ -192,7 +192,7 @@ std::string kinds_note(const ListedKey& listed, const std::vector<std::string>& 
 std::string rows_of(const std::string& table, const std::vector<std::string>& kinds, const KeyReference& reference) {
   std::string rows, named;  // keys whose names the user chooses come last
   for (const ListedKey& listed : reference.keys) {
-    if (parent_of(listed.info.key) != table) continue;
+    if (parent_of(listed.info.key) != table || !listed.info.like.empty()) continue;
     (listed.info.named_by_user ? named : rows) += fmt::format(
         "| {} | {} | {} | {}{} |\n", as_code(last_part(listed.info.key)), default_of(listed), values_of(listed.info),
         kinds_note(listed, kinds), with_links(listed.info.help));
@@ -224,6 +224,7 @@ std::string kinds_table(const KeyReference& reference) {
   for (std::size_t k = 0; k < reference.kinds.size(); ++k) out += ":-:|";
   out += "\n";
   for (const ListedKey& table : reference.tables) {
+    if (!table.info.like.empty()) continue;
     out += fmt::format("| `{}` |", heading_of(table.info));
     for (const std::string& kind : reference.kinds) {
       const bool used = std::find(table.kinds.begin(), table.kinds.end(), kind) != table.kinds.end();
@@ -234,25 +235,41 @@ std::string kinds_table(const KeyReference& reference) {
   return out + "\n";
 }
 
-std::string part_of(const KeyReference& reference) {
+/// The tables of the keys, under the heading of the file; `about` stands between them.
+std::string part_of(const KeyReference& reference, const std::string& about) {
+  std::string out = fmt::format("## Keys of {} files\n\n", reference.title) + about;
+  const std::string top = rows_of("", reference.kinds, reference);
+  if (!top.empty()) out += "### At the top of the file\n\nThese keys stand before the first table.\n\n" + top;
+  for (const ListedKey& table : reference.tables) {
+    if (table.info.like.empty()) out += section_of(table, reference);
+  }
+  return out;
+}
+
+/// What stands before the tables of a whole reference.
+std::string about(const KeyReference& reference) {
   const bool has_kinds = !reference.kinds.empty() && reference.title == "case";
-  std::string out = fmt::format("## Keys of {} files\n\n", reference.title);
-  if (!has_kinds) out += about_sweeps;
-  if (reference.kinds.size() > 1) out += kinds_table(reference);
-  out += "### At the top of the file\n\nThese keys stand before the first table.\n\n";
-  out += rows_of("", reference.kinds, reference);
-  for (const ListedKey& table : reference.tables) out += section_of(table, reference);
+  return (has_kinds ? "" : about_sweeps) + (reference.kinds.size() > 1 ? kinds_table(reference) : "");
+}
+
+std::string without_last_line(std::string out) {
+  while (out.ends_with("\n\n")) out.pop_back();
   return out;
 }
 
 }  // namespace
 
+std::string key_sections(const std::vector<KeyReference>& references) {
+  std::string out;
+  for (const KeyReference& reference : references) out += part_of(reference, "");
+  return without_last_line(out);
+}
+
 std::string key_page(const std::vector<KeyReference>& references) {
   std::string out;
   if (references.size() > 1) out += introduction + units_table() + how_values + how_editors;
-  for (const KeyReference& reference : references) out += part_of(reference);
-  while (out.ends_with("\n\n")) out.pop_back();
-  return out;
+  for (const KeyReference& reference : references) out += part_of(reference, about(reference));
+  return without_last_line(out);
 }
 
 }  // namespace voussoir::io

@@ -50,6 +50,50 @@ std::string last_part(const std::string& key) { return key.substr(begin_of_last(
 
 std::string as_parent(const KeyInfo& table) { return table.key + (table.list ? "[]" : ""); }
 
+namespace {
+
+/// Without "[]" and "[2]", and without brackets around a table's name.
+std::string without_brackets(const std::string& name) {
+  std::string plain;
+  bool inside = false;
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    const bool opens_entry = name[k] == '[' && !plain.empty();
+    inside = (inside || opens_entry) && name[k] != ']';
+    if (!inside && name[k] != '[' && name[k] != ']') plain += name[k];
+  }
+  return plain;
+}
+
+bool is_part_of(const std::string& key, const std::string& name) {
+  const std::string plain = without_brackets(key);
+  return plain == name || plain.starts_with(name + ".");
+}
+
+}  // namespace
+
+KeyReference part_named(const KeyReference& reference, const std::string& name) {
+  const std::string wanted = without_brackets(name);
+  KeyReference part{.title = reference.title, .kinds = reference.kinds, .tables = {}, .keys = {}};
+  for (const ListedKey& key : reference.keys) {
+    if (is_part_of(key.info.key, wanted)) part.keys.push_back(key);
+  }
+  for (const ListedKey& table : reference.tables) {
+    const bool has_keys = std::any_of(part.keys.begin(), part.keys.end(), [&](const ListedKey& key) {
+      return parent_of(key.info.key) == as_parent(table.info);
+    });
+    if (has_keys) part.tables.push_back(table);
+  }
+  return part;
+}
+
+std::vector<std::string> plain_names(const KeyReference& reference) {
+  std::vector<std::string> names;
+  for (const auto* list : {&reference.tables, &reference.keys}) {
+    for (const ListedKey& listed : *list) names.push_back(without_brackets(listed.info.key));
+  }
+  return names;
+}
+
 std::string key_table(const std::vector<KeyReference>& references) {
   std::string out = fmt::format("{},kinds\n", key_table_heading);
   for (const KeyReference& reference : references) {

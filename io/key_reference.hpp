@@ -33,12 +33,21 @@ struct KeyReference {
 /// The name of a table as the parent of its keys.
 [[nodiscard]] std::string as_parent(const KeyInfo& table);
 
+/// What of a reference belongs to `name`: a key, "soil.thickness", or a table with its keys, "soil", "[soil]",
+/// "soil.class" or "soil.class[]". No keys where it has nothing of this name.
+[[nodiscard]] KeyReference part_named(const KeyReference& reference, const std::string& name);
+
+/// The names of all keys and tables without the brackets of arrays, "soil.class.size_to".
+[[nodiscard]] std::vector<std::string> plain_names(const KeyReference& reference);
+
 /// Comma-separated values with one key a line: key,type,dimension,default,at_least,at_most,choices,help,kinds. In
 /// "at_least", "> 0" says that the key must be positive.
 [[nodiscard]] std::string key_table(const std::vector<KeyReference>& references);
 
 /// A page in Markdown, which is docs/reference/keys.md where all references are in it.
 [[nodiscard]] std::string key_page(const std::vector<KeyReference>& references);
+/// The same without the introduction and the tables of units and of kinds, for a part of a reference.
+[[nodiscard]] std::string key_sections(const std::vector<KeyReference>& references);
 
 /// A JSON schema (draft 2020-12) for files of this sort, with which editors complete and check them.
 [[nodiscard]] std::string key_schema(const KeyReference& reference);

@@ -18,6 +18,8 @@ struct MeshData {
   std::vector<std::int64_t> connectivity = {};                                     ///< (element, 8), counted from 0
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> boundaries = {};  ///< name, nodes in order along it
   std::map<std::string, double> geometry = {};  ///< further numbers: axis_depth, diameter [m], ...
+  std::vector<std::int64_t> regions = {};       ///< (element) index into region_names; empty: there is one region
+  std::vector<std::string> region_names = {};
 
   [[nodiscard]] std::size_t nodes() const { return coordinates.size() / 2; }
   [[nodiscard]] std::size_t elements() const { return connectivity.size() / 8; }

@@ -217,6 +217,10 @@ MeshData read_mesh(const std::filesystem::path& run_file) {
   for (const auto& name : file.attributes("/mesh/geometry")) {
     mesh.geometry[name] = file.number_attribute("/mesh/geometry", name);
   }
+  if (file.has("/mesh/regions")) {
+    mesh.regions = file.read_integers("/mesh/regions").values;
+    mesh.region_names = file.read_texts("/mesh/region_names");
+  }
   return mesh;
 }
 

@@ -54,6 +54,10 @@ void write_mesh(Hdf5File& file, const MeshData& mesh) {
   for (const auto& [name, value] : mesh.geometry) {
     file.set_attribute("/mesh/geometry", name, value);
   }
+  if (!mesh.regions.empty()) {
+    file.write("/mesh/regions", mesh.regions, {mesh.regions.size()}, "-");
+    file.write_texts("/mesh/region_names", mesh.region_names);
+  }
 }
 
 Provenance read_provenance(const Hdf5File& file) {

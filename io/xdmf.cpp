@@ -14,6 +14,12 @@ std::string data_item(const std::string& dimensions, const char* type, const std
                      dimensions, source);
 }
 
+std::string attribute(const std::string& name, const char* type, const char* center, const std::string& item) {
+  return fmt::format(
+      "        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">\n          {}\n        </Attribute>\n", name,
+      type, center, item);
+}
+
 std::string attributes(const Hdf5File& file, const std::string& source, const std::string& group, const char* center) {
   std::string out;
   for (const auto& name : file.members("/xdmf/" + group)) {
@@ -21,10 +27,8 @@ std::string attributes(const Hdf5File& file, const std::string& source, const st
     const auto shape = file.shape(object);
     const bool vector = shape.size() == 2;
     const std::string dimensions = vector ? fmt::format("{} {}", shape[0], shape[1]) : fmt::format("{}", shape[0]);
-    out += fmt::format(
-        "        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">\n          {}\n        </Attribute>\n",
-        name, vector ? "Vector" : "Scalar", center,
-        data_item(dimensions, "Float", fmt::format("{}:{}", source, object)));
+    out += attribute(name, vector ? "Vector" : "Scalar", center,
+                     data_item(dimensions, "Float", fmt::format("{}:{}", source, object)));
   }
   return out;
 }
@@ -46,6 +50,10 @@ std::string xdmf_grid(const std::filesystem::path& path, const MeshData& mesh, c
                      data_item(fmt::format("{} 2", mesh.nodes()), "Float", geometry));
   out += attributes(file, source, "node", "Node");
   out += attributes(file, source, "cell", "Cell");
+  if (!mesh.regions.empty()) {
+    out += attribute("region", "Scalar", "Cell",
+                     data_item(fmt::format("{}", mesh.elements()), "Int", "run.h5:/mesh/regions"));
+  }
   return out + "      </Grid>\n";
 }
 

@@ -100,9 +100,7 @@ namespace {
 std::vector<double> read_list(const io::Table& table, const io::Key& key, Dimension dimension, double of_soil,
                               const io::QuantityRule& rule) {
   std::vector<double> list = table.quantities(key, dimension, rule, std::vector<std::string>{}, {.most = 20});
-  for (std::size_t k = 1; k < list.size(); ++k) {
-    if (list[k] <= list[k - 1]) throw table.error(key.name, "must ascend");
-  }
+  table.expect_order(key.name, list, io::Order::ascending);
   if (!list.empty() && !(of_soil > 0))
     throw table.error(key.name,
                       "is searched but is 0 in [soil], so that the values of the classes have no ratio to it");

@@ -64,6 +64,28 @@ void read_contact(const io::Table& table, Grains& grains, const std::string& def
        Dimension::none, grains.rolling_limit, rolling_rule);
 }
 
+/// Refuses what is no grading curve.
+void check_grading(const io::Table& table, const SoilCase& soil) {
+  const std::size_t sizes = soil.sizes.size(), shares = soil.passing.size();
+  if (sizes != shares) {
+    const bool lacks_sizes = sizes == 0;
+    throw table.error(
+        lacks_sizes ? "sizes" : "passing",
+        fmt::format("must have as many entries as {}, has {} in place of {}", lacks_sizes ? "passing" : "sizes",
+                    lacks_sizes ? sizes : shares, lacks_sizes ? shares : sizes));
+  }
+  if (sizes == 0) return;
+  if (sizes < 2) throw table.error("passing", "must rise from 0 to 1, has only one entry");
+  table.expect_order("sizes", soil.sizes, io::Order::ascending);
+  table.expect_order("passing", soil.passing, io::Order::not_falling);
+  for (const std::size_t end : {std::size_t{0}, shares - 1}) {
+    if (soil.passing[end] == (end == 0 ? 0.0 : 1.0)) continue;
+    throw table.entry_error("passing", end,
+                            fmt::format("must rise from 0 to 1, but {} is the {} one",
+                                        table.entry_shown("passing", end), end == 0 ? "first" : "last"));
+  }
+}
+
 /// Reads `sizes` and `passing`, a grading curve, which also sets the smallest and the largest size.
 void read_grading(const io::Table& table, SoilCase& soil) {
   soil.sizes = table.quantities(
@@ -83,18 +105,28 @@ void read_grading(const io::Table& table, SoilCase& soil) {
                                  {"area", "number"}, "area") == "area"
                         ? GradingMeasure::area
                         : GradingMeasure::number;
-  if (soil.sizes.size() != soil.passing.size()) throw table.error("passing", "must have as many entries as sizes");
+  check_grading(table, soil);
   if (soil.sizes.empty()) return;
-  if (soil.sizes.size() < 2 || soil.passing.front() != 0.0 || soil.passing.back() != 1.0) {
-    throw table.error("passing", "must rise from 0 to 1");
-  }
-  for (std::size_t k = 1; k < soil.sizes.size(); ++k) {
-    if (soil.sizes[k] <= soil.sizes[k - 1]) throw table.error("sizes", "must ascend");
-    if (soil.passing[k] < soil.passing[k - 1]) throw table.error("passing", "must not fall");
-  }
   soil.size_minimum = soil.sizes.front();
   soil.size_maximum = soil.sizes.back();
 }
+
+/// Refuses grains whose sizes differ too much; the message names the keys that the user wrote.
+void check_size_range(const io::Table& table, const SoilCase& soil) {
+  constexpr double widest = 40;
+  constexpr const char* reason = ": an RVE cannot hold grains of so different sizes";
+  if (soil.size_maximum <= widest * soil.size_minimum) return;
+  if (soil.sizes.empty())
+    throw table.error(table.has("size_maximum") ? "size_maximum" : "size_minimum",
+                      fmt::format("size_maximum ({}) is more than {} times size_minimum ({}){}",
+                                  table.shown("size_maximum"), widest, table.shown("size_minimum"), reason));
+  const std::size_t last = soil.sizes.size() - 1;
+  throw table.entry_error("sizes", last,
+                          fmt::format("{} is more than {} times {}{}", table.entry_shown("sizes", last), widest,
+                                      table.entry_shown("sizes", 0), reason));
+}
+
+std::string in_mm(double size) { return fmt::format("{:.6g} mm", size * 1e3); }
 
 void read_classes(const io::Table& table, SoilCase& soil) {
   for (const io::Table& entry : table.tables(
@@ -114,23 +146,28 @@ void read_classes(const io::Table& table, SoilCase& soil) {
         Dimension::length, size_rule);
     read_contact(entry, grains, "the value of `[soil]`");
     if (!soil.classes.empty() && grains.size_to <= soil.classes.back().size_to)
-      throw entry.error("size_to", "must ascend");
+      throw entry.error("size_to", fmt::format("must ascend, but {} is not larger than {} of the class before it",
+                                               entry.shown("size_to"), in_mm(soil.classes.back().size_to)));
     soil.classes.push_back(grains);
   }
   if (!soil.classes.empty() && soil.classes.back().size_to < soil.size_maximum * (1 - 1e-12)) {
-    throw table.error("class", "leaves the largest grains without a class");
+    throw table.error("class", fmt::format("leaves the largest grains without a class: the last one ends at {}, and "
+                                           "the largest grain has {}",
+                                           in_mm(soil.classes.back().size_to), in_mm(soil.size_maximum)));
   }
   if (soil.classes.size() > 255) throw table.error("class", "has more than 255 entries");
 }
 
-/// Reads how packings are made from loose grains.
-void read_recipe(const io::Table& table, PackingCase& packing) {
+void read_grains(const io::Table& table, PackingCase& packing) {
   read_integer(
       table,
       {"grains",
        "Number of grains in one representative volume element. The time of a run grows with it, and the scatter "
        "among packings falls: docs/validation/trade.md has the strength of packings of 100 to 700 grains."},
       packing.grains, {.at_least = 30, .at_most = 20000});
+}
+
+void read_seeds(const io::Table& table, PackingCase& packing) {
   packing.seed = table.integer(
       {"seed",
        "Seed of the random places and sizes of the grains, the first one where several packings "
@@ -139,6 +176,10 @@ void read_recipe(const io::Table& table, PackingCase& packing) {
   packing.seeds = table.integers(
       {"seeds", "Seeds of the packings, in place of the consecutive ones that `seed` and `candidates` name."},
       {.at_least = 0, .at_most = largest_seed}, std::vector<std::int64_t>{}, {.most = most_seeds, .different = true});
+}
+
+/// Reads how loose grains become a packing.
+void read_consolidation(const io::Table& table, PackingCase& packing) {
   read_quantity(table,
                 {"consolidation_friction",
                  "Friction coefficient of the contacts while a packing is consolidated, which decides its density: 0 "
@@ -241,11 +282,9 @@ SoilCase read_soil(const io::Table& table) {
     read_quantity(table, size_minimum_key, Dimension::length, soil.size_minimum, size_rule);
     read_quantity(table, size_maximum_key, Dimension::length, soil.size_maximum, size_rule);
   }
-  if (soil.size_maximum < soil.size_minimum) throw table.error("size_maximum", "is smaller than size_minimum");
-  if (soil.size_maximum > 40 * soil.size_minimum) {
-    throw table.error("size_maximum",
-                      "is more than 40 times size_minimum: an RVE cannot hold grains of so different sizes");
-  }
+  if (soil.size_maximum < soil.size_minimum)
+    throw table.error("size_maximum", fmt::format("is smaller than size_minimum ({})", table.shown("size_minimum")));
+  check_size_range(table, soil);
   read_contact(table, soil, "");
   read_quantity(table,
                 {"damping",
@@ -270,7 +309,9 @@ SoilCase read_soil(const io::Table& table) {
 
 PackingCase read_packing(const io::Table& table, bool on_a_mesh) {
   PackingCase packing;
-  read_recipe(table, packing);
+  read_grains(table, packing);
+  read_seeds(table, packing);
+  read_consolidation(table, packing);
   read_common(table, packing);
   read_files(table, packing);
   read_variety(table, on_a_mesh, packing);
@@ -282,7 +323,10 @@ PackingCase read_region_packing(const io::Table& table, const PackingCase& commo
   packing.pressure = common.pressure;
   packing.mirrored = common.mirrored;
   packing.folder = common.folder;
-  read_recipe(table, packing);
+  packing.seed = common.seed;
+  packing.seeds = common.seeds;
+  read_grains(table, packing);
+  read_consolidation(table, packing);
   read_files(table, packing);
   read_variety(table, true, packing);
   check_variety(table, packing);

@@ -24,7 +24,7 @@ inline constexpr io::Key size_maximum_key{"size_maximum",
 [[nodiscard]] PackingCase read_region_packing(const io::Table& table, const PackingCase& common);
 
 /// The keys of [packing] that are no region's own.
-inline constexpr std::array<std::string_view, 3> common_packing_keys{"pressure", "mirrored", "folder"};
+inline constexpr std::array<std::string_view, 5> common_packing_keys{"pressure", "mirrored", "folder", "seed", "seeds"};
 
 /// Throws where `file` is a stored state, from which only a probe can start.
 void check_no_state(const io::Table& table, const PackingCase& packing);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "host/case/element_tests.hpp"
 #include "host/case/engine.hpp"
@@ -158,11 +159,83 @@ Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
   return input;
 }
 
+/// Cases of this kind in which every key has been read: one, or for a scene several, because some of its keys exclude one
+/// another. `more` is added to their text.
+std::vector<io::CaseFile> known_cases_of(CaseKind kind, const std::string& more) {
+  std::string text = "kind = \"" + to_string(kind) + "\"\n";
+  // One entry of each array of tables, and what cannot be left out: the values do not matter.
+  text += "[[soil.class]]\nsize_to = \"1 m\"\n" + more;
+  if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
+  if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
+  const std::vector<std::string> samples = kind == CaseKind::scene ? scene_samples() : std::vector<std::string>{""};
+  std::vector<io::CaseFile> files;
+  for (const std::string& sample : samples) {
+    files.push_back(io::CaseFile::of_text(text + sample, "keys of " + to_string(kind)));
+    static_cast<void>(read_case(files.back(), "case.toml"));
+  }
+  return files;
+}
+
+/// The kind of the case; all kinds where it has none or a wrong one, of which the reader has told.
+std::vector<CaseKind> possible_kinds(const io::Table& root) {
+  try {
+    return {read_kind(root)};
+  } catch (const io::InputError&) {
+    std::vector<CaseKind> kinds;
+    for (const auto& [kind, name] : case_kind_names) kinds.push_back(kind);
+    return kinds;
+  }
+}
+
+/// Cases of these kinds in which every key has been read; none where a default does not hold on this machine, such as
+/// the folder of packings.
+std::vector<io::CaseFile> known_cases(const std::vector<CaseKind>& kinds) {
+  try {
+    std::vector<io::CaseFile> known;
+    for (const CaseKind kind : kinds) {
+      for (io::CaseFile& file : known_cases_of(kind, "")) known.push_back(std::move(file));
+    }
+    return known;
+  } catch (const io::InputError&) {
+    return {};
+  }
+}
+
+/// Throws InputError for a key that the kind of this case does not have; of a case without a kind, or with a wrong one,
+/// for a key that no kind has.
+void refuse_unknown_keys(const io::CaseFile& text) {
+  std::vector<io::InputError> unknown;
+  for (const io::CaseFile& known : known_cases(possible_kinds(text.root()))) {
+    try {
+      text.finish_as(known);
+      return;
+    } catch (const io::InputError& found) {
+      unknown.push_back(found);
+    }
+  }
+  // A key that one case does not know may be known to another, where several share the keys of a kind.
+  const auto same = [&](const io::InputError& one) { return std::string(one.what()) == unknown.back().what(); };
+  const bool several_cases = possible_kinds(text.root()) == std::vector{CaseKind::scene};
+  if (several_cases && !std::all_of(unknown.begin(), unknown.end(), same)) return;
+  if (!unknown.empty()) throw io::InputError(unknown.back());
+}
+
+/// Reads the case. Where a value is missing or wrong and a key is unknown, the unknown key is reported: it is often a
+/// misspelt one, and then the reason why the value is missing.
+Case checked_case(const io::CaseFile& text, const std::filesystem::path& file) {
+  try {
+    return read_case(text, file);
+  } catch (const io::InputError&) {
+    refuse_unknown_keys(text);
+    throw;
+  }
+}
+
 }  // namespace
 
 Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   const io::CaseFile text = io::CaseFile::load(file, overrides);
-  Case input = read_case(text, file);
+  Case input = checked_case(text, file);
   for (std::string& line : text.idle_keys()) input.remarks.push_back(std::move(line));
   input.resolved = text.resolved();
   input.places = text.places();
@@ -180,28 +253,10 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   return input;
 }
 
-namespace {
-
-/// The keys of one case, which is given as text.
-io::KeyList keys_in(const std::string& text, const std::string& name) {
-  const io::CaseFile file = io::CaseFile::of_text(text, name);
-  static_cast<void>(read_case(file, "case.toml"));
-  return {file.keys(), file.tables()};
-}
-
-}  // namespace
-
 io::KeyList keys_of(CaseKind kind, const std::string& more) {
-  const std::string name = "keys of " + to_string(kind);
-  std::string text = "kind = \"" + to_string(kind) + "\"\n";
-  // One entry of each array of tables, and what cannot be left out: the values do not matter.
-  text += "[[soil.class]]\nsize_to = \"1 m\"\n" + more;
-  if (kind == CaseKind::probe) text += "[[probe.path]]\ngradient = [0, 0, 0, 0]\n";
-  if (kind == CaseKind::calibrate) text += "[calibrate]\nrolling_stiffness = [0.1, 0.2]\n";
-  if (kind != CaseKind::scene) return keys_in(text, name);
   std::vector<io::KeyList> lists;
-  for (const std::string& scene : scene_samples()) lists.push_back(keys_in(text + scene, name));
-  return join_scene_keys(lists);
+  for (const io::CaseFile& file : known_cases_of(kind, more)) lists.push_back({file.keys(), file.tables()});
+  return lists.size() == 1 ? lists.front() : join_scene_keys(lists);
 }
 
 }  // namespace voussoir::host

@@ -126,8 +126,6 @@ void read_grid_regions(const io::Table& table, SceneMeshCase& mesh) {
     return;
   }
   if (table.has("layers")) throw table.error("layers", "is given beside regions: one of the two names the regions");
-  static_cast<void>(read_names(table, layers_key, "ground"));
-  mesh.layers.clear();
   if (mesh.regions.size() != rows)
     throw table.error("regions", fmt::format("must have a list for each of the {} intervals of y, has {}", rows,
                                              mesh.regions.size()));
@@ -229,7 +227,7 @@ void read_ring(const io::Table& table, SceneMeshCase& mesh) {
   const std::string part = table.choice({"part", "Which part of a ring the mesh has, from x = 0 and y = 0 on."},
                                         {"quarter", "half", "whole"}, "quarter");
   mesh.part = part == "quarter" ? RingPart::quarter : part == "half" ? RingPart::half : RingPart::whole;
-  if (mesh.outer < 1.01 * mesh.radius) throw table.error("outer", "must be at least 1.01 times radius");
+  if (mesh.outer < 1.01 * mesh.radius) throw table.error("outer", "is less than 1.01 times radius");
   check_ratio(table, ratio_key, mesh.ratio, mesh.ring_rows);
   if (std::int64_t{mesh.ring_columns} * mesh.ring_rows > most_elements)
     throw table.error("columns", fmt::format("makes more than {} elements with the rows", most_elements));

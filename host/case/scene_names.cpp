@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/case/scene_keys.hpp"
-#include "io/nearest_name.hpp"
+#include "io/near_names.hpp"
 
 namespace voussoir::host {
 

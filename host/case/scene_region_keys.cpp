@@ -18,10 +18,7 @@ namespace {
 /// Keys that say one thing in several ways, of which a region takes none over where it has one.
 const io::TakeOverRule soil_rule{.alternatives = {{"sizes", "passing", "passing_by", "size_minimum", "size_maximum"}},
                                  .without = {}};
-const io::TakeOverRule packing_rule{.alternatives = {{"consolidation_friction", "void_ratio"},
-                                                     {"seed", "seeds"},
-                                                     {"seeds", "candidates"},
-                                                     {"file", "grains"}},
+const io::TakeOverRule packing_rule{.alternatives = {{"consolidation_friction", "void_ratio"}, {"file", "grains"}},
                                     .without = {common_packing_keys.begin(), common_packing_keys.end()}};
 
 /// Puts the tables of the files under `extends` below those of the region. Returns whether they have a soil.

@@ -89,10 +89,12 @@ void state_default(io::KeyInfo& info) {
     info.required = false;
     info.default_words = words;
   }
-  for (const std::string_view table : {"region[].soil", "region[].packing"}) {
-    const std::string prefix = std::string(table) + ".";
-    const bool is_own = info.key.starts_with(prefix) && info.key.find("[].", prefix.size()) == std::string::npos;
-    if (is_own) info.default_words = table == "region[].soil" ? "the value of `[soil]`" : "the value of `[packing]`";
+  constexpr std::string_view region = "region[].";
+  for (const std::string table : {"soil", "packing"}) {
+    const std::string prefix = std::string(region) + table + ".";
+    if (!info.key.starts_with(prefix)) continue;
+    info.like = info.key.substr(region.size());
+    if (info.key.find("[].", prefix.size()) == std::string::npos) info.default_words = "the value of `[" + table + "]`";
   }
 }
 
@@ -122,7 +124,7 @@ io::KeyList join_scene_keys(const std::vector<io::KeyList>& lists) {
     add_new(joined.keys, list.keys);
     add_new(joined.tables, list.tables);
   }
-  for (io::KeyInfo& info : joined.keys) state_default(info);
+  for (auto* infos : {&joined.keys, &joined.tables}) std::for_each(infos->begin(), infos->end(), state_default);
   return joined;
 }
 

@@ -55,13 +55,15 @@ inline constexpr io::Key region{
     "A named part of the mesh and what it is made of: grains, or a linear elastic material. Each region of the mesh "
     "needs one such table."};
 inline constexpr io::Key region_elastic{"elastic", "The linear elastic material of this region, in place of grains."};
-inline constexpr io::Key region_soil{"soil",
-                                     "Grains and contacts of this region. A key that the region does not give has the "
-                                     "value of the file under `extends`, else that of `[soil]`."};
+inline constexpr io::Key region_soil{
+    "soil",
+    "Grains and contacts of this region, with the keys of `[soil]`. A key that the region does not give has the "
+    "value of the file under `extends`, else that of `[soil]`."};
 inline constexpr io::Key region_packing{
     "packing",
-    "Packings of this region. A key that the region does not give has the value of the file under `extends`, else that "
-    "of `[packing]`; pressure, folder and mirror images are those of `[packing]` in all regions."};
+    "Packings of this region, with the keys of `[packing]`. A key that the region does not give has the value of the "
+    "file under `extends`, else that "
+    "of `[packing]`; seeds, pressure, folder and mirror images are those of `[packing]` in all regions."};
 inline constexpr io::Key support{
     "support",
     "What holds boundaries or a point from the start. Where two supports name one axis of a node, the later one owns "

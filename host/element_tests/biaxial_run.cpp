@@ -145,6 +145,21 @@ struct Summary {
   }
 };
 
+/// The angles of all valid tests together, if there are any.
+void print_common_angles(const Summary& summary, double window) {
+  const std::vector<double> psi = summary.of_valid(summary.dilatancy);
+  if (psi.empty()) return;
+  const CommonDilatancy dilatancy = common_dilatancy(psi);
+  const std::string scatter = psi.size() > 1 ? fmt::format(" +- {:.1f}", dilatancy.deviation / degree) : "";
+  const std::string tests = psi.size() > 1 ? fmt::format("the mean of {} tests", psi.size()) : "one test";
+  std::printf(
+      "all valid tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f%s deg (%s, smoothed over %.1f %% of axial "
+      "strain)\n",
+      common_angle(summary.of_valid(summary.peak), summary.of_valid(summary.peak_p)) / degree,
+      common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
+      dilatancy.mean / degree, scatter.c_str(), tests.c_str(), window * 100.0);
+}
+
 /// Number of tests that a case asks for; tests whose packing does not come to rest are left out later. A file gives one
 /// packing for each pressure.
 std::size_t wanted_tests(const PackingCase& recipe, const BiaxialCase& test) {
@@ -205,14 +220,7 @@ Outcome run_biaxial(const Case& input, const RunOptions& options) {
                      curve_table(curve, input.output.microstructure));
   }
   writer.set_table("strength", summary.table());
-  const std::vector<double> psi = summary.of_valid(summary.dilatancy);
-  if (!psi.empty()) {
-    std::printf(
-        "all valid tests: phi_p %.1f deg, phi_cs %.1f deg, psi_max %.1f deg (smoothed over %.1f %% of axial strain)\n",
-        common_angle(summary.of_valid(summary.peak), summary.of_valid(summary.peak_p)) / degree,
-        common_angle(summary.of_valid(summary.critical), summary.of_valid(summary.critical_p)) / degree,
-        *std::max_element(psi.begin(), psi.end()) / degree, test.window * 100.0);
-  }
+  print_common_angles(summary, test.window);
   const auto beyond = std::count_if(curves.begin(), curves.end(),
                                     [](const BiaxialCurve& curve) { return curve.mean_overlap > most_mean_overlap; });
   if (beyond > 0) {

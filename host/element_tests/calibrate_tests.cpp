@@ -37,8 +37,8 @@ std::vector<PackedRve> packings_of(const TestProgram& program, const ParameterSe
 
 /// The observables that the tests of one seed give.
 Observation observe(std::span<const BiaxialCurve> curves, std::span<const Strength> strengths, std::int64_t seed) {
-  std::vector<double> peak, peak_p, critical, critical_p;
-  double dilatancy = 0, strain = 0;
+  std::vector<double> peak, peak_p, critical, critical_p, dilatancy;
+  double strain = 0;
   for (std::size_t k = 0; k < curves.size(); ++k) {
     if (curves[k].seed != seed) continue;
     const Strength& s = strengths[k];
@@ -46,11 +46,11 @@ Observation observe(std::span<const BiaxialCurve> curves, std::span<const Streng
     peak_p.push_back(mean_stress_at(curves[k].pressure, s.peak_angle));
     critical.push_back(s.critical_angle);
     critical_p.push_back(mean_stress_at(curves[k].pressure, s.critical_angle));
-    dilatancy += std::sin(s.dilatancy);
+    dilatancy.push_back(s.dilatancy);
     strain += s.peak_strain;
   }
   const auto n = static_cast<double>(peak.size());
-  return {common_angle(peak, peak_p), common_angle(critical, critical_p), std::asin(dilatancy / n), strain / n};
+  return {common_angle(peak, peak_p), common_angle(critical, critical_p), common_dilatancy(dilatancy).mean, strain / n};
 }
 
 /// The seeds all of whose tests held (strength.hpp).

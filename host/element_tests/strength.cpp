@@ -86,4 +86,12 @@ double common_angle(std::span<const double> angles, std::span<const double> p) {
   return pp > 0 ? std::asin(std::min(pq / pp, 1.0)) : 0.0;
 }
 
+CommonDilatancy common_dilatancy(std::span<const double> angles) {
+  const auto n = static_cast<double>(angles.size());
+  double sines = 0, sum = 0, squares = 0;
+  for (const double angle : angles) sines += std::sin(angle), sum += angle;
+  for (const double angle : angles) squares += (angle - sum / n) * (angle - sum / n);
+  return {.mean = std::asin(sines / n), .deviation = angles.size() > 1 ? std::sqrt(squares / (n - 1)) : 0.0};
+}
+
 }  // namespace voussoir::host

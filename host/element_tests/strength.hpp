@@ -41,4 +41,12 @@ inline constexpr double most_late_rise = 0.15;
 /// test's angle and the p [Pa] at which the test had that angle.
 [[nodiscard]] double common_angle(std::span<const double> angles, std::span<const double> p);
 
+/// The dilatancy of several tests.
+struct CommonDilatancy {
+  double mean = 0;       ///< its sine is the mean of the tests' sines, which are ratios of strains as they are [rad]
+  double deviation = 0;  ///< standard deviation of the tests' angles; 0 with fewer than two tests [rad]
+};
+/// @param angles the largest dilatancy of each test, at least one [rad]
+[[nodiscard]] CommonDilatancy common_dilatancy(std::span<const double> angles);
+
 }  // namespace voussoir::host

@@ -2,8 +2,19 @@
 /// The size of a case and its cost, estimated before it is run.
 
 #include <cstddef>
+#include <string>
+#include <vector>
 
 namespace voussoir::host {
+
+/// A region of a scene.
+struct RegionSize {
+  std::string name;
+  double unit_weight = 0;  ///< [N/m3]
+  std::size_t points = 0;  ///< Gauss points
+  int variety = 0;         ///< packings at its points; 0 without grains
+  int grains = 0;          ///< of a packing
+};
 
 struct CaseSize {
   std::size_t points = 0;         ///< Gauss points of the largest mesh
@@ -17,6 +28,10 @@ struct CaseSize {
   double memory = 0;          ///< estimate for the first process [bytes]
   double result_file = 0;     ///< estimate [bytes]; 0 without a mesh
   double checkpoint = 0;      ///< estimate for one checkpoint, of which two are kept [bytes]
+  std::size_t nodes = 0;      ///< of a scene's mesh; 0: not counted
+  double height = 0;          ///< of a scene's mesh [m]
+  std::vector<RegionSize> regions = {};  ///< of a scene
+  double lanes_share = 1;                ///< share of the lanes that hold an RVE, see share_of_lanes [-]
 };
 
 }  // namespace voussoir::host

@@ -12,6 +12,9 @@ namespace voussoir::host {
 /// A number of bytes for the user: "12 MB".
 [[nodiscard]] std::string bytes_text(double bytes);
 
+/// A warning where many lanes hold no RVE (share_of_lanes); else empty.
+[[nodiscard]] std::string lanes_warning(const CaseSize& size);
+
 /// @param place of the key output.rves. Throws io::InputError where output.rves names a point that the mesh does not
 /// have.
 void check_snapshot_points(const OutputCase& output, const CaseSize& size, const std::string& place);

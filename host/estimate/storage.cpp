@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/case/result_fields.hpp"
+#include "host/packing/case_recipes.hpp"
 #include "host/packing/packings.hpp"
 
 namespace voussoir::host {
@@ -22,28 +23,36 @@ constexpr double file_overhead = 30e3;  ///< attributes and groups of a result f
 /// points of an element.
 double result_file_bytes(const Case& input, double points, double nodes) {
   double bytes = file_overhead;
+  int variety = 1, grains = input.packing.grains;
+  const std::vector<SoilRecipe> recipes = recipes_of(input);
+  for (const SoilRecipe& recipe : recipes) {
+    variety = std::max(variety, recipe.packing->variety);
+    grains = std::max(grains, recipe.packing->grains);
+  }
   for (const ResultField& field : result_field_table) {
-    if (!is_written(field, input.output) || (field.of_grains && input.material != MaterialKind::grains)) continue;
-    if (field.of_mix && input.packing.variety == 1) continue;
+    if (!is_written(field, input.output) || (field.of_grains && recipes.empty())) continue;
+    if (field.of_mix && variety == 1 && recipes.size() == 1) continue;
     if (field.of_accuracy && input.engine.accuracy == 0) continue;
     bytes += 8.0 * field.components * (field.location == io::FieldLocation::node ? 2.5 * nodes : 1.25 * points);
   }
   const double snapshot = 32.0 + 48.0 * contacts_a_grain;  // bytes a grain
-  return bytes + static_cast<double>(input.output.rves.size()) * input.packing.grains * snapshot;
+  return bytes + static_cast<double>(input.output.rves.size()) * grains * snapshot;
 }
 
 }  // namespace
 
 void add_storage(CaseSize& size, const Case& input) {
-  const PackingCase& recipe = input.packing;
   const auto points = static_cast<double>(size.points);
-  const auto made = static_cast<double>(count_of_packings(recipe));
   // Packings are made side by side in one batch, and so are tests. A mesh has its own matrix and its factors.
-  const bool grains = input.material == MaterialKind::grains;
-  const double side_by_side = grains ? recipe.grains * std::max(made, static_cast<double>(size.tests)) : 0.0;
+  double side_by_side = 0;
+  for (const SoilRecipe& recipe : recipes_of(input)) {
+    const auto made = static_cast<double>(count_of_packings(*recipe.packing));
+    side_by_side = std::max(side_by_side, recipe.packing->grains * std::max(made, static_cast<double>(size.tests)));
+  }
   size.memory = process_bytes + memory_a_grain * std::max(size.grains, side_by_side) + memory_a_point * points;
   if (size.points == 0) return;
-  size.result_file = result_file_bytes(input, points, nodes_a_point * points);
+  size.result_file = result_file_bytes(input, points,
+                                       size.nodes > 0 ? static_cast<double>(size.nodes) : nodes_a_point * points);
   // A checkpoint holds committed RVEs (position and rotation, key and history of each contact) and the mesh's state.
   size.checkpoint = size.grains * (24.0 + 20.0 * contacts_a_grain) + 300.0 * points;
 }

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "host/case/accuracy.hpp"
 #include "host/element_tests/calibration.hpp"
+#include "host/estimate/evaluation.hpp"
+#include "host/estimate/scene.hpp"
 #include "host/estimate/storage.hpp"
 #include "host/kinds/tunnel_mesh.hpp"
 #include "host/kinds/tunnel_scene.hpp"
@@ -14,31 +15,9 @@
 namespace voussoir::host {
 namespace {
 
-// Calibrated on the column `particle_steps` of run.h5. Relaxed increments (fem/relaxation.hpp) have later evaluations
-// of few steps; the constants count evaluations of the full number of steps. With them the estimates are 0.95 of the
-// work of cases/tunnel_quick, 1.25 of that of cases/tunnel_cps_d_cd3 and 1.6 of that of cases/biaxial_bvp (2026-11-26).
-// Packings whose equilibrium is harder to find take up to 1.5 times as much.
-constexpr double gravity_evaluations = 1.2;
-constexpr double loss_evaluations = 4.5;
-constexpr double gravity_strain = 0.014;  ///< mean strain of an RVE over the load factor's step
-constexpr double loss_strain = 0.2;       ///< mean strain of an RVE over the volume loss of an increment
-constexpr double hold_steps = 30;
 constexpr double specimen_evaluations = 2.5;  ///< of the full number of steps; cases/biaxial_bvp took 7 in all
 constexpr double specimen_strain = 1.4;  ///< norm of an RVE's strain over the strain of the specimen, without change of
                                          ///< volume
-
-/// Steps to a strain, from the inertial number I = strain / steps * sqrt(m / (p t)).
-double inertial_steps(const SoilCase& soil, double strain, double pressure, double inertial_number) {
-  return strain / inertial_number * inertial_time_of(soil, pressure);
-}
-
-/// Steps of one evaluation of one RVE.
-double steps_per_evaluation(const SoilCase& soil, const EngineCase& engine, double strain, double pressure) {
-  const double steps = inertial_steps(soil, strain, pressure,
-                                      inertial_number_at(inertial_time_of(soil, pressure), engine));
-  return std::clamp(steps, static_cast<double>(engine.minimum_steps), static_cast<double>(engine.maximum_steps)) +
-         std::min(hold_steps, static_cast<double>(engine.hold_cap));
-}
 
 CaseSize probe_size(const ProbeCase& probe, const SoilCase& soil, const PackingCase& recipe, const EngineCase& engine) {
   double steps = 6.0 * steps_per_evaluation(soil, engine, probe.strain, probe.pressure);
@@ -137,9 +116,11 @@ CaseSize case_size(const Case& input) {
   if (input.kind == CaseKind::biaxial_bvp)
     size = specimen_size(input.biaxial_bvp, input.material, input.soil, input.packing, input.engine);
   if (input.kind == CaseKind::calibrate) size = search_size(input.calibrate, input.biaxial, input.soil, input.packing);
+  if (input.kind == CaseKind::scene) size = scene_size(input);
   if (input.kind == CaseKind::column || input.kind == CaseKind::tunnel) size = ground_size(input);
   add_storage(size, input);
   if (input.kind == CaseKind::biaxial || input.kind == CaseKind::calibrate) add_curves(size, input.biaxial);
+  if (input.kind == CaseKind::scene) return size;
   size.packings = count_of_packings(input.packing) *
                   (input.kind == CaseKind::biaxial ? input.biaxial.pressures.size() : 1);
   return size;

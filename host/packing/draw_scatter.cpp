@@ -53,8 +53,8 @@ std::string draw_sentence(const PackingCase& packing, double volume_loss) {
   const bool draws = packing.files.empty() && packing.seeds.empty();  // an ensemble has nothing to draw otherwise
   return fmt::format(
       "which packings are drawn moves the surface's settlement at V_l = {:.3g} % by about {:.0f} %, the least ground "
-      "reaction by {:.0f} % and K0 by {:.0f} % (standard deviations at variety {} and {} grains, "
-      "docs/validation/trust.md){}",
+      "reaction by {:.0f} % and K0 by {:.0f} % (standard deviations in dense sand at variety {} and {} "
+      "grains, docs/validation/trust.md){}",
       100 * volume_loss, 100 * scatter.settlement, 100 * scatter.reaction, 100 * scatter.k0, packing.variety,
       packing.grains, draws ? "; `voussoir ensemble` measures them for this case" : "");
 }

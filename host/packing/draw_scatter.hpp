@@ -23,7 +23,7 @@ struct DrawScatter {
 /// @param volume_loss [-]
 [[nodiscard]] DrawScatter draw_scatter(int variety, int grains, double volume_loss);
 
-/// A sentence about a single tunnel, for its log and for `check`.
+/// A sentence about a single tunnel, which names the soil of the measurements, for its log and for `check`.
 [[nodiscard]] std::string draw_sentence(const PackingCase& packing, double volume_loss);
 
 }  // namespace voussoir::host

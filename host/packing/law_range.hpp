@@ -26,6 +26,11 @@ inline constexpr double most_single_overlap = 0.3;
 /// the force per length that a pressure [Pa] puts on a thickness. Overlaps over diameters go as 1/kappa.
 [[nodiscard]] double stiffness_number(const kernels::Packing& packing, double pressure);
 
+/// The range of kappa at 100 kPa outside of which `check` warns [-]. Soils from 51 to 5060 were measured
+/// (docs/validation/trade.md: 0.3, 3 and 30 GPa at a thickness of 0.1 m), and the one with 51 had little more than half
+/// the strength of the others.
+inline constexpr double least_usual_stiffness = 60, most_usual_stiffness = 6000;
+
 /// The mean overlap over r_i + r_j of a packing at rest under isotropic pressure [-], to 20 %
 /// (docs/explanation/range.md).
 [[nodiscard]] double foretold_overlap(double kappa);

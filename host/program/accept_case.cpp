@@ -4,14 +4,17 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "host/case/engine.hpp"
 #include "host/case/load_case.hpp"
 #include "host/estimate/range.hpp"
 #include "host/estimate/report.hpp"
+#include "host/estimate/scene.hpp"
 #include "host/estimate/storage.hpp"
 #include "host/estimate/work.hpp"
 #include "host/material/devices.hpp"
+#include "host/packing/case_recipes.hpp"
 #include "host/packing/packing_check.hpp"
 #include "host/process/resources.hpp"
 #include "host/ranks/session.hpp"
@@ -21,36 +24,61 @@
 namespace voussoir::host {
 namespace {
 
-/// True where the run needs grains.
-bool has_grains(const Case& input) { return !runs_on_a_mesh(input.kind) || input.material == MaterialKind::grains; }
-
 /// The skin of the neighbour lists with which this case runs; 0 where [engine] decides nothing.
 double skin_of(const Case& input) { return uses_engine(input.kind, input.material) ? input.engine.skin : 0.0; }
 
-void check_packings(const Case& input) {
+/// A rehearsal on the elastic material checks files too.
+void check_files(const Case& input, const SoilRecipe& recipe) {
   try {
-    check_packing_files(input.soil, input.packing, skin_of(input));
+    check_packing_files(*recipe.soil, *recipe.packing, skin_of(input));
   } catch (const std::runtime_error& fault) {
-    throw io::InputError(place_of(input, "packing.file"), "packing.file", fault.what());
-  }
-  if (!has_grains(input)) return;
-  const char* key = "packing.grains";
-  try {
-    if (input.packing.files.empty()) check_recipe(input.soil, input.packing.grains, skin_of(input));
-    key = "calibrate.confirm_grains";
-    if (input.kind == CaseKind::calibrate) check_recipe(input.soil, input.calibrate.confirm_grains, 0.0);
-  } catch (const std::runtime_error& fault) {
+    const std::string key = recipe.table + "packing.file";
     throw io::InputError(place_of(input, key), key, fault.what());
   }
 }
 
+void check_packings(const Case& input) {
+  const std::vector<SoilRecipe> recipes = recipes_of(input);
+  if (recipes.empty()) return check_files(input, {&input.soil, &input.packing, ""});
+  for (const SoilRecipe& recipe : recipes) {
+    check_files(input, recipe);
+    std::string key = recipe.table + "packing.grains";
+    try {
+      if (recipe.packing->files.empty()) check_recipe(*recipe.soil, recipe.packing->grains, skin_of(input));
+      if (input.kind != CaseKind::calibrate) continue;
+      key = "calibrate.confirm_grains";
+      check_recipe(input.soil, input.calibrate.confirm_grains, 0.0);
+    } catch (const std::runtime_error& fault) {
+      throw io::InputError(place_of(input, key), key, fault.what());
+    }
+  }
+}
+
+/// The points of a recipe's region, or of the whole mesh.
+std::size_t points_of(const SoilRecipe& recipe, const CaseSize& size) {
+  for (const RegionSize& region : size.regions)
+    if (region.name == recipe.name) return region.points;
+  return size.points;
+}
+
 /// Refuses more packings than there are points to hold them.
 void refuse_idle_packings(const Case& input, const CaseSize& size) {
-  const auto variety = static_cast<std::size_t>(input.packing.variety);
-  if (size.points == 0 || !has_grains(input) || variety <= size.points) return;
-  throw io::InputError(
-      place_of(input, "packing.variety"), "packing.variety",
-      fmt::format("asks for {} packings, but the mesh has only {} points to hold them", variety, size.points));
+  if (size.points == 0) return;
+  for (const SoilRecipe& recipe : recipes_of(input)) {
+    const auto variety = static_cast<std::size_t>(recipe.packing->variety), points = points_of(recipe, size);
+    if (variety <= points) continue;
+    const std::string key = recipe.table + "packing.variety";
+    throw io::InputError(place_of(input, key), key,
+                         fmt::format("asks for {} packings, but the {} has only {} points to hold them", variety,
+                                     recipe.name.empty() ? "mesh" : "region " + recipe.name, points));
+  }
+}
+
+/// A fault of a scene's mesh, whose sentence begins with the key ("mesh.file: ...").
+[[noreturn]] void refuse_mesh(const Case& input, const std::string& fault) {
+  const std::size_t colon = fault.find(": ");
+  const std::string key = colon == std::string::npos ? "mesh" : fault.substr(0, colon);
+  throw io::InputError(place_of(input, key), key, colon == std::string::npos ? fault : fault.substr(colon + 2));
 }
 
 /// The size of the case. What the mesh generator refuses is a fault of the ground's lengths, or of the file that holds
@@ -60,8 +88,10 @@ CaseSize checked_size(const Case& input) {
   try {
     return case_size(input);
   } catch (const std::invalid_argument& fault) {
+    if (input.kind == CaseKind::scene) refuse_mesh(input, fault.what());
     throw io::InputError(place_of(input, key), key, fault.what());
   } catch (const std::runtime_error& fault) {
+    if (input.kind == CaseKind::scene) refuse_mesh(input, fault.what());
     throw io::InputError(place_of(input, key), key, fault.what());
   }
 }
@@ -74,6 +104,17 @@ void refuse_missing_device(const Case& input) {
   } catch (const std::runtime_error& fault) {
     throw io::InputError(place_of(input, "engine.backend"), "engine.backend", fault.what());
   }
+}
+
+/// Remarks about grains that packings lack, and about lanes without an RVE.
+void add_remarks(AcceptedCase& accepted) {
+  std::vector<std::string>& remarks = accepted.input.remarks;
+  for (const SoilRecipe& recipe : recipes_of(accepted.input)) {
+    if (!recipe.packing->files.empty()) continue;
+    const std::string missing = missing_coarse_grains(*recipe.soil, recipe.packing->grains);
+    if (!missing.empty()) remarks.push_back(recipe.name.empty() ? missing : "region " + recipe.name + ": " + missing);
+  }
+  if (const std::string lanes = lanes_warning(accepted.size); !lanes.empty()) remarks.push_back(lanes);
 }
 
 }  // namespace
@@ -99,13 +140,11 @@ AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<st
   accepted.size = checked_size(accepted.input);
   refuse_idle_packings(accepted.input, accepted.size);
   check_snapshot_points(accepted.input.output, accepted.size, place_of(accepted.input, "output.rves"));
-  static_cast<void>(kernels::choose_lanes(accepted.input.engine.isa));
+  const kernels::LaneSet& lanes = *kernels::choose_lanes(accepted.input.engine.isa).lanes;
+  accepted.size.lanes_share = share_of_lanes(accepted.size.regions, lanes.width(accepted.input.engine.precision));
   refuse_missing_device(accepted.input);
-  if (has_grains(accepted.input) && accepted.input.packing.files.empty()) {
-    const std::string missing = missing_coarse_grains(accepted.input.soil, accepted.input.packing.grains);
-    if (!missing.empty()) accepted.input.remarks.push_back(missing);
-  }
-  Foretold foretold = foretell(accepted.input);
+  add_remarks(accepted);
+  Foretold foretold = foretell(accepted.input, accepted.size.height);
   for (std::string& warning : foretold.warnings) accepted.input.remarks.push_back(std::move(warning));
   accepted.range = std::move(foretold.line);
   return accepted;
@@ -114,8 +153,10 @@ AcceptedCase accept_case(const std::filesystem::path& file, const std::vector<st
 void refuse_too_large(const Case& input, const CaseSize& size, int ranks) {
   const double needed = size.memory / ranks, there = memory_limit();
   if (needed <= there) return;
-  const char* key = !has_grains(input) ? (input.kind == CaseKind::biaxial_bvp ? "biaxial_bvp.columns" : "ground")
-                                       : "packing.grains";
+  const char* mesh_key = input.kind == CaseKind::biaxial_bvp ? "biaxial_bvp.columns"
+                         : input.kind == CaseKind::scene     ? "mesh"
+                                                             : "ground";
+  const char* key = has_grains(input) ? "packing.grains" : mesh_key;
   throw io::InputError(
       input.name, key,
       fmt::format("the run takes about {} of memory, but this machine allows {}: it needs fewer points, "

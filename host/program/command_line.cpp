@@ -24,7 +24,7 @@ namespace {
 
 struct Arguments {
   std::string file;
-  std::string kind;
+  std::string name;
   std::string output;
   std::vector<std::string> overrides;
   bool resume = false;
@@ -148,16 +148,18 @@ void describe_mesh(CLI::App& app, Arguments& a, Outcome& outcome) {
 void describe_keys(CLI::App& app, Arguments& a, Outcome& outcome) {
   CLI::App* keys = app.add_subcommand(
       "keys", "print every key of case files and sweep files: type, default, limits, explanation, kinds that use it");
-  CLI::Option* kind = keys->add_option("kind", a.kind,
-                                       "only the keys of this kind of case; \"sweep\": those of sweep files");
+  CLI::Option* name = keys->add_option("name", a.name,
+                                       "what to print: a kind of case, \"sweep\" for sweep files, a table such as "
+                                       "soil, or a key such as soil.thickness; "
+                                       "brackets, as in \"[column]\", ask for a table that has the name of a kind");
   CLI::Option* markdown = keys->add_flag("--markdown", a.markdown,
                                          "print a page in Markdown in place of comma-separated values");
   keys->add_flag("--json-schema", a.json_schema,
                  "print a JSON schema, with which editors complete and check files; that of cases without a kind")
       ->excludes(markdown);
-  keys->callback([&a, &outcome, kind] {
+  keys->callback([&a, &outcome, name] {
     const KeyForm form = a.markdown ? KeyForm::page : (a.json_schema ? KeyForm::schema : KeyForm::table);
-    outcome = command_keys(kind->count() > 0 ? std::optional(a.kind) : std::nullopt, form);
+    outcome = command_keys(name->count() > 0 ? std::optional(a.name) : std::nullopt, form);
   });
 }
 

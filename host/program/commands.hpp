@@ -28,9 +28,9 @@ namespace voussoir::host {
 /// What `voussoir keys` prints: comma-separated values, a page in Markdown, or a JSON schema.
 enum class KeyForm { table, page, schema };
 
-/// `voussoir keys`: prints all keys of a kind of case, of sweep files ("sweep") or of all, with their types, defaults,
-/// limits and explanations.
-[[nodiscard]] Outcome command_keys(const std::optional<std::string>& kind, KeyForm form);
+/// `voussoir keys`: prints all keys of a kind of case, of sweep files ("sweep"), of a table ("soil") or of all, or one
+/// key ("soil.thickness"), with their types, defaults, limits and explanations. Throws io::InputError for other names.
+[[nodiscard]] Outcome command_keys(const std::optional<std::string>& name, KeyForm form);
 
 /// `voussoir info`: prints where a result comes from, and its table of increments.
 [[nodiscard]] Outcome command_info(const std::filesystem::path& result_file);

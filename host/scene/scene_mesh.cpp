@@ -86,6 +86,13 @@ fem::HalfTunnelOptions tunnel_options(const SceneMeshCase& m) {
   return o;
 }
 
+/// What fem says of a tunnel's mesh, without the words in front.
+std::string sentence_of(const std::exception& fault) {
+  const std::string text = fault.what();
+  const std::string subject = "tunnel mesh: ";
+  return text.rfind(subject, 0) == 0 ? text.substr(subject.size()) : text;
+}
+
 /// @throws std::runtime_error of the key of [mesh] that makes no mesh
 fem::Mesh generated_tunnel(const SceneMeshCase& m) {
   const fem::HalfTunnelOptions options = tunnel_options(m);
@@ -93,10 +100,11 @@ fem::Mesh generated_tunnel(const SceneMeshCase& m) {
     return m.shape == MeshShape::tunnel ? fem::make_tunnel(options) : fem::make_half_tunnel(options);
   } catch (const std::invalid_argument& fault) {
     // All other options have been checked: what remains are interfaces and the number of elements.
-    const bool is_interface = std::string(fault.what()).find("interface") != std::string::npos;
-    throw std::runtime_error(std::string(is_interface ? "mesh.interfaces: " : "mesh.size_opening: ") + fault.what());
+    const std::string sentence = sentence_of(fault);
+    const bool is_interface = sentence.find("interface") != std::string::npos;
+    throw std::runtime_error((is_interface ? "mesh.interfaces: " : "mesh.size_opening: ") + sentence);
   } catch (const std::runtime_error& fault) {
-    throw std::runtime_error(std::string("mesh.shape: ") + fault.what());
+    throw std::runtime_error("mesh.shape: " + sentence_of(fault));
   }
 }
 

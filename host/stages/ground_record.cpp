@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -55,6 +56,33 @@ std::vector<double> moved_coordinates(const Ground& ground) {
   return flat(ground.state.coordinates.reshaped());
 }
 
+/// Sets the values at points that have been dug out to NaN.
+void clear_dug_out(const fem::Mesh& mesh, std::vector<io::Field>& fields) {
+  for (io::Field& field : fields) {
+    if (field.location != io::FieldLocation::gauss || field.name == result_field("gauss_point_coordinates").name)
+      continue;
+    const auto width = 4 * static_cast<std::size_t>(field.components);
+    for (int e = 0; e < mesh.n_elements(); ++e) {
+      const auto first = field.values.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(e) * width);
+      if (mesh.is_dug_out(e)) std::fill_n(first, width, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
+/// The boundaries that files have, each with its name there.
+std::vector<std::pair<std::string, std::string>> names_in_files(const fem::Mesh& mesh, BoundaryNames names) {
+  static constexpr std::array<std::pair<const char*, const char*>, 5> of_files{
+      {{"top", "top"}, {"base", "base"}, {"axis", "left"}, {"side", "right"}, {"opening", "tunnel"}}};
+  std::vector<std::pair<std::string, std::string>> all;
+  if (names == BoundaryNames::of_mesh) {
+    for (const auto& [name, nodes] : mesh.nodes) all.emplace_back(name, name);
+    return all;
+  }
+  for (const auto& [ours, theirs] : of_files)
+    if (mesh.nodes.contains(ours)) all.emplace_back(ours, theirs);
+  return all;
+}
+
 }  // namespace
 
 std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd& reactions) {
@@ -72,21 +100,23 @@ std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd
     fields.push_back({std::move(field.name), std::move(field.unit), io::FieldLocation::gauss, field.components,
                       std::move(field.values)});
   }
+  clear_dug_out(ground.mesh, fields);
   return fields;
 }
 
-io::MeshData mesh_data(const fem::Mesh& mesh) {
-  static constexpr std::array<std::pair<const char*, const char*>, 5> boundary_names{
-      {{"top", "top"}, {"base", "base"}, {"axis", "left"}, {"side", "right"}, {"opening", "tunnel"}}};
+io::MeshData mesh_data(const fem::Mesh& mesh, BoundaryNames names) {
   io::MeshData data;
   data.coordinates = flat(mesh.coordinates.reshaped());
   for (const fem::ElementNodes& element : mesh.elements) {
     data.connectivity.insert(data.connectivity.end(), element.begin(), element.end());
   }
-  for (const auto& [ours, theirs] : boundary_names) {
-    const auto found = mesh.nodes.find(ours);
-    if (found == mesh.nodes.end()) continue;
-    data.boundaries.emplace_back(theirs, std::vector<std::int64_t>(found->second.begin(), found->second.end()));
+  for (const auto& [ours, theirs] : names_in_files(mesh, names)) {
+    const std::vector<int>& nodes = mesh.nodes.at(ours);
+    data.boundaries.emplace_back(theirs, std::vector<std::int64_t>(nodes.begin(), nodes.end()));
+  }
+  if (mesh.region_names.size() > 1) {
+    data.regions.assign(mesh.region.begin(), mesh.region.end());
+    data.region_names = mesh.region_names;
   }
   return data;
 }

@@ -10,14 +10,21 @@
 
 namespace voussoir::host {
 
-/// The mesh with the names of its boundaries, but without numbers about its geometry.
-[[nodiscard]] io::MeshData mesh_data(const fem::Mesh& mesh);
+enum class BoundaryNames {
+  of_files,  ///< those that files of the built-in kinds have: axis is "left", side "right", opening "tunnel"
+  of_mesh    ///< the mesh's own
+};
+
+/// The mesh with the names of its boundaries and, where it has several, its regions, but without numbers about its
+/// geometry.
+[[nodiscard]] io::MeshData mesh_data(const fem::Mesh& mesh, BoundaryNames names = BoundaryNames::of_files);
 
 /// The mesh of ground under its own weight, with the numbers that figures need: the height of the surface, the loads
 /// and, where the mesh has an opening, the tunnel's diameter and depth.
 [[nodiscard]] io::MeshData mesh_data(const fem::Mesh& mesh, const GroundCase& soil);
 
-/// All nodal and Gauss-point fields. `reactions` are those of fem::Increment::reactions [N/m]; where the vector is
+/// All nodal and Gauss-point fields. At points that have been dug out, all of the latter but the coordinates are NaN.
+/// `reactions` are those of fem::Increment::reactions [N/m]; where the vector is
 /// empty, the field `reaction` is left out.
 [[nodiscard]] std::vector<io::Field> result_fields(const Ground& ground, const Eigen::VectorXd& reactions);
 

@@ -31,7 +31,8 @@ struct Common {
 
 Common common_of(const io::Table& table, Common above) {
   const auto base = table.optional_path(
-      {"base", "Case file of the runs, relative to this file; that of a grid or a run goes before that of the sweep."});
+      {"base",
+       "Case file of the runs, relative to this file. A `base` of a grid or of a run overrides that of the sweep."});
   if (base) above.base = *base;
   const io::Key set{
       "set",
@@ -147,6 +148,26 @@ void add_run(SweepPlan& plan, const io::Table& table, const Common& above) {
                        .place = table.place("set")});
 }
 
+void add_runs(SweepPlan& plan, const io::Table& root) {
+  const Common common = common_of(root, {});
+  for (const io::Table& table : runs_in(root)) add_run(plan, table, common);
+  for (const io::Table& grid : grids_in(root)) add_grid(plan, grid, common);
+  if (plan.runs.empty()) throw root.error("run", "there is no [[run]] and no [grid] in this sweep");
+}
+
+/// A sweep in which every key has been read.
+io::CaseFile known_sweep() {
+  io::CaseFile file = io::CaseFile::of_text(
+      "[[run]]\nname = \"a\"\n[[grid]]\n\"ground.height\" = [1]\n[grid.soil]\ndense = \"a=1\"\n", "keys of sweeps");
+  const Common common = common_of(file.root(), {});
+  for (const io::Table& run : runs_in(file.root())) static_cast<void>(read_run(run, common));
+  for (const io::Table& grid : grids_in(file.root())) {
+    static_cast<void>(read_grid(grid, common));
+    static_cast<void>(points_of(grid, {}));
+  }
+  return file;
+}
+
 /// Refuses two runs of one folder, and a run in the folder of another. Names that differ in "/" and "__" only count as
 /// one, because outcome_path makes one file of them. This file must have a name that the file system takes.
 void refuse_names(const SweepPlan& plan) {
@@ -174,25 +195,19 @@ void refuse_names(const SweepPlan& plan) {
 SweepPlan load_sweep(const fs::path& file) {
   const io::CaseFile text = io::CaseFile::load(file);
   SweepPlan plan{.file = file, .text = io::read_text_file(file, most_sweep_bytes), .runs = {}, .ensembles = {}};
-  const io::Table root = text.root();
-  const Common common = common_of(root, {});
-  for (const io::Table& table : runs_in(root)) add_run(plan, table, common);
-  for (const io::Table& grid : grids_in(root)) add_grid(plan, grid, common);
-  if (plan.runs.empty()) throw root.error("run", "there is no [[run]] and no [grid] in this sweep");
+  try {
+    add_runs(plan, text.root());
+  } catch (const io::InputError&) {
+    text.finish_as(known_sweep());  // a misspelt key is often why a value is missing
+    throw;
+  }
   text.finish();
   refuse_names(plan);
   return plan;
 }
 
 io::KeyList keys_of_sweep() {
-  const io::CaseFile file = io::CaseFile::of_text(
-      "[[run]]\nname = \"a\"\n[[grid]]\n\"ground.height\" = [1]\n[grid.soil]\ndense = \"a=1\"\n", "keys of sweeps");
-  const Common common = common_of(file.root(), {});
-  for (const io::Table& run : runs_in(file.root())) static_cast<void>(read_run(run, common));
-  for (const io::Table& grid : grids_in(file.root())) {
-    static_cast<void>(read_grid(grid, common));
-    static_cast<void>(points_of(grid, {}));
-  }
+  const io::CaseFile file = known_sweep();
   return {file.keys(), file.tables()};
 }
 

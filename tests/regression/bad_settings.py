@@ -16,6 +16,7 @@ LINES = [
     ("[soil]\nsize_minimum = '-2 mm'", ["size_minimum", "at least 0.001 mm"], ""),
     ("[soil]\nmodulus = '3 mm'", ["modulus", "length"], ""),
     ("[soil]\nmodulus = 3", ["modulus"], ""),
+    ("[soil]\nsizes = ['1 mm', '2 mm']\npasing = [0, 1]", ["soil.pasing", 'did you mean "passing"?'], ""),
     ("this is no TOML", [], TOML),
 ]
 
@@ -58,6 +59,7 @@ SWEEPS = [
     ("[[run]]\nname = 'a'\n[[run]]\nname = 'a'\n", ["name"], RELATION),
     ("[[run]]\nname = 'a,b'\n", ["name", "letters"], ""),
     ("[[run]]\nset = []\n", ["run[0].name", "is missing"], ""),
+    ("[[run]]\nnmae = 'a'\n", ["sweep.toml:3: run[0].nmae", 'unknown key; did you mean "name"?'], ""),
     ("[grid]\n'ground.cover_ratio' = [2]\nmembers = 0\n", ["grid.members", "at least 1"], ""),
     ("[grid]\n'ground.cover_ratio' = []\n", ["has no values"], ""),
 ]

@@ -201,7 +201,7 @@ class Runs(unittest.TestCase):
         self.assertIn("φ_p is not met, off by -9.1°", table)
 
     def test_own_soil_has_no_name_of_the_study(self):
-        for sizes, name in (('["2 mm", "20 mm"]', "gravel"), ('["1 mm", "8 mm"]', "dense sand")):
+        for sizes, name in (('["2 mm", "20 mm"]', "gravel"), ('["1 mm", "8 mm"]', "sand")):
             made_up_tests("runs/own", 100, [1e5, 1e5], case=f"[soil]\nsizes = {sizes}\npassing = [0, 1]\n")
             table_two.write([element_tests.Series(RunIndex("runs/own"))], Path("own.md"))
             table = Path("own.md").read_text()

@@ -16,10 +16,10 @@ import h5py
 import numpy as np
 from program import PROGRAM, check
 
-KINDS = ("pack", "probe", "biaxial", "biaxial_bvp", "calibrate", "column", "tunnel")
+KINDS = ("pack", "probe", "biaxial", "biaxial_bvp", "calibrate", "column", "tunnel", "scene")
 UNITS = {"length": "m", "pressure": "Pa", "unit weight": "N/m3", "density": "kg/m3", "angle": "rad"}
 
-# A case of each kind that is done in about a second, by table. `soil.class` and `probe.path` are arrays of tables.
+# A case of each kind that is done in about a second, by table; the names of arrays of tables end in [].
 GRAINS = {"packing": {"grains": "40", "folder": '"packings"'}, "engine": {"preset": '"fast"'}}
 TESTS = {"pressures": '["100 kPa"]', "strain": '"2 %"', "window": '"1 %"', "samples": "100", "inertial_number": "3e-4"}
 TINY = {
@@ -54,7 +54,53 @@ TINY = {
         "gravity": {"ratio": "10", "uniform_step": "1"},
         "volume_loss": {"total": '"1 %"', "increments": "1"},
     },
+    "scene": GRAINS
+    | {
+        "": {"material": '"linear_elastic"'},
+        "gravity": {"ratio": "10", "uniform_step": "1"},
+        "region[]": {"name": '"ground"'},
+        "support[]": {"boundary": '["base", "cavity", "far", "left"]', "fix": '"xy"'},
+        "stage[]": {"name": '"load"', "steps": "1"},
+    },
 }
+# A scene has one of these as [mesh]: the first that has the key in question or, for keys with a default, one like it.
+MESHES = {
+    "grid": {"x": '["0 m", "1 m"]', "columns": "1", "y": '["0 m", "1 m"]', "rows": "1"},
+    "tunnel": {
+        "width": '"40 m"',
+        "height": '"20 m"',
+        "diameter": '"5 m"',
+        "cover_ratio": "1",
+        "size_opening": '"2.5 m"',
+        "size_far": '"8 m"',
+    },
+    "ring": {"radius": '"1 m"', "outer": '"2 m"', "columns": "2", "rows": "2"},
+}
+LIKE = {"interfaces": "width", "ratio": "radius", "part": "radius"}
+HELD = {"grid": '"base"', "tunnel": '["base", "left", "right"]', "ring": '["x0", "y0"]'}
+MOVED = {"grid": '"top"', "tunnel": '"top"', "ring": '"far"'}
+NEEDED = {  # what an entry of an array of tables cannot be without
+    "soil.class[]": {"size_to": '"1 m"'},
+    "region[].soil.class[]": {"size_to": '"1 m"'},
+    "stage[].press[]": {"boundary": '"top"'},
+    "stage[].release[]": {"boundary": '"base"'},
+    "stage[].excavate[]": {"region": '"ground"'},
+    "stage[].move[]": {},
+    "record[]": {"name": '"record"'},
+}
+
+
+def scene_tables(settings):
+    """The tiny scene whose shape has these keys. Its move is left out where another table of the stage has a key."""
+    names = [key.removeprefix("mesh.") for key in settings if key.startswith("mesh.")]
+    wanted = LIKE.get(names[0], names[0]) if names else "x"
+    shape = next((one for one, keys in MESHES.items() if wanted in keys), "grid")
+    tables = {"mesh": {"shape": f'"{shape}"', **MESHES[shape]}}
+    tables |= {name: dict(keys) for name, keys in TINY["scene"].items()}
+    tables["support[]"]["boundary"] = HELD[shape]
+    if not any(key.startswith("stage[].") and key.count(".") == 2 and ".move" not in key for key in settings):
+        tables["stage[].move[]"] = {"boundary": MOVED[shape], "y": '"1 mm"'}
+    return tables
 
 
 # What a value at its limit needs beside it, so that no relation between keys forbids it; by key and limit, or by key.
@@ -116,6 +162,11 @@ BESIDE = {
 }
 # Lists that need more than one entry, by key and limit, or by key; {} is the limit.
 LISTS = {
+    ("mesh.x", "10 km"): '["0 m", {}]',
+    ("mesh.y", "10 km"): '["0 m", {}]',
+    "mesh.x": '[{}, "1 m"]',
+    "mesh.y": '[{}, "1 m"]',
+    "stage[].press[].traction": '[{}, "0 Pa"]',
     ("soil.sizes", "0.001 mm"): '[{}, "0.002 mm"]',
     ("soil.sizes", "1 m"): '["0.5 m", {}]',
     ("calibrate.rolling_stiffness", "10"): "[0.1, {}]",
@@ -135,20 +186,21 @@ def keys_of(kind):
 def lines_of(kind, settings):
     """The tiny case of a kind as TOML, with further settings, a dictionary of full keys. Returns text and, for each
     key, its line."""
-    tables = {name: dict(keys) for name, keys in TINY[kind].items()}
+    tables = scene_tables(settings) if kind == "scene" else {name: dict(keys) for name, keys in TINY[kind].items()}
     known = {key["key"] for key in keys_of_kind(kind)}
     for key, value in settings.items():
         if key.rsplit(".", 1)[0] == key:
             tables.setdefault("", {})[key] = value
         elif key in known:
             table, name = key.rsplit(".", 1)
-            if table == "soil.class[]":
-                tables.setdefault(table, {"size_to": '"1 m"'})
-            tables.setdefault(table, {})[name] = value
+            tables.setdefault(table, dict(NEEDED.get(table, {})))[name] = value
+            if key in ("stage[].move[].rotation", "stage[].move[].area"):
+                tables[table] = {"boundary": '"top"', name: value, "about": '["0 m", "0 m"]'}
     lines, place = ["", f'kind = "{kind}"'], {"kind": 2}
-    for table in sorted(tables, key=lambda name: (name != "", name.endswith("[]"))):
+    for table in sorted(tables, key=lambda name: (name != "", "[]" in name, name)):
         if table:
-            lines.append(f"[[{table[:-2]}]]" if table.endswith("[]") else f"[{table}]")
+            plain = table.replace("[]", "")
+            lines.append(f"[[{plain}]]" if table.endswith("[]") else f"[{plain}]")
         for name, value in tables[table].items():
             if table == "" and name == "kind":
                 lines[1] = f"kind = {value}"
@@ -175,6 +227,9 @@ def parts(limit):
 
 def written(key, number, unit):
     value = f'"{number} {unit}"' if unit else f"{number}"
+    if key["type"].endswith("place"):
+        place = f'[{value}, "0 m"]'
+        return f'[{place}, ["0 m", "0 m"]]' if key["type"].startswith("list") else place
     if not key["type"].startswith("list"):
         return value
     limit = f"{number} {unit}".strip()
@@ -212,6 +267,13 @@ def values_inside(key):
     return []
 
 
+# Lists in whose place one value may stand, and texts or numbers that are such values.
+OR_ONE = {
+    f"mesh.{name}" for name in ("columns", "rows", "x_ratio", "y_ratio", "layers", "base", "top", "left", "right")
+}
+OR_ONE |= {"support[].boundary"}
+
+
 def wrong_forms(key):
     """Values of wrong forms. Each must be refused with one line that names the key."""
     kind, listed = key["type"], key["type"].startswith("list")
@@ -235,13 +297,20 @@ def wrong_forms(key):
         forms += ["1.0", "1e3", '"1"', "true", "99999999999999999999", "0.5"]
     elif kind == "boolean":
         forms += ["1", '"true"', "[true]"]
+    elif kind.endswith("place"):
+        forms += ["1", "true", '""', '["1 m"]', '["1 m", "2 m", "3 m"]', "[1, 2]", '["1 Pa", "1 m"]']
+    elif kind == "list of list of text":
+        return ["1", "true", '"x"', "[]", "[[]]", '["x"]', "[[1]]", "{}"]
     else:
         forms += ["1", "true", '"a\\nb"', '"a\\u0000b"', '"\\u001b[31m"', '"' + "x" * 3000 + '"']
     if kind == "choice":
         forms += ['""', '"no_such_choice"', '"' + "x" * 300 + '"', '"Ω"']
     if kind == "path":
         forms += ['""', '"no_such_file.csv"', '"."', '"/dev/null"', '"' + "x" * 300 + '"']
-    return [f"[{form}]" for form in forms if form != "[[1]]"] + ["1", '"x"'] if listed else [*forms, "[1]"]
+    if not listed:
+        return [*forms, *([] if kind == "place" else ["[1]"])]
+    one = [] if key["key"] in OR_ONE else ["1", '"x"']
+    return [f"[{form}]" for form in forms if form != "[[1]]"] + one
 
 
 class Trial:

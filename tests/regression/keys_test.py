@@ -95,6 +95,33 @@ for kind in (*KINDS, "sweep"):
     check(keys(kind, "--markdown").startswith("## Keys of"), f"no page of {kind}")
     Draft202012Validator.check_schema(json.loads(keys(kind, "--json-schema")))
 
+
+# One key, and one table, by name: the lines that the list of all keys has.
+ALL_LINES = keys().splitlines()
+
+
+def names_in(lines):
+    return [line.split(",")[0] for line in lines[1:]]
+
+
+def lines_of_name(name):
+    lines = keys(name).splitlines()
+    check(lines[0] == ALL_LINES[0] and set(lines) <= set(ALL_LINES), f"{name}: other lines than in the list of all")
+    return names_in(lines)
+
+
+check(lines_of_name("soil.thickness") == ["soil.thickness"], "voussoir keys soil.thickness")
+check(lines_of_name("extends") == ["extends"] * 2, "voussoir keys extends: of cases and of sweep files")
+for name in ("soil.class.size_to", "soil.class[].size_to", "soil.class[0].size_to"):
+    check(lines_of_name(name) == ["soil.class[].size_to"], f"voussoir keys {name}")
+of_soil = lines_of_name("soil")
+check(of_soil == [name for name in names_in(ALL_LINES) if name.startswith("soil.")], f"voussoir keys soil: {of_soil}")
+of_column = [name for name in names_in(ALL_LINES) if name.startswith("column.")]
+check(lines_of_name("[column]") == of_column, "brackets do not ask for the table")
+check({"ground.height", *of_column} < set(names_in(keys("column").splitlines())), "the kind of the same name")
+page = keys("soil.thickness", "--markdown")
+check(page.startswith("## Keys of case files\n\n### `[soil]`\n") and page.count("\n| `") == 1, page)
+
 for schema in schemas.values():
     Draft202012Validator.check_schema(schema)
 of_case, of_sweep = (Draft202012Validator(schemas[f"docs/reference/{name}.schema.json"]) for name in ("case", "sweep"))
@@ -183,7 +210,7 @@ def excuse_of(value):
 def wrong_values(key):
     """(value, why a schema may accept it) of a key."""
     for _, _, outside, _ in limits_of(key):
-        yield outside, UNIT if key["dimension"] else ""
+        yield outside, UNIT if key["dimension"] or "place" in key["type"] else ""
     for form in wrong_forms(key):
         yield form, excuse_of(form)
 

@@ -4,7 +4,8 @@ tests of strength; and no alarm at 800 kPa."""
 from pathlib import Path
 
 import h5py
-from program import PROGRAM, check, fresh, run, table
+import numpy as np
+from program import PROGRAM, ROOT, check, fresh, run, table
 
 PACKING = '[packing]\ngrains = 60\nseeds = [1]\nfolder = "packings"\n'
 fresh("packings")
@@ -32,13 +33,38 @@ for case, near, far in (
     ("pack.toml", "packing.pressure=800 kPa", "packing.pressure=10 MPa"),
     ("test.toml", "biaxial.strain=4 %", 'biaxial.pressures=["100 kPa", "5 MPa"]'),
     ("column.toml", "ground.height=40 m", "ground.height=230 m"),
-    ("column.toml", "ground.unit_weight=40 kN/m3", "ground.unit_weight=500 kN/m3"),
+    ("column.toml", "ground.unit_weight=29 kN/m3", "ground.unit_weight=500 kN/m3"),
 ):
     within, beyond = (run(words("check", case, setting)).stdout for setting in (near, far))
     check("kappa = " in within and "mean overlap about" in within, f"{case}: kappa is not foretold: {within}")
     check("warning" not in within, f"{case} at {near}: a false alarm: {within}")
     check("beyond what the contact law is good for: kappa =" in beyond, f"{case} at {far}: no warning: {beyond}")
     check("will interpenetrate" in beyond, f"{case} at {far}: interpenetration is not foretold: {beyond}")
+
+# A unit weight that no ground has, with grains and without, and contacts that are softer or stiffer than all measured.
+UNLIKELY = "# warning: ground.unit_weight (--set) is {} kN/m3, but ground weighs 7 kN/m3"
+for case, setting, warning in (
+    ("column.toml", "ground.unit_weight=2 kN/m3", UNLIKELY.format(2)),
+    ("column.toml", "ground.unit_weight=31 kN/m3", UNLIKELY.format(31)),
+    (str(ROOT / "cases/tunnel_elastic/case.toml"), "ground.unit_weight=2 kN/m3", UNLIKELY.format(2)),
+    ("pack.toml", "soil.modulus=30 MPa", "# warning: soil.modulus of 30 MPa with soil.thickness of 0.1 m makes soft"),
+    ("pack.toml", "soil.modulus=300 GPa", "makes stiff contacts: kappa = 5.06e+04 at 100 kPa"),
+    ("test.toml", "soil.thickness=5 m", "makes soft contacts: kappa = 10.1 at 100 kPa, outside of 60 to 6000"),
+):
+    told = run(words("check", case, setting)).stdout
+    check(told.count(warning) == 1, f"{case} at {setting} is not warned of once: {told}")
+for case, setting in (
+    ("column.toml", "ground.unit_weight=7 kN/m3"),
+    ("column.toml", "ground.unit_weight=30 kN/m3"),
+    ("pack.toml", "soil.modulus=400 MPa"),
+    ("pack.toml", "soil.modulus=30 GPa"),
+    ("column.toml", "soil.modulus=400 MPa"),
+):
+    told = run(words("check", case, setting)).stdout
+    check("warning" not in told, f"{case} at {setting}: a false alarm: {told}")
+for own in sorted((ROOT / "cases").glob("*/case.toml")):
+    told = run(words("check", str(own))).stdout
+    check("ground.unit_weight (" not in told and "contacts: kappa" not in told, f"{own}: a false alarm: {told}")
 
 # A packing below the void ratio of the densest one is neither kept nor used.
 made = run(words("run", "pack.toml", "packing.pressure=800 kPa"))
@@ -50,8 +76,15 @@ check("is refused and left out: its void ratio of" in refused.stdout, f"not refu
 check(len(list(Path("packings").glob("*.h5"))) == kept, "an interpenetrating packing is kept")
 
 # Tests of strength: valid at 800 kPa, invalid at 2 MPa, where the packing itself is still within the range.
-done = run(words("run", "test.toml", folder="test"))
-check(done.stdout.count("  valid\n") == 1 and "converged" not in done.stdout, f"800 kPa: {done.stdout}")
+# The closing line has the mean of the dilatancy angles with their standard deviation.
+done = run(words("run", "test.toml", "packing.seeds=[1, 2]", folder="test"))
+check(done.stdout.count("  valid\n") == 2 and "converged" not in done.stdout, f"800 kPa: {done.stdout}")
+with h5py.File("test/run.h5") as opened:
+    psi = opened["tables/strength/dilatancy_angle"][()]
+mean, deviation = np.degrees(np.arcsin(np.sin(psi).mean())), np.degrees(psi.std(ddof=1))
+check(psi.max() - psi.min() > np.radians(0.3), "the two tests have the same dilatancy")
+said = f"psi_max {mean:.1f} +- {deviation:.1f} deg (the mean of 2 tests, smoothed over 1.0 % of axial strain)"
+check(said in done.stdout, f"{said}: {done.stdout}")
 done = run(words("run", "test.toml", 'biaxial.pressures=["2 MPa"]', "biaxial.strain=14 %", folder="beyond"), code=3)
 check(
     "beyond the contact law's range" in done.stdout and "are invalid because" in done.stderr, done.stdout + done.stderr

@@ -2,6 +2,7 @@
 
 import os
 import sys
+import tomllib
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,8 +12,10 @@ sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
 import numpy as np
 from voussoir_plots import chains, points, q8, settlements, tensors, trends
+from voussoir_plots.packings import Packing
 from voussoir_plots.result import Result
 
+ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 LOSS = np.linspace(0, 0.2, 81)
 
 
@@ -154,16 +157,58 @@ class Paths(unittest.TestCase):
         )
 
     def test_soil_as_the_case_tells(self):
-        def soil_of(**case):
+        """The name of the soil is the study's only where grading and density are; what the trends are compared with is
+        the study's soil that is nearest."""
+
+        def expect(name, nearest, **case):
             result = Result.__new__(Result)  # without a file
             result.case = case
-            return result.soil
+            self.assertEqual((result.soil, result.nearest_soil), (name, nearest), case)
 
-        self.assertEqual(soil_of(), "dense sand")
-        self.assertEqual(soil_of(soil={"sizes": ["4 mm", "20 mm"]}), "gravel")
-        self.assertEqual(soil_of(soil={"sizes": ["0.4 cm", "2 cm"]}), "gravel")
-        self.assertEqual(soil_of(packing={"consolidation_friction": 0.16}), "medium dense sand")
-        self.assertEqual(soil_of(material="linear_elastic"), "no grains")
+        expect("dense sand", "dense sand")
+        expect("own gravel", "gravel", soil={"sizes": ["4 mm", "20 mm"], "passing": [0, 1]})
+        expect("own gravel", "gravel", soil={"sizes": ["0.4 cm", "2 cm"], "passing": [0, 1]})
+        expect("own sand", "dense sand", soil={"size_minimum": "1 mm"})
+        expect("dense sand", "dense sand", soil={"sizes": ["2 mm", "0.475 cm"], "passing": [0, "100 %"]})
+        expect("own sand", "dense sand", soil={"sizes": ["2 mm", "3 mm", "4.75 mm"], "passing": [0, 0.9, 1]})
+        gravel = tomllib.loads((ROOT / "cases/soils/cpg_d.toml").read_text())
+        expect("gravel", "gravel", **gravel)
+        gravel["soil"]["passing"][2] = 0.4
+        expect("own gravel", "gravel", **gravel)
+        expect("medium dense sand", "medium dense sand", packing={"consolidation_friction": 0.45})
+        rolling = {"consolidation_friction": 0.45, "consolidation_rolling": True}
+        expect("own sand", "medium dense sand", packing=rolling)
+        expect("own sand", "medium dense sand", packing={"consolidation_friction": 0.16})
+        expect("own sand", "medium dense sand", packing={"void_ratio": 0.234})
+        expect("medium dense sand", "medium dense sand", packing={"void_ratio": 0.25})
+        expect("own sand", "dense sand", packing={"file": "some_particles.csv"})
+        expect("no grains", "no grains", material="linear_elastic")
+
+    def test_the_packing_tells_its_soil(self):
+        def name(labels, void_ratio, **numbers):
+            packing = Packing.__new__(Packing)  # without a file
+            packing.radius, packing.cell = np.array([1.02e-3, 2.3e-3]), np.eye(2)
+            packing.labels = {"soil.size_minimum": "2 mm", "soil.size_maximum": "4.75 mm"} if labels is None else labels
+            packing.numbers = {"void_ratio": void_ratio, **numbers}
+            return packing.soil
+
+        self.assertEqual(name(None, 0.14, consolidation_friction=0), "dense sand")
+        self.assertEqual(name(None, 0.21, consolidation_friction=0.45), "medium dense sand")
+        self.assertEqual(name(None, 0.255, consolidation_friction=0.43), "medium dense sand")
+        self.assertEqual(name(None, 0.234, consolidation_friction=0.3), "own sand")
+        self.assertEqual(name(None, 0.234, consolidation_friction=0.45, consolidation_rolling=1), "own sand")
+        self.assertEqual(name({}, 0.184), "own sand")
+        curve = {"soil.sizes": "[2 mm, 4.75 mm]", "soil.passing": "[0, 1]"}
+        self.assertEqual(name(curve, 0.184), "dense sand")
+        self.assertEqual(name(curve | {"soil.passing": "[0.1, 1]"}, 0.184), "own sand")
+
+    def test_the_foot_says_of_which_soil_the_scatter_is(self):
+        result = Result.__new__(Result)
+        result.tables = {"draw_scatter": {name: np.array([0.1]) for name in ("settlement", "reaction", "k0")}}
+        result.case = {}
+        self.assertIn("K0 by 10 % (standard deviations, docs", result.draw_note())
+        result.case = {"packing": {"void_ratio": 0.234}}
+        self.assertIn("(standard deviations in dense sand, not in this soil, docs", result.draw_note())
 
     def test_contraction(self):
         until = lambda v: np.interp(LOSS, [0, v, 0.2], [0, 0.01, -0.01])  # noqa: E731

@@ -69,7 +69,7 @@ def common_loss(results: Sequence[Result]) -> float:
 
 def widening(results: Sequence[Result]) -> trends.Trend:
     """Troughs widen with C/D: inflection of the surface trough of the dense sands, by cover."""
-    chosen = sorted((r for r in results if r.soil == "dense sand"), key=cover_ratio)
+    chosen = sorted((r for r in results if r.nearest_soil == "dense sand"), key=cover_ratio)
     if len({round(cover_ratio(r), 2) for r in chosen}) < 2:
         raise Missing("needs two covers of dense sand")
     loss = common_loss(chosen)
@@ -90,7 +90,7 @@ def _inflection(result: Result) -> tuple[np.ndarray, np.ndarray]:
 
 def depth_dependence(results: Sequence[Result]) -> trends.Trend:
     """K varies less with depth for shallow tunnels: measured is the largest minus the least K, z/C from 0 to 0.75."""
-    chosen = sorted((r for r in results if r.soil == "dense sand"), key=cover_ratio)
+    chosen = sorted((r for r in results if r.nearest_soil == "dense sand"), key=cover_ratio)
     if len({round(cover_ratio(r), 2) for r in chosen}) < 2:
         raise Missing("needs two covers of dense sand")
     loss, found = common_loss(chosen), []

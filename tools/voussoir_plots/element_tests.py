@@ -39,7 +39,7 @@ class Series:
 
     def __init__(self, run: RunIndex) -> None:
         self.run = run
-        self.soil = run.named_soil  # one of NAMES only where the grains are the study's
+        self.soil = run.soil  # one of NAMES only where it is the study's
         table = run.table("strength", *STRENGTH)
         valid = table.get("valid", np.ones(len(table["seed"])))  # files of the first versions lack it
         self.tests: list[Test] = []

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .result import Missing, Snapshot, Unreadable, check_format, plain, reading
-from .soils import soil_of
+from .soils import Curve, State, curve_of, name_of
 from .units import quantity
 
 
@@ -59,8 +59,23 @@ class Packing:
 
     @property
     def soil(self) -> str:
-        """ "gravel", "medium dense sand" or "dense sand", as for a run."""
-        return soil_of(2 * self.radius.max(), self.void_ratio, self.numbers.get("consolidation_friction", 0))
+        """One of the study's names, "own sand" or "own gravel", as for a run."""
+        state = State(
+            self.void_ratio,
+            self.numbers.get("consolidation_friction"),
+            not self.numbers.get("consolidation_rolling", 0),
+        )
+        return name_of(self._curve(), state)
+
+    def _curve(self) -> Curve:
+        """The grading that the packing was drawn from; of packings that do not tell it, the ends of its own."""
+        told = {
+            name.removeprefix("soil."): text.strip("[]").split(", ") if text.startswith("[") else text
+            for name, text in self.labels.items()
+        }
+        if "sizes" in told or "size_maximum" in told:
+            return curve_of(told)
+        return [(2 * self.radius.min(), 0.0), (2 * self.radius.max(), 1.0)]
 
     @cached_property
     def moduli(self) -> np.ndarray:

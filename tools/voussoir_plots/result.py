@@ -4,7 +4,7 @@ import os
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,8 +13,7 @@ import h5py
 import numpy as np
 
 from .settings import Settings
-from .soils import named, soil_of
-from .units import quantity
+from .soils import Curve, State, curve_of, name_of, nearest_soil, state_of
 
 FORMAT_VERSION = 1  # of docs/reference/files.md
 KINDS = (
@@ -139,24 +138,21 @@ class RunIndex:
 
     @property
     def soil(self) -> str:
-        """ "gravel", "medium dense sand", "dense sand", or "no grains" (an elastic solid), as the case describes it;
-        the study's trends differ."""
-        if self.case.get("material", "grains") != "grains":
-            return "no grains"
-        packing = self.case.get("packing", {})
-        return soil_of(self._sizes()[-1], packing.get("void_ratio", 0), packing.get("consolidation_friction", 0))
+        """The name of the soil: one of the study's where it is the study's soil ("dense sand"), else "own sand" or "own
+        gravel"; "no grains" for an elastic solid."""
+        return self._told_by(name_of)
 
     @property
-    def named_soil(self) -> str:
-        """The same, with "own" before it where the grains are not those of the study's soil."""
-        sizes = self._sizes()
-        return named(self.soil, sizes[0], sizes[-1])
+    def nearest_soil(self) -> str:
+        """The study's soil that is nearest to this one, as the case describes it: the study's trends differ among its
+        soils. "no grains" for an elastic solid."""
+        return self._told_by(nearest_soil)
 
-    def _sizes(self) -> list[float]:
-        """The grain diameters that the case names, ascending [m]; without a curve the least and the largest one."""
-        soil = self.case.get("soil", {})
-        ends = [soil.get("size_minimum", "2 mm"), soil.get("size_maximum", "4.75 mm")]
-        return sorted(_lengths(soil.get("sizes", []))) or sorted(_lengths(ends)) or [0.0]
+    def _told_by(self, tell: Callable[[Curve, State], str]) -> str:
+        """What is told of the grading and the density of the case's soil."""
+        if self.case.get("material", "grains") != "grains":
+            return "no grains"
+        return tell(curve_of(self.case.get("soil", {})), state_of(self.case.get("packing", {})))
 
 
 class Result(RunIndex):
@@ -198,8 +194,9 @@ class Result(RunIndex):
         if not all(len(scatter.get(name, ())) == 1 for name in names):
             return ""
         parts = [f"{said} by {100 * scatter[name][0]:.0f} %" for name, said in names.items()]
+        of_other_soil = "" if self.soil == "dense sand" else " in dense sand, not in this soil"
         return (
-            f"One draw of the packings: another one moves {', '.join(parts)} (standard deviations, "
+            f"One draw of the packings: another one moves {', '.join(parts)} (standard deviations{of_other_soil}, "
             "docs/validation/trust.md); `voussoir ensemble` gives bands."
         )
 
@@ -298,13 +295,6 @@ class Result(RunIndex):
         if nodes is None:
             raise Missing("run.h5 has no boundary tunnel")
         return nodes[np.argmax(self.coordinates[nodes, 1])]
-
-
-def _lengths(written: Iterable[Any]) -> Iterator[float]:
-    """The lengths among what a case file lists [m]."""
-    for one in written:
-        with suppress(ValueError):
-            yield quantity(one)
 
 
 def _check_folder(folder: Path, index: Path) -> None:

@@ -9,6 +9,7 @@ from . import output, paths, points, profiles, rotation, settlements, trends, tr
 from .reaction import curve
 from .resolution import percent
 from .result import Increment, Missing, Result
+from .soils import NAMES
 
 # Places and two stresses along a line, at an increment.
 Profile = Callable[[Result, Increment], tuple[np.ndarray, np.ndarray, np.ndarray]]
@@ -168,7 +169,8 @@ def _stresses(result: Result) -> list[trends.Trend]:
 def _reaction(result: Result) -> list[trends.Trend]:
     """Ground reaction curve"""
     loss, ratio, _ = curve(result)
-    return [trends.reaction(loss, ratio, result.soil)]
+    is_own = result.soil not in NAMES and result.soil != "no grains"
+    return [trends.reaction(loss, ratio, result.nearest_soil).where(not is_own, "reported for the soils of the study")]
 
 
 def _paths(result: Result) -> list[trends.Trend]:

@@ -254,6 +254,9 @@ TEST_F(MeshFileTest, FaultsNameTheirPlace) {
                  "the edge from (0, 0) to (1, 0) is on the boundaries base and middle");
   expect_refused(file_22(two_squares, two_quads + "3 3 2 7 1 1 2 5 4\n4 3 2 7 1 1 2 5 4\n"),
                  "an edge belongs to more than two elements: from (0, 0) to (1, 0)");
+  expect_refused(file_22(two_squares, replaced(two_quads, "3 6 5", "3 6 77")),
+                 "element 2 has the node 77, which the file lacks");
+  expect_refused(replaced(text_of(mesh_path("unnamed_groups.msh")), "9 1 5 9 8", "9 1 5 9 88"), "Unknown node 88");
   expect_refused(file_22("1 0 0 0\n2 3 0 0\n3 0.5 0.5 0\n4 0 3 0\n", "61 3 2 7 1 1 2 3 4\n"), "element 61 is folded");
   expect_refused(file_22(replaced(two_squares, "3 2 0", "3 nan 0"), two_quads),
                  "node 3 has a coordinate that is not finite");

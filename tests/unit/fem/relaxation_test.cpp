@@ -161,6 +161,43 @@ TEST(Relaxation, CollapseEndsInTheEquilibriumBehindIt) {
   EXPECT_EQ(pillar.last.material.deferral_error, pillar.material.committed_error);
 }
 
+TEST(SubstepFactor, FollowsTheWorkWithinItsBounds) {
+  SubstepFactor factor(1, {.least_factor = 0.25, .largest_factor = 3, .factor_growth = 1.5});
+  factor.learn(2, 1, 1);  // half of the work was done: twice the factor would have done it all
+  EXPECT_EQ(factor.value(), 1.5);
+  factor.learn(2, -1, 1);  // half as much again
+  EXPECT_EQ(factor.value(), 1);
+  factor.learn(2, -18, 1);
+  EXPECT_EQ(factor.value(), 0.25);
+  for (int k = 0; k < 9; ++k) factor.learn(-1, 1, 1);
+  EXPECT_EQ(factor.value(), 3);
+}
+
+TEST(SubstepFactor, AsksForANewMatrixWhereTheLeastFactorOvershoots) {
+  SubstepFactor factor(1, {.most_overshoots = 3});
+  for (int k = 0; k < 2; ++k) factor.learn(1, -9, 1);
+  EXPECT_FALSE(factor.needs_new_matrix());
+  factor.learn(1, 0.5, 1);  // a substep that falls short: the count begins anew
+  for (int k = 0; k < 3; ++k) factor.learn(1, -9, 1);
+  EXPECT_TRUE(factor.needs_new_matrix());
+  factor.learn(1, 0.9, 1);  // of the substep that has made it
+  EXPECT_FALSE(factor.needs_new_matrix());
+  EXPECT_EQ(factor.value(), 1);
+}
+
+TEST(SubstepFactor, HalvesItsLargestValueWhereTheResidualStays) {
+  SubstepFactor factor(1, {.largest_factor = 3, .most_in_vain = 5, .least_cap = 0.5});
+  for (const double largest : {1.5, 0.75, 0.5, 0.5}) {
+    while (!factor.needs_new_matrix()) factor.learn(1, 0.9, 1);
+    factor.learn(1, 0.9, 1);
+    EXPECT_EQ(factor.value(), std::min(1.0, largest));
+    for (int k = 0; k < 4; ++k) factor.learn(1, 0.9, 1);
+    EXPECT_EQ(factor.value(), largest);
+  }
+  for (int k = 0; k < 50; ++k) factor.learn(1, 0.9, std::pow(0.8, k));  // as long as it falls, the matrix serves
+  EXPECT_FALSE(factor.needs_new_matrix());
+}
+
 TEST(Relaxation, WithoutItNoCutFindsTheEquilibrium) {
   Pillar pillar;
   const StepReport report = pillar.advance({.relax_below = 0, .use_predictor = false});

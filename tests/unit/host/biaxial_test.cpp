@@ -58,6 +58,16 @@ TEST(Strength, CommonAngleIsTheSlopeThroughTheOrigin) {
   EXPECT_NEAR(std::sin(common_angle(angles, p)), (1 * 0.60 + 9 * 0.50) / 10, 1e-12);
 }
 
+TEST(Strength, CommonDilatancyIsTheMeanOfTheSinesWithTheScatterOfTheAngles) {
+  const double low = std::asin(0.1), high = std::asin(0.5);
+  const CommonDilatancy two = common_dilatancy(std::vector<double>{low, high});
+  EXPECT_NEAR(std::sin(two.mean), 0.3, 1e-12);
+  EXPECT_NEAR(two.deviation, (high - low) / std::sqrt(2.0), 1e-12);
+  const CommonDilatancy one = common_dilatancy(std::vector<double>{high});
+  EXPECT_NEAR(one.mean, high, 1e-12);
+  EXPECT_EQ(one.deviation, 0.0);
+}
+
 TEST(Strength, ACurveTooShortHasNone) { EXPECT_EQ(strength_of({}, 0.01).peak_angle, 0.0); }
 
 }  // namespace

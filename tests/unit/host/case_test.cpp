@@ -135,6 +135,21 @@ TEST(Case, ResolvedCaseGivesTheSameCase) {
   EXPECT_EQ(load_case(write(accurate.resolved)).engine.accuracy, 0.01);
 }
 
+TEST(Case, AnUnknownKeyIsReportedBeforeWhatItMakesWrong) {
+  const std::string sizes = "kind = 'pack'\n[soil]\nsizes = ['1 mm', '2 mm']\n";
+  expect_refused({sizes + "pasing = [0, 1]\n", {}, 4, "soil.pasing", "unknown key; did you mean \"passing\"?"});
+  expect_refused({sizes, {"soil.pasing=[0, 1]"}, 0, "soil.pasing", "unknown key; did you mean \"passing\"?"});
+  expect_refused({sizes, {}, 2, "soil.passing", "must have as many entries as sizes, has 0 in place of 2"});
+  expect_refused({"kidn = 'tunnel'\n", {}, 1, "kidn", "unknown key; did you mean \"kind\"?"});
+  expect_refused({"kind = 'tunel'\nweather = 3\n", {}, 2, "weather", "unknown key"});
+  expect_refused({"kind = 'tunel'\n[biaxial]\nstrain = 3\n", {}, 1, "kind", "must be one of pack, "});
+  expect_refused({"kind = 'probe'\n[[probe.path]]\ngradeint = [0, 0, 0, 0]\n",
+                  {},
+                  3,
+                  "probe.path[0].gradeint",
+                  "did you mean \"gradient\"?"});
+}
+
 TEST(Case, WrongValuesAreRefusedAtTheirPlace) {
   const std::string tunnel = "kind = 'tunnel'\n";
   expect_refused({"kind = 'tunel'\n", {}, 1, "kind", "must be one of pack, "});

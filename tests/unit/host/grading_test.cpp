@@ -102,12 +102,32 @@ TEST(Grading, MistakesAreNamed) {
     EXPECT_TRUE(said.starts_with(place + ": ")) << said;
     EXPECT_NE(said.find(part), std::string::npos) << said;
   };
-  expect("sizes = [\"2 mm\", \"4 mm\"]\npassing = [0, 0.9]", "4: soil.passing", "must rise from 0 to 1");
-  expect("sizes = [\"4 mm\", \"2 mm\"]\npassing = [0, 1]", "3: soil.sizes", "must ascend");
-  expect("sizes = [\"2 mm\", \"4 mm\"]\npassing = [0, 0.5, 1]", "4: soil.passing", "as many entries");
-  expect("[[soil.class]]\nsize_to = \"3 mm\"", "3: soil.class", "without a class");
+  const std::string two = "sizes = [\"2 mm\", \"4 mm\"]\n", three = "sizes = [\"2 mm\", \"4 mm\", \"5 mm\"]\n";
+  expect(two + "passing = [0, 0.9]", "4: soil.passing", "must rise from 0 to 1, but entry 2 (0.9) is the last one");
+  expect(two + "passing = [\"6 %\", 1]", "4: soil.passing",
+         "must rise from 0 to 1, but entry 1 (6 %) is the first one");
+  expect("sizes = [\"2 mm\"]\npassing = [1]", "4: soil.passing", "has only one entry");
+  expect("sizes = [\"4 mm\", \"2 mm\"]\npassing = [0, 1]", "3: soil.sizes",
+         "entry 2 (2 mm) is not larger than entry 1");
+  expect(three + "passing = [0, \"38 %\",\n\"30 %\"]", "5: soil.passing",
+         "must not fall, but entry 3 (30 %) is smaller than entry 2 (38 %)");
+  expect(two + "passing = [0, 0.5, 1]", "4: soil.passing", "must have as many entries as sizes, has 3 in place of 2");
+  expect("passing = [0, 1]", "2: soil.sizes", "must have as many entries as passing, has 0 in place of 2");
+  expect("[[soil.class]]\nsize_to = \"3 mm\"", "3: soil.class",
+         "the last one ends at 3 mm, and the largest grain has 4.75");
+  expect("[[soil.class]]\nsize_to = \"3 mm\"\n[[soil.class]]\nsize_to = \"2 mm\"", "6: soil.class[1].size_to",
+         "must ascend, but 2 mm is not larger than 3 mm");
   EXPECT_EQ(complaint("[[soil.class]]\nsize_to = \"3 mm\"\n[[soil.class]]\nsize_to = \"5 mm\"\nfriction = \"40 deg\""),
             "");
+}
+
+TEST(Grading, SizesThatDifferTooMuchAreNamedByTheKeysThatTheUserWrote) {
+  EXPECT_EQ(complaint("sizes = [\"1 mm\", \"2 mm\",\n\"20 cm\"]\npassing = [0, 0.4, 1]"),
+            "4: soil.sizes: entry 3 (20 cm) is more than 40 times entry 1 (1 mm): an RVE cannot hold grains of so "
+            "different sizes");
+  EXPECT_TRUE(complaint("size_maximum = \"20 cm\"").starts_with("3: soil.size_maximum: size_maximum (20 cm) is more"));
+  EXPECT_TRUE(complaint("size_minimum = \"1 um\"").starts_with("3: soil.size_minimum: size_maximum (4.75 mm) is more"));
+  EXPECT_EQ(complaint("sizes = [\"1 mm\", \"40 mm\"]\npassing = [0, 1]"), "");
 }
 
 }  // namespace

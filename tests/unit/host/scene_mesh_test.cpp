@@ -218,6 +218,28 @@ TEST(SceneMesh, RingLiesOnCircles) {
   }
 }
 
+SceneMeshCase mesh_file(const std::string& name) {
+  SceneMeshCase m;
+  m.shape = MeshShape::file;
+  m.file = std::string(VOUSSOIR_SOURCE_DIR) + "/tests/meshes/" + name;
+  return m;
+}
+
+TEST(SceneMesh, AFileHasItsRemarksAndItsKey) {
+  const SceneMesh slope = scene_mesh_with_remarks(mesh_file("slope_quad4.msh"));
+  EXPECT_NEAR(region_area(slope.mesh, "bank"), 75, 1e-9);
+  EXPECT_EQ(slope.remarks,
+            std::vector<std::string>{"170 elements of 4 nodes completed to 8 nodes with straight edges"});
+  SceneMeshCase in_millimetres = mesh_file("slope_quad4.msh");
+  in_millimetres.unit = 1e-3;
+  EXPECT_NEAR(region_area(scene_mesh(in_millimetres), "bank"), 75e-6, 1e-15);
+  in_millimetres.unit = 0;
+  expect_refused(in_millimetres, "mesh.unit: it must be positive and finite");
+  expect_refused(mesh_file("bad_text.msh"),
+                 "mesh.file: bad_text.msh is no Gmsh mesh: its first line is not $MeshFormat");
+  expect_refused(mesh_file("bad_no_groups.msh"), "mesh.file: no physical surface");
+}
+
 TEST(SceneMesh, ImpossibleShapesNameTheirKey) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto grid = [](auto change) {
@@ -250,11 +272,9 @@ TEST(SceneMesh, ImpossibleShapesNameTheirKey) {
   expect_refused(tunnel([](auto& m) { m.width = 2; }), "mesh.width: the tunnel is wider");
   expect_refused(tunnel([](auto& m) { m.size_opening = 3; }), "mesh.size_opening: it is more than half");
   expect_refused(tunnel([](auto& m) { m.size_far = 1; }), "mesh.size_far: it is smaller");
-  expect_refused(tunnel([](auto& m) { m.size_opening = 1e-4; }), "mesh.size_opening: tunnel mesh: the element sizes");
-  expect_refused(tunnel([](auto& m) { m.interfaces = {20}; }),
-                 "mesh.interfaces: tunnel mesh: an interface must be half");
-  expect_refused(tunnel([](auto& m) { m.interfaces = {5, 5}; }),
-                 "mesh.interfaces: tunnel mesh: interfaces must ascend");
+  expect_refused(tunnel([](auto& m) { m.size_opening = 1e-4; }), "mesh.size_opening: the element sizes");
+  expect_refused(tunnel([](auto& m) { m.interfaces = {20}; }), "mesh.interfaces: an interface must be half");
+  expect_refused(tunnel([](auto& m) { m.interfaces = {5, 5}; }), "mesh.interfaces: the interfaces must ascend");
   expect_refused(tunnel([](auto& m) { m.layers = {"a", "b"}; }), "mesh.layers: 2 names for 1 layers");
 
   const auto ring = [](auto change) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/case/load_case.hpp"
 #include "host/sweep/axes.hpp"
 #include "host/sweep/sweep_file.hpp"
 #include "io/input_error.hpp"
@@ -101,6 +102,18 @@ zip = [["ground.cover_ratio", "ground.height"]]
 )");
   EXPECT_EQ(names_of(found), (Names{"cover_ratio_1-height_30m-grains_100", "cover_ratio_1-height_30m-grains_200",
                                     "cover_ratio_2-height_40m-grains_100", "cover_ratio_2-height_40m-grains_200"}));
+}
+
+TEST_F(SweepFileTest, AnAxisReachesIntoTablesOfStages) {
+  write("scene.toml",
+        "kind = \"scene\"\n[mesh]\nshape = \"grid\"\nx = [\"0 m\", \"1 m\"]\ny = [\"0 m\", \"1 m\"]\ncolumns = 1\nrows "
+        "= 1\n"
+        "[[region]]\nname = \"ground\"\n[[stage]]\nname = \"a\"\ngravity = 1\n[[stage]]\nname = \"b\"\nsteps = 2\n"
+        "[[stage.move]]\nboundary = \"top\"\ny = \"-1 cm\"\n");
+  const SweepPlan found = plan("base = \"scene.toml\"\n[grid]\n\"stage[1].move[0].y\" = [\"-5 cm\", \"3 cm\"]\n");
+  EXPECT_EQ(names_of(found), (Names{"y_-5cm", "y_3cm"}));
+  const Case second = load_case(found.runs[1].case_file, found.runs[1].overrides);
+  EXPECT_EQ(second.scene.stages.at(1).moves.at(0).y.value_or(0), 0.03);
 }
 
 TEST_F(SweepFileTest, MembersDrawSeedsThatNoOtherMemberDraws) {

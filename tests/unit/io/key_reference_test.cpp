@@ -5,6 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "io/near_names.hpp"
 
 namespace voussoir::io {
 namespace {
@@ -58,6 +62,34 @@ TEST(KeyReference, ValuesOfATable) {
   expect_in(table, "key,type,dimension,default,at_least,at_most,choices,help,kinds\n");
   expect_in(table, "kind,choice,,(required),,,a|b,What.,a|b\n");
   expect_in(table, "ground.depth,quantity,length,5 m,1 m,9 m,,\"Depth, \"\"D\"\"; docs/validation/trade.md");
+}
+
+TEST(KeyReference, APartHasTheKeyOrTheTableOfItsName) {
+  KeyInfo size{.key = "soil.class[].size_to", .type = KeyType::quantity, .help = "A size."};
+  const KeyInfo list{.key = "soil.class", .type = KeyType::table, .list = true, .help = "A class."};
+  const KeyReference all = join_kinds("case", {{"a", {{kind, depth, size}, {ground, list}}}});
+  for (const char* name : {"soil", "soil.class", "soil.class[]", "[[soil.class]]", "soil.class[3].size_to"}) {
+    const KeyReference part = part_named(all, name);
+    ASSERT_EQ(part.keys.size(), 1U) << name;
+    EXPECT_EQ(part.keys[0].info.key, size.key);
+    ASSERT_EQ(part.tables.size(), 1U) << name;
+    EXPECT_EQ(part.tables[0].info.key, "soil.class");
+  }
+  EXPECT_EQ(part_named(all, "kind").keys.size(), 1U);
+  for (const char* name : {"ground.dep", "depth", "soi", "", "[]", "."})
+    EXPECT_TRUE(part_named(all, name).keys.empty());
+  EXPECT_EQ(plain_names(all),
+            (std::vector<std::string>{"ground", "soil.class", "kind", "ground.depth", "soil.class.size_to"}));
+}
+
+TEST(KeyReference, NearNamesAreThoseOfKeysAndOfTheirLastParts) {
+  const std::vector<std::string> known{"soil.thickness", "calibrate.thickness", "soil.friction", "tunnel", "tunnel"};
+  EXPECT_EQ(near_names("thicknes", known), (std::vector<std::string>{"soil.thickness", "calibrate.thickness"}));
+  EXPECT_EQ(near_names("soil.thicknes", known), (std::vector<std::string>{"soil.thickness"}));
+  EXPECT_EQ(near_names("tunel", known), (std::vector<std::string>{"tunnel"}));
+  EXPECT_TRUE(near_names("weather", known).empty());
+  EXPECT_TRUE(near_names(std::string(1000, 'x'), {std::string(1000, 'x')}).empty());
+  EXPECT_EQ(near_names("a", {"b", "c", "d", "e", "f", "g", "h"}).size(), 5U);
 }
 
 TEST(KeyReference, ThePageHasASectionForEachTableAndLinks) {

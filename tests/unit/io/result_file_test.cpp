@@ -96,6 +96,21 @@ TEST_F(ResultFileTest, ProvenanceOfTheFirstVersionsIsRead) {
   EXPECT_EQ(read.ranks, 1);
 }
 
+TEST_F(ResultFileTest, RegionsReadBackAndAreACellField) {
+  MeshData regions = mesh();
+  regions.regions = {1, 0};
+  regions.region_names = {"fill", "bank"};
+  ResultWriter::create(folder_, provenance_, regions).write(info(1), fields());
+  EXPECT_EQ(read_mesh(folder_ / "run.h5").regions, regions.regions);
+  EXPECT_EQ(read_mesh(folder_ / "run.h5").region_names, regions.region_names);
+  EXPECT_NE(xdmf().find("Name=\"region\" AttributeType=\"Scalar\" Center=\"Cell\""), std::string::npos);
+  EXPECT_NE(xdmf().find("run.h5:/mesh/regions"), std::string::npos);
+  ResultWriter::create(folder_, provenance_, mesh()).write(info(1), fields());
+  EXPECT_FALSE(Hdf5File::open(folder_ / "run.h5").has("/mesh/regions")) << "one region has no field";
+  EXPECT_TRUE(read_mesh(folder_ / "run.h5").region_names.empty());
+  EXPECT_EQ(xdmf().find("region"), std::string::npos);
+}
+
 TEST_F(ResultFileTest, EverythingReadsBack) {
   ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
   const RveSnapshot snapshot{.name = "crown",

@@ -67,9 +67,10 @@ def _tunnels(study: Study) -> list[str]:
         "|---|---|---|---|---|---|",
     ]
     for tunnel in study.tunnels:
+        soil = tunnel.soil if tunnel.code == tunnel.soil else f"{tunnel.soil} ({tunnel.code})"
         members = str(tunnel.count) if tunnel.count > 1 else "a single run: no bands"
         lines.append(
-            f"| {tunnel.name} | {tunnel.soil} ({tunnel.code}) | {tunnel.cover_ratio:.3g} | {members} | "
+            f"| {tunnel.name} | {soil} | {tunnel.cover_ratio:.3g} | {members} | "
             f"{percent(float(tunnel.loss[-1]))} | {tunnel.representative.folder.name} |"
         )
     if study.left_out:

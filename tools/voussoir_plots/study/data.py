@@ -35,13 +35,17 @@ class Tunnel:
 
     @property
     def soil(self) -> str:
+        """One of the study's names only where it is the study's soil."""
         return self.members[0].soil
+
+    @property
+    def nearest_soil(self) -> str:
+        return self.members[0].nearest_soil
 
     @property
     def code(self) -> str:
         """The paper's name of the soil, where it is one of the paper's."""
-        soil = self.members[0].named_soil
-        return NAMES.get(soil, soil)
+        return NAMES.get(self.soil, self.soil)
 
     @cached_property
     def cover_ratio(self) -> float:
@@ -110,8 +114,8 @@ class Study:
         self.settings = self.tunnels[0].members[0].settings
 
     def covers(self) -> list[Tunnel]:
-        """The tunnels in dense sand, by cover."""
-        found = [tunnel for tunnel in self.tunnels if tunnel.soil == "dense sand"]
+        """The tunnels in dense sand or in a soil of the user that is nearest to it, by cover."""
+        found = [tunnel for tunnel in self.tunnels if tunnel.nearest_soil == "dense sand"]
         if not found:
             raise Missing("there is no tunnel in dense sand")
         return found

@@ -127,7 +127,7 @@ def draw_networks(study: Study, path: Path) -> None:
     over_the_loss(left, "mechanical coordination  $Z_m$  [-]")
     left.set_title("(a) whole network at Aa")
     left.legend()
-    for tunnel in (t for t in tunnels if t.soil != "medium dense sand"):
+    for tunnel in (t for t in tunnels if t.nearest_soil != "medium dense sand"):
         for (threshold, field), line in zip(STRONG.items(), LINES):
             bands = tunnel.over_loss(partial(strong_at, "Aa", field))
             label = rf"{tunnel.code}, $\xi$ = {threshold:g}"

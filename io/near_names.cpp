@@ -1,0 +1,60 @@
+#include "io/near_names.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "io/key_reference.hpp"
+
+namespace voussoir::io {
+
+std::size_t most_distance(std::string_view name) { return name.size() / 3 + 1; }
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+std::string nearest_name(const std::vector<std::string>& names, std::string_view wanted) {
+  std::size_t best = most_distance(wanted);
+  std::string nearest;
+  for (const std::string& name : names) {
+    const std::size_t distance = edit_distance(name, wanted);
+    if (distance <= best) {
+      best = distance;
+      nearest = name;
+    }
+  }
+  return nearest;
+}
+
+std::vector<std::string> near_names(const std::string& wanted, const std::vector<std::string>& known) {
+  constexpr std::size_t longest = 100, most_names = 5;
+  if (wanted.size() > longest) return {};
+  const bool has_table = wanted.find('.') != std::string::npos;
+  std::vector<std::pair<std::size_t, std::string>> found;
+  for (const std::string& name : known) {
+    std::size_t distance = edit_distance(wanted, name);
+    if (!has_table) distance = std::min(distance, edit_distance(wanted, last_part(name)));
+    if (distance <= most_distance(wanted)) found.emplace_back(distance, name);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  // Where one name is a letter or two away, those at twice its distance and more are no longer meant.
+  std::vector<std::string> names;
+  for (auto& [distance, name] : found) {
+    if (names.size() == most_names || distance > 2 * found.front().first) break;
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+  }
+  return names;
+}
+
+}  // namespace voussoir::io
