@@ -220,19 +220,40 @@ def draw_specimen(ensemble: Ensemble, path: Path) -> None:
     save(figure, path)
 
 
-def draw_boundaries(ensemble: Ensemble, path: Path) -> None:
-    """What the moved boundaries of a scene bear, over the mean of their displacement."""
-    moved = scene.motions_of(
+def motions(ensemble: Ensemble) -> list[scene.Motion]:
+    """The moved boundaries of an ensemble of scenes; Missing is raised where there are none."""
+    return scene.motions_of(
         ensemble.case, lambda name: ensemble.curves[name].mean if name in ensemble.curves else None
     )
+
+
+def _reach(values: np.ndarray) -> float:
+    return float(np.ptp(values)) if len(values) else 0.0
+
+
+def boundary_bands(ensemble: Ensemble, motion: scene.Motion) -> tuple[np.ndarray, Bands, float]:
+    """Mean displacement [mm] and reaction [N/m] of a moved boundary in the stage that moves it most while it is held,
+    and the sign of the reaction with which the support first pushes the ground."""
+    x = ensemble.curve(f"displacement_{motion.name}_{motion.axis}").mean
+    bands = ensemble.curve(f"reaction_{motion.name}_{motion.axis}")
+    far = {
+        name: _reach(x[(ensemble.stage == name) & (bands.mean != 0)])
+        for name in dict.fromkeys(ensemble.stage)
+        if np.any(bands.mean[ensemble.stage == name] != 0)
+    }
+    if not any(far.values()):
+        raise Missing(f"no stage moves {motion.name} while it is held")
+    rows = np.flatnonzero(ensemble.stage == max(far, key=lambda name: far[name]))
+    return (1e3 if motion.forward else -1e3) * x[rows], bands.part(rows), scene.first_sign(bands.mean)
+
+
+def draw_boundaries(ensemble: Ensemble, path: Path) -> None:
+    """What the moved boundaries of a scene bear, over the mean of their displacement."""
+    moved = motions(ensemble)
     figure, axes = plt.subplots(1, len(moved), figsize=(7.2 * len(moved), 4.8), squeeze=False, layout="constrained")
     for axis, motion in zip(axes.flat, moved):
-        x = ensemble.curve(f"displacement_{motion.name}_{motion.axis}").mean
-        bands = ensemble.curve(f"reaction_{motion.name}_{motion.axis}")
-        # The stages before rest at one place.
-        rows = np.flatnonzero(ensemble.stage == ensemble.stage[int(np.nanargmax(np.abs(x)))])
-        sign = scene.first_sign(bands.mean)
-        draw_bands(axis, (1e3 if motion.forward else -1e3) * x[rows], bands.part(rows), ensemble, 1e-3 * sign)
+        x, bands, sign = boundary_bands(ensemble, motion)
+        draw_bands(axis, x, bands, ensemble, 1e-3 * sign)
         axis.set_xlabel(f"displacement {motion.movement}  [mm]")
         axis.set_ylabel(f"reaction on the ground, {scene.TOWARDS[motion.axis, sign > 0]}  [kN/m]")
         axis.set_title(f"{motion.name}, {ensemble.title()}")

@@ -61,7 +61,9 @@ def canvas(result: Result, increment: Increment) -> tuple[Figure, Axes, np.ndarr
     displacement = increment.field("node/displacement")
     factor = magnification(result, displacement)
     deformed = result.coordinates + factor * displacement
-    figure, axis = plt.subplots(figsize=(7.4, 6.6))
+    wide, high = np.ptp(result.coordinates, axis=0)
+    size = (8.2, float(np.clip(6.2 * high / wide, 1.8, 9.0)) + 1.2) if result.kind == "scene" else (7.4, 6.6)
+    figure, axis = plt.subplots(figsize=size)
     there = regions.alive(result, increment)
     edges = LineCollection(
         list(q8.outlines(deformed, result.connectivity[there])), colors="0.5", linewidths=0.35, alpha=0.6, zorder=2

@@ -1,14 +1,17 @@
 """The curves of a scene as the page's charts: what moved boundaries bear, recorded points and regions."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from voussoir_plots import scene, scene_boundaries
+from voussoir_plots.ensemble import Ensemble, boundary_bands, motions
 from voussoir_plots.result import Increment, Missing, Result
 from voussoir_plots.scene import Motion
 from voussoir_plots.style import CYCLE
 
-from .curves import Chart, line
+from .curves import BLUE, GREY, Chart, line
+from .pack import numbers
 
 ALONG = "stage and load parameter [-]"
 
@@ -23,9 +26,9 @@ def of_scene(result: Result, shown: Sequence[Increment]) -> list[Callable[[], Ch
     except Missing:  # of a scene in which nothing is moved
         made.append(lambda: _reactions(result))
     for record in scene.records(result, "point"):
-        made.append(lambda name=str(record["name"]): _point(result, name))
+        made.append(partial(_point, result, str(record["name"])))
     for record in scene.records(result, "region"):
-        made.append(lambda name=str(record["name"]): _region(result, name))
+        made.append(partial(_region, result, str(record["name"])))
     return made
 
 
@@ -47,6 +50,29 @@ def _of_boundary(result: Result, motion: Motion, frames: dict[int, int]) -> list
         return {"title": title, "xlabel": plain(curve.xlabel), "ylabel": plain(curve.ylabel), "series": series}
 
     return [chart]
+
+
+def of_ensemble(ensemble: Ensemble) -> list[Callable[[], Chart]]:
+    """The reactions of the moved boundaries with bands."""
+
+    def chart(motion: Motion) -> Chart:
+        x, bands, sign = boundary_bands(ensemble, motion)
+        single = [
+            line("members", x, one, GREY, 1e-3 * sign, width=0.8, silent=k > 0) for k, one in enumerate(bands.members)
+        ]
+        mean = line("mean", x, bands.mean, BLUE, 1e-3 * sign)
+        mean |= {"band": numbers(1e-3 * bands.mean_half_width), "further": numbers(1e-3 * bands.prediction_half_width)}
+        return {
+            "title": f"Boundary {motion.name}",
+            "xlabel": f"displacement {motion.movement} [mm]",
+            "ylabel": f"reaction {scene.TOWARDS[motion.axis, sign > 0]} [kN/m]",
+            "series": [*single, mean],
+        }
+
+    try:
+        return [partial(chart, motion) for motion in motions(ensemble)]
+    except Missing:
+        return []
 
 
 def plain(label: str) -> str:
