@@ -222,9 +222,7 @@ def draw_specimen(ensemble: Ensemble, path: Path) -> None:
 
 def motions(ensemble: Ensemble) -> list[scene.Motion]:
     """The moved boundaries of an ensemble of scenes; Missing is raised where there are none."""
-    return scene.motions_of(
-        ensemble.case, lambda name: ensemble.curves[name].mean if name in ensemble.curves else None
-    )
+    return scene.motions_of(ensemble.case, lambda name: ensemble.curves[name].mean if name in ensemble.curves else None)
 
 
 def _reach(values: np.ndarray) -> float:

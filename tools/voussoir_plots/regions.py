@@ -5,7 +5,13 @@ import numpy as np
 from .result import Increment, Result, remembered
 
 # Fields that are not a number in an element that has been dug out, and only there.
-_EVERYWHERE = ("gauss/stress", "gauss/strain", "gauss/mean_stress", "gauss/deviatoric_strain", "gauss/deviatoric_stress")
+_EVERYWHERE = (
+    "gauss/stress",
+    "gauss/strain",
+    "gauss/mean_stress",
+    "gauss/deviatoric_strain",
+    "gauss/deviatoric_stress",
+)
 SIDES = ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))  # corner, midside, corner of an element's sides
 
 

@@ -108,7 +108,9 @@ def motions_of(case: dict[str, Any], values: Callable[[str], np.ndarray | None])
             for name in names_in(change):
                 known.setdefault(name, []).append(change)
     found = [
-        _motion(name, changes, values) for name, changes in known.items() if values(f"displacement_{name}_y") is not None
+        _motion(name, changes, values)
+        for name, changes in known.items()
+        if values(f"displacement_{name}_y") is not None
     ]
     if not found:
         raise Missing("no boundary of the scene is moved or released")
@@ -130,7 +132,8 @@ def names_in(table: dict[str, Any]) -> list[str]:
 
 def _motion(name: str, changes: list[dict[str, Any]], values: Callable[[str], np.ndarray | None]) -> Motion:
     areas = [change for change in changes if _written(change, "area")]
-    moved = {axis: np.nan_to_num(values(f"displacement_{name}_{axis}")) for axis in AXES}
+    columns = {axis: values(f"displacement_{name}_{axis}") for axis in AXES}
+    moved = {axis: np.nan_to_num(np.zeros(0) if found is None else found) for axis, found in columns.items()}
     named = [axis for axis in AXES if any(_written(change, axis) for change in changes)]
     axis = max(named or AXES, key=lambda a: np.abs(moved[a]).max(initial=0))
     furthest = moved[axis][np.argmax(np.abs(moved[axis]))] if len(moved[axis]) else 0.0

@@ -49,7 +49,8 @@ def reaction_curve(result: Result, motion: Motion, kind: str = "reaction") -> Cu
         ylabel=f"{kind} on the ground, {side}  [{unit}]",
         x=[displacement(motion, stage.increments) for stage in shown],
         y=[
-            sign * KILO * held(stage, motion, scene.column(stage.increments, f"{kind}_{name}_{axis}")) for stage in shown
+            sign * KILO * held(stage, motion, scene.column(stage.increments, f"{kind}_{name}_{axis}"))
+            for stage in shown
         ],
     )
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
@@ -27,7 +28,7 @@ def draw_mesh(result: Result, path: Path) -> None:
     region = result.regions if result.regions is not None else np.zeros(len(result.connectivity), dtype=int)
     shades = [PALE[k % len(PALE)] for k in region]
     axis.add_collection(PolyCollection(list(outlines), facecolors=shades, edgecolors="0.6", linewidths=0.4))
-    named = [Patch(facecolor=PALE[k % len(PALE)], edgecolor="0.6", label=f"region {n}") for k, n in _regions(result)]
+    named: list[Artist] = [Patch(facecolor=PALE[k % len(PALE)], edgecolor="0.6", label=f"region {n}") for k, n in _regions(result)]
     named += [_draw_boundary(axis, result, name, k) for k, name in enumerate(sorted(result.boundaries))]
     named += _draw_records(axis, result)
     axis.set_aspect("equal")
@@ -75,7 +76,8 @@ def _draw_records(axis: Axes, result: Result) -> list[Line2D]:
         place = scene.place_of(result, record["point"])
         if place is not None:
             found += axis.plot(*place, "o", color="black", markersize=6, zorder=4, label=f"point {record['name']}")
-            axis.annotate(str(record["name"]), place, xytext=(6, 6), textcoords="offset points", fontsize=9, zorder=4)
+            here = (float(place[0]), float(place[1]))
+            axis.annotate(str(record["name"]), here, xytext=(6, 6), textcoords="offset points", fontsize=9, zorder=4)
     for record in scene.records(result, "line"):
         ends = [scene.place_of(result, end) for end in record["line"]]
         if all(end is not None for end in ends):

@@ -65,7 +65,11 @@ def draw(result: Result, path: Path) -> None:
     """A row of panels for each line. Places of an upright line are on the upright axis."""
     found, states = lines(result), chosen(result)
     figure, axes = plt.subplots(
-        len(found), len(PANELS), figsize=(4.6 * len(PANELS), 4.2 * len(found) + 0.4), squeeze=False, layout="constrained"
+        len(found),
+        len(PANELS),
+        figsize=(4.6 * len(PANELS), 4.2 * len(found) + 0.4),
+        squeeze=False,
+        layout="constrained",
     )
     for line, row in zip(found, axes):
         place, label = line.along

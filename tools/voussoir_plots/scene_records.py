@@ -33,7 +33,7 @@ def draw_points(result: Result, path: Path) -> None:
 
 
 def draw_regions(result: Result, path: Path) -> None:
-    """A row for each region: stress ratio, mean stress and volumetric strain, over the load parameters of all stages."""
+    """A row for each region: stress ratio, mean stress and volumetric strain over the load parameters of all stages."""
     names = [str(record["name"]) for record in scene.records(result, "region")]
     names = [name for name in names if scene.has(result, f"q_over_p_{name}")]
     if not names:

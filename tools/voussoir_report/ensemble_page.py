@@ -14,7 +14,13 @@ from .markup import Page
 from .members import Members
 from .parts import Builder, name_of
 
-SORTS = {"scene": "a scene", "volume_loss": "a tunnel", "biaxial_bvp": "a biaxial specimen", "gravity": "a tunnel", "column": "a column"}
+SORTS = {
+    "scene": "a scene",
+    "volume_loss": "a tunnel",
+    "biaxial_bvp": "a biaxial specimen",
+    "gravity": "a tunnel",
+    "column": "a column",
+}
 
 
 def make(ensemble: Ensemble, folder: Path, only: list[str] | None = None) -> Builder:

@@ -106,5 +106,8 @@ def _point(result: Result, name: str) -> Chart:
 
 
 def _region(result: Result, name: str) -> Chart:
-    shown = {"q/p [-]": (f"q_over_p_{name}", 1.0), "ε_v, contraction positive [%]": (f"volumetric_strain_{name}", 100.0)}
+    shown = {
+        "q/p [-]": (f"q_over_p_{name}", 1.0),
+        "ε_v, contraction positive [%]": (f"volumetric_strain_{name}", 100.0),
+    }
     return _over_stages(result, f"Region of the record {name}", "q/p [-], ε_v [%]", shown)

@@ -278,8 +278,8 @@ TEST(SceneCase, StagesHaveTheStepsAndTheGeometryOfWhatTheyChange) {
               "stage[0].gravity: is not 0, but no region has a unit_weight above 0");
   EXPECT_EQ(said_of(head + grid + region + support),
             "scene.toml:1: stage: is missing: a scene needs at least one [[stage]]");
-  expect_said(head + grid + region + gravity + "[[stage]]\nname = \"gravity\"\nsteps = 1\ntilt = \"1 deg\"\n", "name = \"gravity\"",
-              "stage[1].name: 'gravity' is the name of an earlier one, too");
+  expect_said(head + grid + region + gravity + "[[stage]]\nname = \"gravity\"\nsteps = 1\ntilt = \"1 deg\"\n",
+              "name = \"gravity\"", "stage[1].name: 'gravity' is the name of an earlier one, too");
   expect_said(head + grid + region + "[[stage]]\nname = \"a b\"\n", "name = \"a b\"",
               "stage[0].name: names columns of results: it must have 1 to 64 letters, digits, _ or -");
 }
