@@ -20,6 +20,9 @@ std::optional<Located> locate_in(const Eigen::Matrix<double, 2, 8>& nodes, const
     if (at.cwiseAbs().maxCoeff() > 10) return {};
     if (step.norm() < 1e-13) break;
   }
+  // An iteration that did not converge has found nothing.
+  const double size = (nodes.rowwise().maxCoeff() - nodes.rowwise().minCoeff()).norm();
+  if ((x - nodes * q8::shape(at.x(), at.y())).norm() > 1e-9 * size + 1e-12 * x.norm()) return {};
   if (at.cwiseAbs().maxCoeff() > 1 + outside) return {};
   at = at.cwiseMax(-1.0).cwiseMin(1.0);
   return Located{0, at.x(), at.y()};
@@ -27,19 +30,23 @@ std::optional<Located> locate_in(const Eigen::Matrix<double, 2, 8>& nodes, const
 
 }  // namespace
 
-std::optional<Located> locate(const Mesh& mesh, const Coordinates& coordinates, const Point& x) {
+std::optional<Located> locate(const Mesh& mesh, const Coordinates& coordinates, const Point& x,
+                              std::span<const int> rank) {
+  std::optional<Located> best;
   Eigen::Matrix<double, 2, 8> nodes;
   for (int e = 0; e < mesh.n_elements(); ++e) {
     for (int a = 0; a < 8; ++a) nodes.col(a) = coordinates.col(mesh.elements[e][a]);
     const Point low = nodes.rowwise().minCoeff(), high = nodes.rowwise().maxCoeff();
     const Point margin = 0.05 * (high - low);  // midsides may bulge between nodes
     if ((x - low + margin).minCoeff() < 0 || (high - x + margin).minCoeff() < 0) continue;
+    if (best && rank[e] >= rank[best->element]) continue;
     if (std::optional<Located> found = locate_in(nodes, x)) {
       found->element = e;
-      return found;
+      if (rank.empty()) return found;
+      best = found;
     }
   }
-  return {};
+  return best;
 }
 
 Point value_at(const Mesh& mesh, const Located& at, const Eigen::VectorXd& field) {

@@ -2,6 +2,7 @@
 /// Finds the element at a place, and nodal values there.
 
 #include <optional>
+#include <span>
 
 #include "fem/mesh.hpp"
 
@@ -15,7 +16,9 @@ struct Located {
 
 /// The element that holds `x`, by Newton iteration on the map of each element whose box holds it; a place up to 1e-6 of
 /// an element's size outside the mesh counts as on its edge. No value where no element holds it.
-[[nodiscard]] std::optional<Located> locate(const Mesh& mesh, const Coordinates& coordinates, const Point& x);
+/// Of several elements, whose edge holds it, the one with the lowest `rank` counts; without ranks the first one.
+[[nodiscard]] std::optional<Located> locate(const Mesh& mesh, const Coordinates& coordinates, const Point& x,
+                                            std::span<const int> rank = {});
 
 /// The value there of a nodal vector field, n_dofs.
 [[nodiscard]] Point value_at(const Mesh& mesh, const Located& at, const Eigen::VectorXd& field);

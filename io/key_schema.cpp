@@ -83,7 +83,9 @@ Json value_schema(const KeyInfo& info) {
       break;
     case KeyType::place: {
       const Json length{{"type", "string"}, {"pattern", pattern_of(info)}};
-      schema["anyOf"] = {text_schema(""), {{"type", "array"}, {"items", length}, {"minItems", 2}, {"maxItems", 2}}};
+      Json name = text_schema("");
+      name["minLength"] = 1;
+      schema["anyOf"] = {name, {{"type", "array"}, {"items", length}, {"minItems", 2}, {"maxItems", 2}}};
       break;
     }
     case KeyType::value:

@@ -118,8 +118,8 @@ MeshNames names_of_shape(const SceneMeshCase& mesh) {
       break;
     case MeshShape::ring:
       names.boundaries = {"cavity", "far"};
-      if (mesh.part == RingPart::quarter) names.boundaries.emplace_back("x0");
-      if (mesh.part != RingPart::whole) names.boundaries.emplace_back("y0");
+      if (mesh.part != RingPart::whole) names.boundaries.emplace_back("x0");
+      if (mesh.part == RingPart::quarter) names.boundaries.emplace_back("y0");
       break;
   }
   return names;

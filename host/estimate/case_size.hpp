@@ -17,6 +17,7 @@ struct RegionSize {
 };
 
 struct CaseSize {
+  std::vector<std::string> sentences = {};  ///< of a scene: mesh, boundaries, regions, stages, for `check`
   std::size_t points = 0;         ///< Gauss points of the largest mesh
   std::size_t column_points = 0;  ///< Gauss points of the column
   std::size_t increments = 0;     ///< planned, all stages

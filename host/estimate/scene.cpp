@@ -6,11 +6,11 @@
 #include <string>
 
 #include "fem/gauss_points.hpp"
-#include "fem/load_stepper.hpp"
 #include "host/estimate/evaluation.hpp"
 #include "host/packing/case_recipes.hpp"
 #include "host/packing/packings.hpp"
-#include "host/scene/scene_mesh.hpp"
+#include "host/scene/describe_scene.hpp"
+#include "host/scene/scene_of.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -55,20 +55,6 @@ double largest_motion(const MoveCase& move, const fem::Mesh& mesh) {
   return translation + (stretch + std::abs(move.rotation.value_or(0.0))) * extent_of(mesh, move.boundary);
 }
 
-/// The largest weight stress of the scene [Pa].
-double weight_stress(const CaseSize& size) {
-  double unit_weight = 0;
-  for (const RegionSize& region : size.regions) unit_weight = std::max(unit_weight, region.unit_weight);
-  return unit_weight * size.height;
-}
-
-std::size_t steps_of(const StageCase& stage, const Case& input, double weight) {
-  if (stage.steps > 0) return static_cast<std::size_t>(stage.steps);
-  if (!(weight > 0)) return 1;
-  return fem::geometric_targets(input.packing.pressure / weight, input.gravity.ratio, input.gravity.uniform_step)
-      .size();
-}
-
 /// Evaluations of the full number of steps over the stage, and the mean strain of each.
 struct StageWork {
   double evaluations = 0;
@@ -100,19 +86,21 @@ std::size_t packings_of(const Case& input) {
 }  // namespace
 
 CaseSize scene_size(const Case& input) {
-  const fem::Mesh mesh = scene_mesh(input.scene.mesh);
+  const PlannedScene planned = planned_scene(input);
+  const fem::Mesh& mesh = planned.scene.mesh;
   CaseSize size;
+  size.sentences = describe(planned);
   size.points = static_cast<std::size_t>(mesh.n_points());
   size.nodes = static_cast<std::size_t>(mesh.n_nodes());
   size.height = mesh.coordinates.row(1).maxCoeff() - mesh.coordinates.row(1).minCoeff();
   size.regions = regions_of(input, mesh);
   size.packings = packings_of(input);
-  const double weight = weight_stress(size), pressure = input.packing.pressure + 0.5 * weight;
+  const double pressure = input.packing.pressure + 0.5 * weight_stress(planned.scene);
   for (const RegionSize& region : size.regions)
     size.grains += region.variety > 0 ? static_cast<double>(region.points) * region.grains : 0.0;
-  for (const StageCase& stage : input.scene.stages) {
-    const std::size_t steps = steps_of(stage, input, weight);
-    const StageWork work = work_of(stage, input, mesh, steps);
+  for (const StagePlan& plan : planned.plans) {
+    const std::size_t steps = plan.targets.size();
+    const StageWork work = work_of(plan.input, input, mesh, steps);
     size.increments += steps;
     for (std::size_t k = 0; k < size.regions.size(); ++k) {
       const RegionSize& region = size.regions[k];

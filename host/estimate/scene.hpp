@@ -8,7 +8,8 @@
 
 namespace voussoir::host {
 
-/// Points, regions, increments and work of a scene. The mesh is made for it; throws what scene_mesh throws.
+/// Points, regions, increments and work of a scene. The mesh is made for it; throws
+/// what planned_scene throws.
 [[nodiscard]] CaseSize scene_size(const Case& input);
 
 /// The share of the lanes that hold an RVE: sum(n_k) / sum(ceil(n_k / width) width) for n_k points of packing k, since

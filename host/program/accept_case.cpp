@@ -74,24 +74,17 @@ void refuse_idle_packings(const Case& input, const CaseSize& size) {
   }
 }
 
-/// A fault of a scene's mesh, whose sentence begins with the key ("mesh.file: ...").
-[[noreturn]] void refuse_mesh(const Case& input, const std::string& fault) {
-  const std::size_t colon = fault.find(": ");
-  const std::string key = colon == std::string::npos ? "mesh" : fault.substr(0, colon);
-  throw io::InputError(place_of(input, key), key, colon == std::string::npos ? fault : fault.substr(colon + 2));
-}
-
 /// The size of the case. What the mesh generator refuses is a fault of the ground's lengths, or of the file that holds
 /// the mesh.
 CaseSize checked_size(const Case& input) {
   const char* key = input.ground.mesh_file.empty() ? "ground" : "ground.mesh_file";
   try {
     return case_size(input);
+  } catch (const io::InputError&) {
+    throw;
   } catch (const std::invalid_argument& fault) {
-    if (input.kind == CaseKind::scene) refuse_mesh(input, fault.what());
     throw io::InputError(place_of(input, key), key, fault.what());
   } catch (const std::runtime_error& fault) {
-    if (input.kind == CaseKind::scene) refuse_mesh(input, fault.what());
     throw io::InputError(place_of(input, key), key, fault.what());
   }
 }

@@ -92,6 +92,7 @@ Outcome command_check(const std::filesystem::path& case_file, const std::vector<
   answer += "# " + kernels::lanes_sentence(kernels::choose_lanes(input.engine.isa)) + "\n";
   if (const std::string line = sentence_of(choose_device(input, local_rank())); !line.empty())
     answer += "# " + line + "\n";
+  for (const std::string& line : size.sentences) answer += "# " + line + "\n";
   for (const std::string& line : describe(size, input.material, input.packing, input.output))
     answer += "# " + line + "\n";
   if (!range.empty()) answer += "# " + range + "\n";

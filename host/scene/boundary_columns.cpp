@@ -38,6 +38,21 @@ Eigen::VectorXd widths(const fem::Coordinates& coordinates, const std::vector<fe
   return width;
 }
 
+/// The outer edges of a boundary at elements that are left.
+std::vector<fem::Edge> edges_left(const StagePlan& plan, const std::string& boundary) {
+  for (const BoundaryLoad& load : plan.loads) {
+    if (load.boundary == boundary) return load.edges;
+  }
+  return {};
+}
+
+/// Its nodes at elements that are left.
+std::vector<int> nodes_left(const StagePlan& plan, std::vector<int> nodes) {
+  const std::set<int> idle(plan.idle_nodes.begin(), plan.idle_nodes.end());
+  std::erase_if(nodes, [&](int node) { return idle.contains(node); });
+  return nodes;
+}
+
 fem::Point mean_displacement(const std::vector<int>& nodes, const Eigen::VectorXd& displacement) {
   fem::Point mean = fem::Point::Zero();
   for (const int node : nodes) mean += displacement.segment<2>(2 * node) / static_cast<double>(nodes.size());
@@ -51,7 +66,7 @@ WatchedBoundaries watched(const std::vector<StagePlan>& plans) {
   for (const StagePlan& plan : plans) {
     for (const Holder& holder : plan.holders) {
       if (!holder.is_boundary) continue;
-      if (holder.move.area) boundaries.with_area.insert(holder.name);
+      if (holder.move.area) boundaries.with_area.try_emplace(holder.name, holder.about);
       if (std::find(boundaries.held.begin(), boundaries.held.end(), holder.name) == boundaries.held.end())
         boundaries.held.push_back(holder.name);
     }
@@ -59,24 +74,22 @@ WatchedBoundaries watched(const std::vector<StagePlan>& plans) {
   return boundaries;
 }
 
-std::map<std::string, int> tensile_nodes(const StagePlan& plan, const fem::Mesh& mesh, const Eigen::VectorXd& reactions,
+std::map<std::string, int> tensile_nodes(const StagePlan& plan, const Eigen::VectorXd& reactions,
                                          const fem::Coordinates& coordinates) {
-  const double floor = 1e-6 * reactions.cwiseAbs().maxCoeff();
-  std::map<std::string, int> found;
-  std::map<std::string, Eigen::VectorXd> inwards;  // boundary -> integral of -N at its nodes
+  std::map<std::string, std::map<int, fem::Point>> owned;  // boundary -> node -> its reaction
   for (const auto& [dof, owner] : plan.owners) {
     const Holder& holder = plan.holders[owner];
-    if (!holder.is_boundary) continue;
-    const auto [at, is_new] = inwards.try_emplace(holder.name);
-    if (is_new) at->second = fem::pressure_force(coordinates, mesh.edge_set(holder.name), 1.0);
-    if (dof % 2 == 1 && plan.owners.contains(dof - 1) && plan.owners.at(dof - 1) == owner) continue;  // counted with x
-    fem::Point reaction = fem::Point::Zero();
-    for (int k = 2 * (dof / 2); k < 2 * (dof / 2) + 2; ++k) {
-      const auto same = plan.owners.find(k);
-      if (same != plan.owners.end() && same->second == owner) reaction[k % 2] = reactions[k];
+    if (holder.is_boundary)
+      owned[holder.name].try_emplace(dof / 2, fem::Point::Zero()).first->second[dof % 2] = reactions[dof];
+  }
+  const double floor = 1e-6 * reactions.cwiseAbs().maxCoeff();
+  std::map<std::string, int> found;
+  for (const auto& [name, nodes] : owned) {
+    const Eigen::VectorXd inwards = fem::pressure_force(coordinates, edges_left(plan, name), 1.0);  // integral of -N
+    for (const auto& [node, reaction] : nodes) {
+      const fem::Point inward = inwards.segment<2>(2 * node);
+      if (inward.norm() > 0 && reaction.dot(inward) < -floor * inward.norm()) ++found[name];
     }
-    const fem::Point inward = at->second.segment<2>(2 * (dof / 2));
-    if (inward.norm() > 0 && reaction.dot(inward) < -floor * inward.norm()) ++found[holder.name];
   }
   return found;
 }
@@ -85,9 +98,11 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
                           const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates, io::Quantities& to) {
   const Eigen::VectorXd displacement = ground.total_displacement();
   for (const std::string& name : boundaries.held) {
-    const std::vector<fem::Edge>& edges = ground.mesh.edge_set(name);
+    const std::vector<int> nodes = nodes_left(plan, ground.mesh.node_set(name));
+    if (nodes.empty()) continue;
+    const std::vector<fem::Edge> edges = edges_left(plan, name);
     const Eigen::VectorXd width = widths(coordinates, edges);
-    const fem::Point moved = mean_displacement(ground.mesh.node_set(name), displacement);
+    const fem::Point moved = mean_displacement(nodes, displacement);
     for (int axis = 0; axis < 2; ++axis) {
       const Owned owned = owned_by(name, axis, plan, reactions, width);
       const std::string end = name + "_" + axis_names[axis];
@@ -95,10 +110,11 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
       to["displacement_" + end] = {moved[axis], "m"};
       if (!edges.empty()) to["traction_" + end] = {owned.width > 0 ? owned.reaction / owned.width : 0.0, "Pa"};
     }
-    if (boundaries.with_area.contains(name)) to["area_" + name] = {lost_area(ground, name), "-"};
+    const auto area = boundaries.with_area.find(name);
+    if (area != boundaries.with_area.end()) to["area_" + name] = {lost_area(ground, name, area->second), "-"};
   }
   int pulled = 0;
-  for (const auto& [name, count] : tensile_nodes(plan, ground.mesh, reactions, coordinates)) pulled += count;
+  for (const auto& [name, count] : tensile_nodes(plan, reactions, coordinates)) pulled += count;
   to["tensile_nodes"] = {static_cast<double>(pulled), "-"};
 }
 
@@ -116,12 +132,13 @@ std::vector<std::string> column_names(const WatchedBoundaries& boundaries, const
   return names;
 }
 
-double lost_area(const Ground& ground, const std::string& boundary) {
+double lost_area(const Ground& ground, const std::string& boundary, const fem::Point& about) {
   const std::vector<fem::Edge>& chain = ground.mesh.edge_set(boundary);
   const Eigen::VectorXd displacement = ground.total_displacement();
-  fem::Coordinates moved = ground.mesh.coordinates;
+  const fem::Coordinates drawn = ground.mesh.coordinates.colwise() - about;
+  fem::Coordinates moved = drawn;
   for (Eigen::Index node = 0; node < moved.cols(); ++node) moved.col(node) += displacement.segment<2>(2 * node);
-  return 1.0 - fem::area_left_of(moved, chain) / fem::area_left_of(ground.mesh.coordinates, chain);
+  return 1.0 - fem::area_left_of(moved, chain) / fem::area_left_of(drawn, chain);
 }
 
 }  // namespace voussoir::host

@@ -1,7 +1,7 @@
 #pragma once
 /// What the boundaries of a scene bear and how far they have moved, as columns of the table of increments.
 
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,7 +16,7 @@ namespace voussoir::host {
 /// stages.
 struct WatchedBoundaries {
   std::vector<std::string> held;
-  std::set<std::string> with_area;
+  std::map<std::string, fem::Point> with_area;  ///< with the centre of the motion [m]
 };
 [[nodiscard]] WatchedBoundaries watched(const std::vector<StagePlan>& plans);
 
@@ -33,12 +33,13 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
 /// The names of these columns.
 [[nodiscard]] std::vector<std::string> column_names(const WatchedBoundaries& boundaries, const fem::Mesh& mesh);
 
-/// The area that an opening, closed or on the line x = 0, has lost, over its first area [-].
-[[nodiscard]] double lost_area(const Ground& ground, const std::string& boundary);
+/// The area that an opening has lost, over its first area [-]: within a closed chain, or between a chain and the lines
+/// from its ends to the point `about` [m].
+[[nodiscard]] double lost_area(const Ground& ground, const std::string& boundary,
+                               const fem::Point& about = fem::Point::Zero());
 
 /// Nodes at which the support of a boundary pulls the ground outwards, by the boundaries' names.
-[[nodiscard]] std::map<std::string, int> tensile_nodes(const StagePlan& plan, const fem::Mesh& mesh,
-                                                       const Eigen::VectorXd& reactions,
+[[nodiscard]] std::map<std::string, int> tensile_nodes(const StagePlan& plan, const Eigen::VectorXd& reactions,
                                                        const fem::Coordinates& coordinates);
 
 }  // namespace voussoir::host

@@ -15,20 +15,36 @@ namespace {
 
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-void add_place(PlacedRecord& record, const fem::Mesh& mesh, const fem::Point& x, double along) {
-  const std::optional<fem::Located> found = fem::locate(mesh, mesh.coordinates, x);
+/// 0 for elements that stay; the higher, the sooner an element is dug out.
+std::vector<int> dug_out_rank(const Scene& scene) {
+  const fem::Mesh& mesh = scene.mesh;
+  std::vector<int> rank(static_cast<std::size_t>(mesh.n_elements()), 0);
+  const auto n = static_cast<int>(scene.input.stages.size());
+  for (int s = 0; s < n; ++s) {
+    for (const ExcavateCase& dug : scene.input.stages[s].excavations) {
+      for (std::size_t e = 0; e < mesh.region.size(); ++e) {
+        if (mesh.region_names[mesh.region[e]] == dug.region) rank[e] = n - s;
+      }
+    }
+  }
+  return rank;
+}
+
+void add_place(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<int>& rank, const fem::Point& x,
+               double along) {
+  const std::optional<fem::Located> found = fem::locate(mesh, mesh.coordinates, x, rank);
   if (!found) return;
   record.places.push_back(*found);
   record.coordinates.push_back(x);
   record.along.push_back(along);
 }
 
-void place_line(PlacedRecord& record, const fem::Mesh& mesh) {
+void place_line(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<int>& rank) {
   const auto& line = *record.input.line;
   const fem::Point a = coordinates_of(mesh, line[0]), b = coordinates_of(mesh, line[1]);
   for (int k = 0; k < record.input.points; ++k) {
     const double share = record.input.points > 1 ? static_cast<double>(k) / (record.input.points - 1) : 0.0;
-    add_place(record, mesh, a + share * (b - a), share * (b - a).norm());
+    add_place(record, mesh, rank, a + share * (b - a), share * (b - a).norm());
   }
 }
 
@@ -47,6 +63,7 @@ const fem::PointField* find_field(const std::vector<fem::PointField>& fields, co
 
 void add_point(const PlacedRecord& record, const Ground& ground, const std::vector<fem::Stress>& stress,
                io::Quantities& to) {
+  if (ground.mesh.is_dug_out(record.places.front().element)) return;
   const std::string& name = record.input.name;
   const fem::Point moved = fem::value_at(ground.mesh, record.places.front(), ground.total_displacement());
   to["displacement_" + name + "_x"] = {moved.x(), "m"};
@@ -73,13 +90,13 @@ void add_region(const PlacedRecord& record, const Ground& ground, const std::vec
     }
   }
   const std::string& name = record.input.name;
-  const bool there = means.volume > 0;
-  const fem::PlaneTensor s = there ? fem::PlaneTensor(means.stress / means.volume) : fem::PlaneTensor::Zero();
+  if (means.volume == 0) return;  // all of it has been dug out
+  const fem::PlaneTensor s = means.stress / means.volume;
   const double p = fem::mean_stress(s), q = fem::deviatoric_stress(s);
   to["p_" + name] = {p, "Pa"};
   to["q_" + name] = {q, "Pa"};
   to["q_over_p_" + name] = {p > 0 ? q / p : 0.0, "-"};
-  to["volumetric_strain_" + name] = {there ? fem::volumetric_strain(means.strain / means.volume) : 0.0, "-"};
+  to["volumetric_strain_" + name] = {fem::volumetric_strain(means.strain / means.volume), "-"};
   if (means.void_volume > 0) to["void_ratio_" + name] = {means.void_ratio / means.void_volume, "-"};
 }
 
@@ -92,17 +109,18 @@ const io::Field* find_field(const std::vector<io::Field>& fields, const std::str
 
 std::vector<PlacedRecord> place_records(const Scene& scene) {
   std::vector<PlacedRecord> records;
+  const std::vector<int> rank = dug_out_rank(scene);
   for (std::size_t k = 0; k < scene.input.records.size(); ++k) {
     PlacedRecord record{.input = scene.input.records[k]};
     const std::string key = fmt::format("record[{}]", k);
     if (record.input.point) {
       const fem::Point x = coordinates_of(scene.mesh, *record.input.point);
-      add_place(record, scene.mesh, x, 0.0);
+      add_place(record, scene.mesh, rank, x, 0.0);
       if (record.places.empty())
         throw std::runtime_error(
             fmt::format("{}.point: ({:.6g}, {:.6g}) m lies outside the ground", key, x.x(), x.y()));
     } else if (record.input.line) {
-      place_line(record, scene.mesh);
+      place_line(record, scene.mesh, rank);
       if (record.places.empty()) throw std::runtime_error(key + ".line: no point of the line lies in the ground");
     } else {
       const auto& names = scene.mesh.region_names;
@@ -139,8 +157,8 @@ std::vector<std::string> column_names(const std::vector<PlacedRecord>& records) 
   for (const PlacedRecord& record : records) {
     const std::string& name = record.input.name;
     if (record.input.point) {
-      for (const char* column :
-           {"displacement_{}_x", "displacement_{}_y", "stress_{}_xx", "stress_{}_yy", "stress_{}_xy"})
+      for (const char* column : {"displacement_{}_x", "displacement_{}_y", "stress_{}_xx", "stress_{}_yy",
+                                 "stress_{}_xy"})
         names.push_back(fmt::format(fmt::runtime(column), name));
     }
     if (record.input.region.empty()) continue;
@@ -151,7 +169,7 @@ std::vector<std::string> column_names(const std::vector<PlacedRecord>& records) 
 }
 
 std::vector<io::TableColumn> line_table(const PlacedRecord& line, const fem::Mesh& mesh,
-                                        const std::filesystem::path& folder) {
+                                        const std::vector<StagePlan>& plans, const std::filesystem::path& folder) {
   std::vector<io::TableColumn> table{{"increment", "-", {}},
                                      {"s", "m", {}},
                                      {"x", "m", {}},
@@ -167,15 +185,19 @@ std::vector<io::TableColumn> line_table(const PlacedRecord& line, const fem::Mes
     const std::vector<io::Field> fields = io::read_fields(file);
     const io::Field* moved = find_field(fields, "displacement");
     const io::Field* stress = find_field(fields, "stress");
+    const auto plan = std::find_if(plans.begin(), plans.end(),
+                                   [&](const StagePlan& one) { return one.input.name == info.stage; });
     for (std::size_t k = 0; k < line.places.size(); ++k) {
+      const bool dug = plan != plans.end() && !plan->dug_out.empty() && plan->dug_out[line.places[k].element] != 0;
       fem::Point u(missing, missing);
-      if (moved != nullptr) {
+      if (moved != nullptr && !dug) {
         const Eigen::Map<const Eigen::VectorXd> values(moved->values.data(), mesh.n_dofs());
         u = fem::value_at(mesh, line.places[k], values);
       }
       std::array<double, 3> s{missing, missing, missing};
       const auto point = static_cast<std::size_t>(fem::nearest_gauss_point(line.places[k]));
-      if (stress != nullptr) std::copy_n(stress->values.begin() + static_cast<std::ptrdiff_t>(3 * point), 3, s.begin());
+      if (stress != nullptr && !dug)
+        std::copy_n(stress->values.begin() + static_cast<std::ptrdiff_t>(3 * point), 3, s.begin());
       const std::array<double, 9> row{static_cast<double>(info.index),
                                       line.along[k],
                                       line.coordinates[k].x(),

@@ -29,15 +29,16 @@ struct PlacedRecord {
 /// Adds, of each point NAME: displacement_NAME_x, _y [m] and the stress of the nearest Gauss point, stress_NAME_xx,
 /// _yy, _xy [Pa]; of each region NAME the means over its area p_NAME, q_NAME [Pa], q_over_p_NAME,
 /// volumetric_strain_NAME and void_ratio_NAME [-], where q is that of the mean stress and the void ratio is of grains
-/// only.
+/// only. What has been dug out has no columns; of elements that meet at a point, the one that stays longest counts.
 void add_record_columns(const std::vector<PlacedRecord>& records, const Ground& ground, io::Quantities& to);
 
 /// The names of these columns.
 [[nodiscard]] std::vector<std::string> column_names(const std::vector<PlacedRecord>& records);
 
 /// Table `line_NAME`: a row for each increment's file and each place of the line, gathered from the files of the run in
-/// `folder`. A field that a file lacks is NaN.
+/// `folder`. What a file lacks is NaN, and so is all of a place whose element has been dug out.
 [[nodiscard]] std::vector<io::TableColumn> line_table(const PlacedRecord& line, const fem::Mesh& mesh,
+                                                      const std::vector<StagePlan>& plans,
                                                       const std::filesystem::path& folder);
 
 }  // namespace voussoir::host

@@ -28,8 +28,8 @@ std::vector<Extent> extents_of(const fem::Mesh& mesh) {
   return extents;
 }
 
-/// The edges that look upwards, but for those of the opening, are at the height of the surface.
-void check_surface(const Scene& scene, const std::string& opening, const std::string& key, double surface,
+/// The edges that look upwards, but for those of openings, are at the height of the surface.
+void check_surface(const Scene& scene, const std::set<std::string>& openings, const std::string& key, double surface,
                    double near) {
   const auto check = [&](const std::string& name, const std::vector<fem::Edge>& edges) {
     for (const fem::Edge& edge : edges) {
@@ -42,14 +42,15 @@ void check_surface(const Scene& scene, const std::string& opening, const std::st
     }
   };
   for (const auto& [name, edges] : scene.mesh.edges) {
-    if (name != opening) check(name, edges);
+    if (!openings.contains(name)) check(name, edges);
   }
   check("", scene.mesh.unnamed_edges);
 }
 
 }  // namespace
 
-std::vector<GroundLayer> level_layers(const Scene& scene, const std::string& boundary, const std::string& key) {
+std::vector<GroundLayer> level_layers(const Scene& scene, const std::set<std::string>& openings,
+                                      const std::string& key) {
   const fem::Mesh& mesh = scene.mesh;
   const std::vector<Extent> extents = extents_of(mesh);
   Extent whole;
@@ -58,7 +59,7 @@ std::vector<GroundLayer> level_layers(const Scene& scene, const std::string& bou
     whole.add(extent.top);
   }
   const double near = 1e-9 * (whole.top - whole.bottom);
-  check_surface(scene, boundary, key, whole.top, near);
+  check_surface(scene, openings, key, whole.top, near);
   std::vector<GroundLayer> layers;
   for (std::size_t k = 0; k < extents.size(); ++k) {
     const std::string name = mesh.region_names.empty() ? "" : mesh.region_names[k];

@@ -1,6 +1,7 @@
 #pragma once
 /// Level ground at rest: its layers, and the tractions with which it holds a boundary, eqs. (15), (16).
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ struct GroundLayer {
 };
 
 /// The layers from the surface down. Throws std::runtime_error, whose text begins with `key`, where the surface or the
-/// layers are not level. Edges of `boundary`, which is an opening, need not be level.
-[[nodiscard]] std::vector<GroundLayer> level_layers(const Scene& scene, const std::string& boundary,
+/// layers are not level. Edges of `openings`, the boundaries that are pressed at rest, need not be level.
+[[nodiscard]] std::vector<GroundLayer> level_layers(const Scene& scene, const std::set<std::string>& openings,
                                                     const std::string& key);
 
 /// The layers of the scene with their K0.

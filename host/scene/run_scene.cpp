@@ -22,7 +22,7 @@ namespace {
 
 io::MeshData data_of(const PlannedScene& planned) {
   const Scene& scene = planned.scene;
-  io::MeshData data = mesh_data(scene.mesh);
+  io::MeshData data = mesh_data(scene.mesh, BoundaryNames::of_mesh);
   const Eigen::RowVectorXd y = scene.mesh.coordinates.row(1);
   data.geometry = {{"surface_y", y.maxCoeff()}, {"surcharge", scene.pressure}};
   if (scene.input.regions.size() == 1) data.geometry["unit_weight"] = scene.input.regions.front().unit_weight;
@@ -59,7 +59,7 @@ class SceneColumns {
     };
     stage.on_record = [this, &plan](IncrementReport& increment) {
       for (const auto& [name, quantity] : of(plan, reactions_, coordinates_)) increment.info.extra[name] = quantity;
-      for (const auto& [name, count] : tensile_nodes(plan, ground_.mesh, reactions_, coordinates_))
+      for (const auto& [name, count] : tensile_nodes(plan, reactions_, coordinates_))
         pulled_[name] = std::max(pulled_[name], count);
       if (shrinks(plan)) increment.volume_loss = increment.info.extra.at("area_" + *shrinks(plan)).value;
     };
@@ -121,7 +121,7 @@ void write_lines(const PlannedScene& planned, GroundRun& run) {
   for (const PlacedRecord& record : planned.records) {
     if (!record.input.line) continue;
     run.recorder().set_table("line_" + record.input.name,
-                             line_table(record, planned.scene.mesh, run.recorder().folder()));
+                             line_table(record, planned.scene.mesh, planned.plans, run.recorder().folder()));
   }
 }
 

@@ -12,10 +12,10 @@ double Scene::unit_weight(int element) const {
   return found == input.regions.end() ? 0.0 : found->unit_weight;
 }
 
-fem::Point Holder::displacement(const fem::Point& x, double from, double to) const {
+fem::Point Holder::displacement(const fem::Point& x, double from, double to, const fem::Point& centre) const {
   if (move.is_affine()) {
     const auto at = [&](double parameter) {
-      return fem::affine_displacement(x, about, move.rotation.value_or(0) * parameter,
+      return fem::affine_displacement(x, centre, move.rotation.value_or(0) * parameter,
                                       move.area.value_or(0) * parameter);
     };
     return at(to) - at(from);
@@ -30,6 +30,12 @@ int node_at(const fem::Mesh& mesh, const PlaceCase& place) {
   const double distance = (mesh.coordinates.colwise() - wanted).colwise().norm().minCoeff(&nearest);
   const double size = (mesh.coordinates.rowwise().maxCoeff() - mesh.coordinates.rowwise().minCoeff()).norm();
   return distance <= 1e-6 * size ? static_cast<int>(nearest) : -1;
+}
+
+const std::vector<fem::Edge>& outer_edges(const fem::Mesh& mesh, const std::string& boundary) {
+  static const std::vector<fem::Edge> none;
+  const auto found = mesh.edges.find(boundary);
+  return found == mesh.edges.end() ? none : found->second;
 }
 
 fem::Point coordinates_of(const fem::Mesh& mesh, const PlaceCase& place) {

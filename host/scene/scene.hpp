@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,18 @@ struct Holder {
   std::string name = {};  ///< of the boundary or the point, in columns and messages
   bool is_boundary = true;
   std::vector<int> nodes = {};
-  std::array<bool, 2> axes{};  ///< x, y
-  MoveCase move = {};          ///< without motions, the nodes stay where they are
-  fem::Point about = fem::Point::Zero();
+  std::array<bool, 2> axes{};             ///< x, y
+  MoveCase move = {};                     ///< without motions, the nodes stay where they are
+  fem::Point about = fem::Point::Zero();  ///< in the mesh as drawn [m]
+  int about_node = -1;                    ///< the node that `about` is; -1: it is none, and stays where it is
 
-  /// Displacement from one load parameter to another of a node that was at `x` when the stage began [m].
-  [[nodiscard]] fem::Point displacement(const fem::Point& x, double from, double to) const;
+  /// Displacement from one load parameter to another of a node that was at `x` when the stage began, where the centre
+  /// of the motion was at `centre` [m].
+  [[nodiscard]] fem::Point displacement(const fem::Point& x, double from, double to, const fem::Point& centre) const;
+  /// The same in the mesh as drawn.
+  [[nodiscard]] fem::Point displacement(const fem::Point& x, double from, double to) const {
+    return displacement(x, from, to, about);
+  }
 };
 
 /// Loads of a boundary at the start and at the end of a stage; each axis has its own, because one may be held.
@@ -59,6 +66,8 @@ struct StagePlan {
   /// Degrees of freedom whose forces fade in this stage, and the share of the force that is taken off: those that
   /// nothing holds any more, and those of the edge of what is dug out.
   std::map<int, double> fading = {};
+  /// Degrees of freedom of boundaries that were released in part, now or before: the rest of their forces stays.
+  std::map<std::string, std::set<int>> part_released = {};
 
   [[nodiscard]] bool changes_gravity() const { return gravity_from != gravity_to || tilt_from != tilt_to; }
 };
@@ -68,8 +77,13 @@ struct StagePlan {
 /// ...
 [[nodiscard]] std::vector<StagePlan> plan_stages(const Scene& scene);
 
+/// The largest vertical stress of the weights at load factor 1: of the heaviest region over the height of the mesh [Pa].
+[[nodiscard]] double weight_stress(const Scene& scene);
+
 /// The node of a point or of coordinates that lie on a node; -1 where there is none within 1e-6 of the mesh's size.
 [[nodiscard]] int node_at(const fem::Mesh& mesh, const PlaceCase& place);
+/// The outer edges of a named boundary; none of a curve inside the ground.
+[[nodiscard]] const std::vector<fem::Edge>& outer_edges(const fem::Mesh& mesh, const std::string& boundary);
 /// The coordinates of a place [m].
 [[nodiscard]] fem::Point coordinates_of(const fem::Mesh& mesh, const PlaceCase& place);
 

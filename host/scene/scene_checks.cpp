@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -24,14 +26,14 @@ void check_node(const Scene& scene, const std::string& key, const PlaceCase& poi
 }
 
 void check_press(const Scene& scene, const StagePlan& plan, const PressCase& press, const std::string& key) {
-  if (scene.mesh.edge_set(press.boundary).empty())
-    refuse(key + ".boundary", press.boundary + " lies inside the ground: it may be held or moved, but not pressed");
+  const auto load = std::find_if(plan.loads.begin(), plan.loads.end(),
+                                 [&](const BoundaryLoad& one) { return one.boundary == press.boundary; });
+  if (load->edges.empty()) refuse(key + ".boundary", fmt::format("all of {} has been dug out", press.boundary));
   for (const Holder& holder : plan.holders) {
     if (!holder.is_boundary || holder.name != press.boundary) continue;
     for (int axis = 0; axis < 2; ++axis) {
-      const bool acts = press.kind == PressKind::traction
-                            ? press.traction[axis] != 0
-                            : faces(scene.mesh, scene.mesh.edge_set(press.boundary), axis);
+      const bool acts = press.kind == PressKind::traction ? press.traction[axis] != 0
+                                                          : faces(scene.mesh, load->edges, axis);
       if (holder.axes[axis] && acts)
         refuse(key + ".boundary",
                fmt::format("{} is held along {}: move or release it", press.boundary, axis_names[axis]));
@@ -39,54 +41,118 @@ void check_press(const Scene& scene, const StagePlan& plan, const PressCase& pre
   }
 }
 
-/// The first and the last node of a boundary in one piece; the same node twice where it is closed.
-std::array<int, 2> ends_of(const std::vector<fem::Edge>& chain) { return {chain.front()[0], chain.back()[2]}; }
-
-/// A boundary that changes its area is closed, or its ends stay on supports.
-void check_area(const Scene& scene, const StagePlan& plan, const Holder& moved, const std::string& key) {
-  const std::vector<fem::Edge>& chain = scene.mesh.edge_set(moved.name);
-  const auto refused = [&] {
-    refuse(key + ".area", moved.name + " is neither closed nor ends on supports through its point");
-  };
-  if (chain.empty()) refused();
-  for (std::size_t k = 1; k < chain.size(); ++k) {
-    if (chain[k][0] != chain[k - 1][2]) refused();
+/// Tractions of ground at rest are those of level ground that nobody has dug in.
+void check_at_rest(const StagePlan& plan, const std::string& key) {
+  for (const BoundaryLoad& load : plan.loads) {
+    if (load.edges.empty() || (load.rest_to[0] == 0 && load.rest_to[1] == 0)) continue;
+    if (plan.tilt_from != 0 || plan.tilt_to != 0)
+      refuse(key + (plan.input.tilt ? ".tilt" : ".press"),
+             fmt::format("{} is pressed by ground at rest, which is level, but gravity is tilted", load.boundary));
   }
-  const std::array<int, 2> ends = ends_of(chain);
-  if (ends[0] == ends[1]) return;
-  for (const int node : ends) {
-    const fem::Point way = moved.displacement(scene.mesh.coordinates.col(node), 0, plan.input.end);
-    bool supported = false;
-    for (const Holder& holder : plan.holders) {
-      if (&holder == &moved || std::find(holder.nodes.begin(), holder.nodes.end(), node) == holder.nodes.end())
-        continue;
-      for (int axis = 0; axis < 2; ++axis) {
-        if (!holder.axes[axis]) continue;
-        supported = true;
-        if (std::abs(way[axis]) > 1e-9 * (1 + way.norm())) refused();
-      }
-    }
-    if (!supported) refused();
+  for (std::size_t k = 0; k < plan.input.presses.size(); ++k) {
+    const bool has_holes = std::any_of(plan.dug_out.begin(), plan.dug_out.end(), [](char dug) { return dug != 0; });
+    if (plan.input.presses[k].kind == PressKind::at_rest && has_holes)
+      refuse(fmt::format("{}.press[{}].at_rest", key, k),
+             "ground was dug out before, so that what is left is not at rest");
   }
 }
 
-/// Rigid motions that the held degrees of freedom leave: along x, along y, rotation.
-void check_held(const Scene& scene, const StagePlan& plan, const std::string& key) {
-  const fem::Point centre = scene.mesh.coordinates.rowwise().mean();
-  const double size = (scene.mesh.coordinates.colwise() - centre).colwise().norm().maxCoeff();
+/// Each region is dug out once, and some ground is left.
+void check_excavations(const Scene& scene) {
+  std::set<std::string> left(scene.mesh.region_names.begin(), scene.mesh.region_names.end());
+  std::set<std::string> gone;
+  for (std::size_t s = 0; s < scene.input.stages.size(); ++s) {
+    const std::vector<ExcavateCase>& excavations = scene.input.stages[s].excavations;
+    for (std::size_t k = 0; k < excavations.size(); ++k) {
+      const std::string key = fmt::format("stage[{}].excavate[{}].region", s, k);
+      const std::string& name = excavations[k].region;
+      if (gone.contains(name)) refuse(key, name + " has been dug out before");
+      if (left.erase(name) == 0) refuse(key, "the mesh has no region " + name);
+      if (left.empty()) refuse(key, "nothing of the ground is left");
+      gone.insert(name);
+    }
+  }
+}
+
+/// The first and the last node of a boundary in one piece; the same node twice where it is closed.
+std::array<int, 2> ends_of(const std::vector<fem::Edge>& chain) { return {chain.front()[0], chain.back()[2]}; }
+
+/// Whether a node of a moved boundary is held by something else, which moves along with it.
+bool stays_on_supports(const Scene& scene, const StagePlan& plan, const Holder& moved, int node) {
+  const fem::Point x = scene.mesh.coordinates.col(node);
+  const fem::Point way = moved.displacement(x, 0, plan.input.end);
+  bool supported = false;
+  for (const Holder& holder : plan.holders) {
+    const bool is_same = holder.is_boundary && holder.name == moved.name;
+    if (is_same || std::find(holder.nodes.begin(), holder.nodes.end(), node) == holder.nodes.end()) continue;
+    const fem::Point miss = way - holder.displacement(x, 0, plan.input.end);
+    for (int axis = 0; axis < 2; ++axis) {
+      if (!holder.axes[axis]) continue;
+      supported = true;
+      if (std::abs(miss[axis]) > 1e-9 * (1 + way.norm())) return false;
+    }
+  }
+  return supported;
+}
+
+/// A boundary that changes its area is closed, or its ends stay on supports.
+void check_area(const Scene& scene, const StagePlan& plan, const Holder& moved, const std::string& key) {
+  const std::vector<fem::Edge>& chain = outer_edges(scene.mesh, moved.name);
+  bool fits = !chain.empty();
+  for (std::size_t k = 1; k < chain.size(); ++k) fits = fits && chain[k][0] == chain[k - 1][2];
+  if (fits) {
+    const std::array<int, 2> ends = ends_of(chain);
+    fits = ends[0] == ends[1] ||
+           std::all_of(ends.begin(), ends.end(), [&](int node) { return stays_on_supports(scene, plan, moved, node); });
+  }
+  if (!fits) refuse(key + ".area", moved.name + " is neither closed nor ends on supports through its point");
+}
+
+/// Nodes of the ground that is left, piece by piece.
+std::vector<std::vector<int>> pieces_of(const fem::Mesh& mesh, const std::vector<char>& dug_out) {
+  std::vector<int> parent(static_cast<std::size_t>(mesh.n_nodes()), -1);  // -1: of no element that is left
+  const auto root = [&](int node) {
+    while (parent[node] != node) node = parent[node] = parent[parent[node]];
+    return node;
+  };
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    if (!dug_out.empty() && dug_out[e] != 0) continue;
+    for (const int node : mesh.elements[e]) {
+      if (parent[node] < 0) parent[node] = node;
+      parent[root(node)] = root(mesh.elements[e][0]);
+    }
+  }
+  std::map<int, std::vector<int>> pieces;
+  for (int node = 0; node < mesh.n_nodes(); ++node) {
+    if (parent[node] >= 0) pieces[root(node)].push_back(node);
+  }
+  std::vector<std::vector<int>> list;
+  for (auto& [first, nodes] : pieces) list.push_back(std::move(nodes));
+  return list;
+}
+
+/// Rigid motions that the held degrees of freedom leave to a piece: along x, along y, rotation.
+void check_held(const Scene& scene, const StagePlan& plan, const std::vector<int>& piece, bool is_all,
+                const std::string& key) {
+  fem::Point centre = fem::Point::Zero();
+  for (const int node : piece) centre += scene.mesh.coordinates.col(node) / static_cast<double>(piece.size());
+  double size = 0;
+  for (const int node : piece) size = std::max(size, (fem::Point(scene.mesh.coordinates.col(node)) - centre).norm());
   Eigen::Matrix3d gram = Eigen::Matrix3d::Zero();
-  for (const auto& [dof, owner] : plan.owners) {
-    const fem::Point arm = (fem::Point(scene.mesh.coordinates.col(dof / 2)) - centre) / size;
-    const Eigen::Vector3d row = dof % 2 == 0 ? Eigen::Vector3d(1, 0, -arm.y()) : Eigen::Vector3d(0, 1, arm.x());
-    gram += row * row.transpose();
+  for (const int node : piece) {
+    const fem::Point arm = (fem::Point(scene.mesh.coordinates.col(node)) - centre) / size;
+    if (plan.owners.contains(2 * node)) gram += Eigen::Vector3d(1, 0, -arm.y()) * Eigen::RowVector3d(1, 0, -arm.y());
+    if (plan.owners.contains(2 * node + 1)) gram += Eigen::Vector3d(0, 1, arm.x()) * Eigen::RowVector3d(0, 1, arm.x());
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> modes(gram);
   if (modes.eigenvalues()[0] > 1e-9) return;
   const Eigen::Vector3d free = modes.eigenvectors().col(0).cwiseAbs();
   Eigen::Index most = 0;
   free.maxCoeff(&most);
-  refuse(key, most == 2 ? "nothing keeps the ground from turning"
-                        : fmt::format("nothing holds the ground along {}", axis_names[most]));
+  const std::string what = is_all ? "the ground"
+                                  : fmt::format("the piece of ground about ({:.4g}, {:.4g}) m", centre.x(), centre.y());
+  refuse(key, most == 2 ? fmt::format("nothing keeps {} from turning", what)
+                        : fmt::format("nothing holds {} along {}", what, axis_names[most]));
 }
 
 double shortest_edge_at(const fem::Mesh& mesh, const std::vector<int>& nodes) {
@@ -132,6 +198,25 @@ void check_places(const Scene& scene) {
     for (std::size_t k = 0; k < moves.size(); ++k) {
       if (moves[k].boundary.empty()) check_node(scene, fmt::format("stage[{}].move[{}].point", s, k), moves[k].point);
     }
+    const std::vector<PressCase>& presses = scene.input.stages[s].presses;
+    for (std::size_t k = 0; k < presses.size(); ++k) {
+      if (outer_edges(scene.mesh, presses[k].boundary).empty())
+        refuse(fmt::format("stage[{}].press[{}].boundary", s, k),
+               presses[k].boundary + " lies inside the ground: it may be held or moved, but not pressed");
+    }
+  }
+  check_excavations(scene);
+}
+
+void check_releases(const StageCase& stage, const std::vector<Holder>& holders,
+                    const std::map<std::string, std::set<int>>& part_released, std::size_t number) {
+  for (std::size_t k = 0; k < stage.releases.size(); ++k) {
+    const std::string& name = stage.releases[k].boundary;
+    const bool held = std::any_of(holders.begin(), holders.end(),
+                                  [&](const Holder& holder) { return holder.is_boundary && holder.name == name; });
+    const auto part = part_released.find(name);
+    if (held || (part != part_released.end() && !part->second.empty())) continue;
+    refuse(fmt::format("stage[{}].release[{}].boundary", number, k), "nothing holds " + name);
   }
 }
 
@@ -145,7 +230,10 @@ void check_stage(const Scene& scene, const StagePlan& plan, std::size_t number) 
     const Holder& moved = plan.holders[first_move + k];
     if (moved.move.area && moved.is_boundary) check_area(scene, plan, moved, fmt::format("{}.move[{}]", key, k));
   }
-  check_held(scene, plan, number == 0 ? "support" : key);
+  check_at_rest(plan, key);
+  const std::vector<std::vector<int>> pieces = pieces_of(scene.mesh, plan.dug_out);
+  for (const std::vector<int>& piece : pieces)
+    check_held(scene, plan, piece, pieces.size() == 1, number == 0 ? "support" : key);
 }
 
 void check_steps(const Scene& scene, const StagePlan& plan, std::size_t number) {

@@ -11,11 +11,16 @@ inline constexpr double most_of_an_edge = 0.25;
 /// The share from which on `check` advises more steps.
 inline constexpr double wide_step = 0.05;
 
-/// Points of supports and moves must be nodes.
+/// Points of supports and moves must be nodes, a press needs outer edges, a region is dug out once, and some ground is
+/// left.
 void check_places(const Scene& scene);
 
-/// The stage with this number: nothing presses on what is held, motions of area keep to their supports, the ground
-/// cannot move as a rigid body.
+/// Boundaries that the stage with this number releases are held, or were released in part, before it.
+void check_releases(const StageCase& stage, const std::vector<Holder>& holders,
+                    const std::map<std::string, std::set<int>>& part_released, std::size_t number);
+
+/// The stage with this number: nothing presses on what is held or gone, motions of area keep to their supports, ground
+/// at rest is level, no piece of the ground can move as a rigid body.
 void check_stage(const Scene& scene, const StagePlan& plan, std::size_t number);
 
 /// No step moves a boundary by more than most_of_an_edge.

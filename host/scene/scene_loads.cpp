@@ -74,12 +74,19 @@ Eigen::VectorXd SceneLoads::internal_force() const {
   return fem::internal_force(scene_.mesh, fem::gauss_points(scene_.mesh, ground_.state.coordinates), stress).force;
 }
 
+void SceneLoads::drop_kept(Eigen::VectorXd& kept) const {
+  for (const auto& [dof, owner] : plan_.owners) kept[dof] = 0;
+  for (const auto& [dof, share] : plan_.fading) kept[dof] = 0;
+  for (const int node : plan_.idle_nodes) kept.segment<2>(2 * node).setZero();
+}
+
 void SceneLoads::begin(const StagePlan* before, FadingForces& forces) const {
   if (before != nullptr && forces.fading.size() > 0) {
     if (forces.kept.size() == 0) forces.kept = Eigen::VectorXd::Zero(forces.fading.size());
     for (const auto& [dof, share] : before->fading) forces.kept[dof] += (1 - share) * forces.fading[dof];
     forces.fading.resize(0);
   }
+  if (forces.kept.size() > 0) drop_kept(forces.kept);
   if (plan_.fading.empty()) return;
   Eigen::VectorXd missing = internal_force() - of_stage(0);
   if (forces.kept.size() > 0) missing -= forces.kept;
@@ -101,7 +108,8 @@ fem::Constraints SceneLoads::increment(double from, double to) const {
   fem::Constraints constraints;
   for (const auto& [dof, owner] : plan_.owners) {
     const Holder& holder = plan_.holders[owner];
-    constraints[dof] = holder.displacement(start.col(dof / 2), from, to)[dof % 2];
+    const fem::Point centre = holder.about_node < 0 ? holder.about : fem::Point(start.col(holder.about_node));
+    constraints[dof] = holder.displacement(start.col(dof / 2), from, to, centre)[dof % 2];
   }
   for (const int node : plan_.idle_nodes) constraints[2 * node] = constraints[2 * node + 1] = 0;
   return constraints;

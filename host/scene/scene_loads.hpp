@@ -39,6 +39,9 @@ class SceneLoads {
   [[nodiscard]] Eigen::VectorXd weights(double share) const;
   void add_load(const BoundaryLoad& load, double share, Eigen::VectorXd& force) const;
   [[nodiscard]] Eigen::VectorXd all_forces(double parameter, const FadingForces& forces) const;
+  /// Takes off what earlier stages have left where the ground is held again, where the forces fade now, and where no
+  /// ground is left.
+  void drop_kept(Eigen::VectorXd& kept) const;
   [[nodiscard]] Eigen::VectorXd internal_force() const;
   [[nodiscard]] fem::Constraints increment(double from, double to) const;
   [[nodiscard]] double share_of(double parameter) const { return parameter / plan_.input.end; }

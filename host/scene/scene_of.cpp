@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -23,14 +24,17 @@ std::vector<std::string> names_of(const Map& map) {
 
 /// The layers that a stage presses at rest, if any does.
 std::vector<GroundLayer> layers_at_rest(const Scene& scene) {
+  std::set<std::string> openings;
+  std::string first_key;
   for (std::size_t s = 0; s < scene.input.stages.size(); ++s) {
     const std::vector<PressCase>& presses = scene.input.stages[s].presses;
     for (std::size_t k = 0; k < presses.size(); ++k) {
       if (presses[k].kind != PressKind::at_rest) continue;
-      return level_layers(scene, presses[k].boundary, fmt::format("stage[{}].press[{}].at_rest", s, k));
+      openings.insert(presses[k].boundary);
+      if (first_key.empty()) first_key = fmt::format("stage[{}].press[{}].at_rest", s, k);
     }
   }
-  return {};
+  return openings.empty() ? std::vector<GroundLayer>{} : level_layers(scene, openings, first_key);
 }
 
 PlannedScene make(const Case& input) {

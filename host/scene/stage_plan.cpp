@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <stdexcept>
 
 #include "fem/load_stepper.hpp"
 #include "host/scene/scene.hpp"
@@ -18,6 +17,7 @@ struct Standing {
   std::vector<BoundaryLoad> loads;  ///< `..._to` counts
   double gravity = 0, tilt = 0;
   std::vector<char> dug_out;
+  std::map<std::string, std::set<int>> part_released;
 };
 
 std::vector<Holder> holders_of(const Scene& scene, const SupportCase& support) {
@@ -44,7 +44,10 @@ Holder holder_of(const Scene& scene, const MoveCase& move) {
     holder.nodes = {node_at(scene.mesh, move.point)};
   }
   holder.axes = {move.is_affine() || move.x.has_value(), move.is_affine() || move.y.has_value()};
-  if (move.is_affine()) holder.about = coordinates_of(scene.mesh, move.about);
+  if (move.is_affine()) {
+    holder.about = coordinates_of(scene.mesh, move.about);
+    if (!move.about.name.empty()) holder.about_node = node_at(scene.mesh, move.about);
+  }
   return holder;
 }
 
@@ -101,14 +104,14 @@ StagePlan plan_on(const Standing& standing, const StageCase& input) {
   plan.gravity_to = input.gravity.value_or(standing.gravity);
   plan.tilt_to = input.tilt.value_or(standing.tilt);
   plan.dug_out = standing.dug_out;
+  plan.part_released = standing.part_released;
   return plan;
 }
 
+/// The load of a boundary that has outer edges (check_places).
 BoundaryLoad& load_of(StagePlan& plan, const std::string& boundary) {
-  const auto found = std::find_if(plan.loads.begin(), plan.loads.end(),
-                                  [&](const BoundaryLoad& load) { return load.boundary == boundary; });
-  if (found == plan.loads.end()) throw std::runtime_error(fmt::format("{} has no outer edges to press on", boundary));
-  return *found;
+  return *std::find_if(plan.loads.begin(), plan.loads.end(),
+                       [&](const BoundaryLoad& load) { return load.boundary == boundary; });
 }
 
 void clear(BoundaryLoad& load, int axis) {
@@ -118,21 +121,28 @@ void clear(BoundaryLoad& load, int axis) {
   }
 }
 
-/// The forces that held the boundary fade, and its own load begins at nothing along the axes that are free now.
-void release(StagePlan& plan, const ReleaseCase& release) {
-  std::array<bool, 2> freed{};
+/// The degrees of freedom that a boundary owns and that nothing holds any more where it is no holder.
+std::set<int> let_go(StagePlan& plan, const std::string& boundary) {
   const std::map<int, std::size_t> before = owners_of(plan.holders);
-  for (int axis = 0; axis < 2; ++axis) freed[axis] = is_held(plan.holders, release.boundary, axis);
   std::set<int> dofs;
   for (const auto& [dof, owner] : before) {
-    if (plan.holders[owner].is_boundary && plan.holders[owner].name == release.boundary) dofs.insert(dof);
+    if (plan.holders[owner].is_boundary && plan.holders[owner].name == boundary) dofs.insert(dof);
   }
-  std::erase_if(plan.holders,
-                [&](const Holder& holder) { return holder.is_boundary && holder.name == release.boundary; });
+  std::erase_if(plan.holders, [&](const Holder& holder) { return holder.is_boundary && holder.name == boundary; });
   const std::map<int, std::size_t> after = owners_of(plan.holders);
-  for (const int dof : dofs) {
-    if (!after.contains(dof)) plan.fading[dof] = release.share;
-  }
+  std::erase_if(dofs, [&](int dof) { return after.contains(dof); });
+  return dofs;
+}
+
+/// The forces that held the boundary fade, and its own load begins at nothing along the axes that are free now. Of a
+/// boundary that was released in part before, the rest of the forces fades.
+void release(StagePlan& plan, const ReleaseCase& release) {
+  std::array<bool, 2> freed{};
+  for (int axis = 0; axis < 2; ++axis) freed[axis] = is_held(plan.holders, release.boundary, axis);
+  std::set<int>& part = plan.part_released[release.boundary];
+  part.merge(let_go(plan, release.boundary));
+  for (const int dof : part) plan.fading[dof] = release.share;
+  if (release.share == 1) plan.part_released.erase(release.boundary);
   const auto load = std::find_if(plan.loads.begin(), plan.loads.end(),
                                  [&](const BoundaryLoad& one) { return one.boundary == release.boundary; });
   if (load == plan.loads.end()) return;
@@ -141,14 +151,27 @@ void release(StagePlan& plan, const ReleaseCase& release) {
   }
 }
 
-/// @param first whether the ground still stands in its first state, in which the tractions at rest are p0
-void press(StagePlan& plan, const PressCase& press, bool first) {
+/// What a release of an earlier stage has left of the forces on the boundary fades, because it loads the boundary until
+/// now.
+void replace_rest_of_release(StagePlan& plan, const std::string& boundary) {
+  for (const ReleaseCase& one : plan.input.releases) {
+    if (one.boundary == boundary) return;
+  }
+  for (const int dof : plan.part_released[boundary]) plan.fading[dof] = 1.0;
+  plan.part_released.erase(boundary);
+}
+
+/// @param no_weights the ground has no weight until now, so that ground at rest presses with its own pressure
+void press(StagePlan& plan, const PressCase& press, double own_pressure, bool no_weights) {
+  replace_rest_of_release(plan, press.boundary);
   BoundaryLoad& load = load_of(plan, press.boundary);
   for (int axis = 0; axis < 2; ++axis) {
     load.pressure_to[axis] = press.kind == PressKind::pressure ? press.pressure : 0.0;
     load.traction_to[axis] = press.kind == PressKind::traction ? press.traction[axis] : 0.0;
     load.rest_to[axis] = press.kind == PressKind::at_rest ? 1.0 : 0.0;
-    if (press.kind == PressKind::at_rest && first) {
+    const bool is_at_rest = no_weights && load.pressure_from[axis] == own_pressure &&
+                            load.traction_from[axis] == 0 && load.rest_from[axis] == 0;
+    if (press.kind == PressKind::at_rest && is_at_rest) {
       load.pressure_from[axis] = 0;
       load.rest_from[axis] = 1;
     }
@@ -161,7 +184,7 @@ void excavate(const Scene& scene, StagePlan& plan, const ExcavateCase& excavatio
   const auto index = static_cast<int>(region - mesh.region_names.begin());
   plan.dug_out.resize(static_cast<std::size_t>(mesh.n_elements()), 0);
   for (int e = 0; e < mesh.n_elements(); ++e) {
-    if (mesh.region[e] == index) plan.dug_out[e] = 1;
+    if (mesh.region[e] == index) plan.dug_out[e] = 1;  // check_places: the mesh has the region
   }
 }
 
@@ -201,13 +224,16 @@ void leave_out_dug(const Scene& scene, StagePlan& plan, const std::vector<char>&
   }
 }
 
-/// The largest vertical stress of the weights at load factor 1 [Pa].
+}  // namespace
+
 double weight_stress(const Scene& scene) {
   const Eigen::RowVectorXd y = scene.mesh.coordinates.row(1);
   double heaviest = 0;
   for (const RegionCase& region : scene.input.regions) heaviest = std::max(heaviest, region.unit_weight);
   return heaviest * (y.maxCoeff() - y.minCoeff());
 }
+
+namespace {
 
 std::vector<double> targets_of(const Scene& scene, const StagePlan& plan) {
   std::vector<double> targets;
@@ -227,7 +253,8 @@ Standing standing_after(const StagePlan& plan) {
           .loads = plan.loads,
           .gravity = plan.gravity_to,
           .tilt = plan.tilt_to,
-          .dug_out = plan.dug_out};
+          .dug_out = plan.dug_out,
+          .part_released = plan.part_released};
 }
 
 /// What holds a boundary along an axis carries its load there. A load that faces no other axis is none any more; its
@@ -241,15 +268,17 @@ void leave_to_holders(BoundaryLoad& load, const fem::Mesh& mesh, const std::vect
   }
 }
 
-StagePlan plan_stage(const Scene& scene, const Standing& standing, const StageCase& input, bool first) {
+StagePlan plan_stage(const Scene& scene, const Standing& standing, const StageCase& input) {
   StagePlan plan = plan_on(standing, input);
   for (const ReleaseCase& one : input.releases) release(plan, one);
   for (const ExcavateCase& one : input.excavations) excavate(scene, plan, one);
   for (const MoveCase& move : input.moves) plan.holders.push_back(holder_of(scene, move));
-  for (const PressCase& one : input.presses) press(plan, one, first);
+  for (const PressCase& one : input.presses) press(plan, one, scene.pressure, standing.gravity == 0);
   leave_out_dug(scene, plan, standing.dug_out);
   plan.owners = owners_of(plan.holders);
   std::erase_if(plan.fading, [&](const auto& entry) { return plan.owners.contains(entry.first); });
+  for (auto& [boundary, dofs] : plan.part_released)
+    std::erase_if(dofs, [&](int dof) { return plan.owners.contains(dof); });
   for (BoundaryLoad& load : plan.loads) leave_to_holders(load, scene.mesh, plan.holders);
   plan.targets = targets_of(scene, plan);
   return plan;
@@ -262,8 +291,8 @@ std::vector<StagePlan> plan_stages(const Scene& scene) {
   std::vector<StagePlan> plans;
   Standing standing = first_standing(scene);
   for (const StageCase& stage : scene.input.stages) {
-    const bool first = plans.empty() || standing.gravity == 0;
-    StagePlan plan = plan_stage(scene, standing, stage, first);
+    check_releases(stage, standing.holders, standing.part_released, plans.size());
+    StagePlan plan = plan_stage(scene, standing, stage);
     check_stage(scene, plan, plans.size());
     standing = standing_after(plan);
     plans.push_back(std::move(plan));

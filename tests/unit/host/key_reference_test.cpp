@@ -37,7 +37,7 @@ TEST(KeyReference, EachKindAcceptsTheKeysThatTheListGivesItAndNoOther) {
 TEST(KeyReference, ListsKindsAndTheDefaultsOfPresets) {
   const io::KeyReference all = case_reference();
   EXPECT_EQ(key_named(all, "volume_loss.total").kinds, (std::vector<std::string>{"tunnel"}));
-  EXPECT_EQ(key_named(all, "output.microstructure").kinds.size(), 4U);
+  EXPECT_EQ(key_named(all, "output.microstructure").kinds.size(), 5U);
   EXPECT_EQ(key_named(all, "soil.modulus").kinds, all.kinds);
   const auto presets = key_named(all, "engine.inertial_number").other_defaults;
   ASSERT_EQ(presets.size(), 2U);
