@@ -6,6 +6,7 @@ import sys
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 
@@ -13,56 +14,14 @@ import figures
 import numpy as np
 from figure_calls import call
 from program import PROGRAM, fresh, run
+from tiny_scene import CASE
 from voussoir_plots import openings, panels, q8, regions, scene, scene_boundaries, scene_ground, scene_lines
 from voussoir_plots.result import Missing, Result
 
-CASE = """
-kind = "scene"
-title = "tiny"
-material = "linear_elastic"
-packing = {grains = 60, pressure = "10 kPa"}
-elastic = {modulus = "50 MPa", poisson = 0.3}
-gravity = {uniform_step = 0.5, ratio = 3}
-support = [
-  {boundary = "floor", fix = "xy"}, {boundary = "door", fix = "y"}, {boundary = ["left", "right"], fix = "x"}
-]
-region = [{name = "sand"}, {name = "cut"}]
-record = [
-  {name = "middle", point = ["1 m", "1 m"]},
-  {name = "level", line = [["0 m", "0.9 m"], ["2 m", "0.9 m"]], points = 9},
-  {name = "wall", line = [["2 m", "0 m"], ["2 m", "1 m"]], points = 5},
-  {name = "bed", region = "sand"},
-]
-
-[mesh]
-shape = "grid"
-x = ["0 m", "1 m", "2 m"]
-columns = [2, 2]
-y = ["0 m", "1 m", "2 m"]
-rows = [2, 2]
-base = ["floor", "door"]
-layers = ["sand", "cut"]
-
-[[stage]]
-name = "weight"
-gravity = 1
-[[stage]]
-name = "dig"
-steps = 1
-excavate = [{region = "cut"}]
-[[stage]]
-name = "lower"
-steps = 4
-move = [{boundary = "door", y = "-4 mm"}]
-[[stage]]
-name = "free"
-steps = 2
-release = [{boundary = "door", share = "50 %"}]
-"""
 OF_EVERY_SCENE = {
-    "mesh", "boundary_curves", "boundary_reactions", "record_points", "record_regions", "section_lines", "stage_fields",
-    "displacement", "deviatoric_strain", "convergence",
-}  # fmt: skip
+    *("mesh", "boundary_curves", "boundary_reactions", "record_points", "record_regions", "section_lines"),
+    *("stage_fields", "displacement", "deviatoric_strain", "convergence"),
+}
 
 
 def setUpModule():
@@ -131,9 +90,7 @@ class OfAScene(unittest.TestCase):
         last = self.result.increments[-1]
         rows = found["level"].at(last)
         places = np.column_stack([found["level"].table[axis][rows] for axis in ("x", "y")])
-        moved = q8.sample(
-            self.result.coordinates, self.result.connectivity, last.field("node/displacement"), places
-        )
+        moved = q8.sample(self.result.coordinates, self.result.connectivity, last.field("node/displacement"), places)
         np.testing.assert_allclose(found["level"].table["displacement_y"][rows], moved[:, 1], atol=1e-9)
         names = [name for _, name in scene_lines.chosen(self.result)]
         self.assertEqual(names, ["dig, 1", "lower, 1", "free, 0.5", "free, 1"])
@@ -169,9 +126,10 @@ class OfAnOpening(unittest.TestCase):
         reaction = self.forces(200e3)
         reaction[-1] += [7e4, 0]  # what holds the symmetry at x = 1 does no work
         fields = {"node/displacement": np.zeros_like(self.points), "node/reaction": reaction}
-        result = SimpleNamespace(boundaries={"hole": np.arange(9)}, coordinates=self.points)
+        result: Any = SimpleNamespace(boundaries={"hole": np.arange(9)}, coordinates=self.points)
+        increment: Any = SimpleNamespace(field=lambda name: fields[name])
         motion = scene.Motion("hole", "x", True, ["1 m", "1 m"])
-        (found,) = openings.pressure(result, motion, [SimpleNamespace(field=lambda name: fields[name])])
+        (found,) = openings.pressure(result, motion, [increment])
         self.assertAlmostEqual(found, 200e3, delta=1)
         self.assertRaises(Missing, openings.pressure, result, scene.Motion("gap", "x", True), [])
 

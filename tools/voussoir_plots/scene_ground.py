@@ -28,7 +28,9 @@ def draw_mesh(result: Result, path: Path) -> None:
     region = result.regions if result.regions is not None else np.zeros(len(result.connectivity), dtype=int)
     shades = [PALE[k % len(PALE)] for k in region]
     axis.add_collection(PolyCollection(list(outlines), facecolors=shades, edgecolors="0.6", linewidths=0.4))
-    named: list[Artist] = [Patch(facecolor=PALE[k % len(PALE)], edgecolor="0.6", label=f"region {n}") for k, n in _regions(result)]
+    named: list[Artist] = [
+        Patch(facecolor=PALE[k % len(PALE)], edgecolor="0.6", label=f"region {name}") for k, name in _regions(result)
+    ]
     named += [_draw_boundary(axis, result, name, k) for k, name in enumerate(sorted(result.boundaries))]
     named += _draw_records(axis, result)
     axis.set_aspect("equal")
