@@ -12,6 +12,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+import tiny_scene
 from program import PROGRAM, ROOT, SMALL_TUNNEL, check, fresh, run
 
 sys.path.insert(0, str(ROOT / "tools"))
@@ -251,12 +252,40 @@ def check_damaged(browser):
     opened.end("damaged run")
 
 
+def check_scene(browser):
+    """All stages on one slider; what is dug out cannot be clicked; the dot of the boundary follows the slider."""
+    opened = Opened(browser, "scene.html")
+    with h5py.File("scene/run.h5") as file:
+        stages = [stage.decode() for stage in file["table/stage"][()]]
+        reaction = file["table/reaction_door_y"][()]
+    frames = opened.evaluate("report.views[0].ground.loads.length")
+    check(frames == len(stages), f"{frames} states of {len(stages)}")
+    inside = "report.views[0].pointAt(...report.views[0].toCanvas(1.1, {}))"
+    for stage, whole in (("weight", True), ("free", False)):
+        opened.slide(len(stages) - 1 - stages[::-1].index(stage))
+        told = opened.page.locator("output.load").inner_text()
+        check(told == f"{stage}, load parameter 1", told)
+        check((opened.evaluate(inside.format(1.6)) is not None) == whole, f"{stage}: the region cut")
+        check(opened.evaluate(inside.format(0.6)) is not None, f"{stage}: the region sand")
+    last = len(stages) - 1 - stages[::-1].index("lower")
+    opened.slide(last)
+    drawn = opened.evaluate("report.charts[0].drawn.filter(s => s.name === 'lower')[0]")
+    check(abs(drawn["y"][last] - reaction[last] / 1e3) < 1e-4 * abs(reaction[last]), f"{drawn['y'][last]}")
+    check(opened.page.locator("[data-chart] circle.now").count() == 1, "no dot follows the slider")
+    opened.page.screenshot(path="scene.png", full_page=True)
+    opened.end("scene")
+
+
 start = time.monotonic()
 make_results()
+fresh("scene")
+Path("tiny_scene.toml").write_text(tiny_scene.CASE)
+run([PROGRAM, "run", "tiny_scene.toml", "-o", "scene"])
 made = time.monotonic()
 said = [report("sweep/tunnels/cover_2", "ensemble.html", "--only", "ground_reaction")]
 said.append(report("sweep", "sweep.html", "--only"))
 report("damaged", "damaged.html", "--only", code=2)
+report("scene", "scene.html", "--only", "boundary_curves")
 fresh("begun").mkdir()
 shutil.copy("damaged/run.h5", "begun")  # a tunnel whose column is still computed has no increment
 report("begun", "begun.html", code=2)
@@ -272,6 +301,7 @@ with sync_playwright() as playwright:
     check_ensemble(browser, 400)
     check_sweep(browser)
     check_damaged(browser)
+    check_scene(browser)
     browser.close()
 print(
     f"runs {made - start:.1f} s, pages {reported - made:.1f} s, browser {time.monotonic() - reported:.1f} s; ensemble "

@@ -24,6 +24,11 @@ from . import (
     reaction,
     rotation,
     rve_size_figures,
+    scene_boundaries,
+    scene_ground,
+    scene_lines,
+    scene_records,
+    scene_sweep,
     settlements,
     specimen,
     strength_figures,
@@ -66,6 +71,26 @@ _OF_A_MESH: Figures = {
     for name in ("displacement.png", "deviatoric_strain.png", "void_ratio.png", "grain_rotation.png", "convergence.png")
 }
 
+# Of a scene. The figures of a tunnel are skipped where the scene's mesh has none.
+SCENE: Figures = {
+    "mesh.png": scene_ground.draw_mesh,
+    "boundary_curves.png": scene_boundaries.draw,
+    "boundary_reactions.png": scene_boundaries.draw_reactions,
+    "record_points.png": scene_records.draw_points,
+    "record_regions.png": scene_records.draw_regions,
+    "section_lines.png": scene_lines.draw,
+    "stage_fields.png": scene_ground.draw_fields,
+    **_OF_A_MESH,
+    **{
+        name: FIGURES[name]
+        for name in ("k0.png", "settlement_troughs.png", "trough_widths.png", "settlement_growth.png")
+    },
+    "localisation.png": panels.draw,
+    "ground_reaction.png": reaction.draw,
+    "rve_paths.png": paths.draw,
+    "force_chains.png": chains.draw,
+}
+
 BIAXIAL: Figures = {
     "biaxial_curves.png": strength_figures.draw_curves,
     "biaxial_strength.png": strength_figures.draw_plane,
@@ -82,12 +107,14 @@ SWEEP: Figures = {
     "rve_size_variation.png": rve_size_figures.draw_variation,
     "rve_size_curves.png": rve_size_figures.draw_curves,
     "rve_size.md": rve_size_figures.write_table,
+    "boundary_curves.png": scene_sweep.draw,
     **OF_SWEEP,
 }
 
 OF: dict[str, Figures] = {
     "a tunnel": FIGURES,
     "a column": {"k0.png": earth_pressure.draw, "geostatic_stress.png": stresses.draw, **_OF_A_MESH},
+    "a scene": SCENE,
     "a biaxial specimen": {"specimen.png": specimen.draw, **_OF_A_MESH},
     "an ensemble": ensemble.FIGURES,
     "biaxial tests": BIAXIAL,

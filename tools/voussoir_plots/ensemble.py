@@ -1,5 +1,6 @@
 """The figures of an ensemble: means over its members with both bands, and the members as thin lines."""
 
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from . import scene
 from .resolution import percent
 from .result import Missing, Unreadable, check_format, plain, reading
 from .settings import Settings
@@ -52,6 +54,7 @@ class Ensemble:
         path = self.folder / INDEX
         with reading(path) as file:
             check_format(file, path, "voussoir ensemble")
+            self.case = tomllib.loads(plain(file["input"][()])) if "input" in file else {}
             self.count = int(file["bands"].attrs["members"])
             self.confidence = float(file["bands"].attrs["confidence"])
             self.begun = len(file["members/name"])
@@ -88,7 +91,7 @@ def _bands(group: h5py.Group) -> Bands:
     return Bands(*(group[name][()] for name in NAMES))
 
 
-def _draw(axis: Axes, x: np.ndarray, bands: Bands, ensemble: Ensemble, scale: float = 1.0) -> None:
+def draw_bands(axis: Axes, x: np.ndarray, bands: Bands, ensemble: Ensemble, scale: float = 1.0) -> None:
     """Both bands, the members and the mean. Places without a value in each member are left out."""
     there = np.isfinite(bands.mean)
     if not there.any():
@@ -110,7 +113,7 @@ def _draw(axis: Axes, x: np.ndarray, bands: Bands, ensemble: Ensemble, scale: fl
 def _over_the_loss(ensemble: Ensemble, name: str, label: str, title: str, scale: float = 1.0) -> tuple[Figure, Axes]:
     rows = ensemble.losing()
     figure, axis = plt.subplots(figsize=(7.2, 4.8))
-    _draw(axis, 100 * ensemble.load[rows], ensemble.curve(name).part(rows), ensemble, scale)
+    draw_bands(axis, 100 * ensemble.load[rows], ensemble.curve(name).part(rows), ensemble, scale)
     axis.set_xlabel("volume loss  $V_l$  [%]")
     axis.set_ylabel(label)
     axis.set_xlim(0, 100 * ensemble.load[rows].max())
@@ -175,7 +178,7 @@ def draw_trough(ensemble: Ensemble, path: Path) -> None:
     height = -(-len(chosen) // columns)
     figure, axes = plt.subplots(height, columns, figsize=(6.2 * columns, 4.0 * height + 0.4), squeeze=False)
     for axis, k in zip(axes.flat, chosen):
-        _draw(axis, ensemble.trough_x, ensemble.trough.part(int(rows[k])), ensemble, 1e3)
+        draw_bands(axis, ensemble.trough_x, ensemble.trough.part(int(rows[k])), ensemble, 1e3)
         axis.invert_yaxis()
         axis.set_xlim(0, ensemble.trough_x.max())
         axis.set_title(f"$V_l$ = {percent(load[k])}")
@@ -194,7 +197,7 @@ def draw_k0(ensemble: Ensemble, path: Path) -> None:
         raise Missing(f"{ensemble.folder / INDEX} has no table k0")
     k0 = ensemble.tables["k0"]
     figure, axis = plt.subplots(figsize=(7.2, 4.8))
-    _draw(axis, k0["vertical_stress"].mean / 1e3, k0["ratio"], ensemble)
+    draw_bands(axis, k0["vertical_stress"].mean / 1e3, k0["ratio"], ensemble)
     axis.set_xscale("log")
     plain_ticks(axis, k0["vertical_stress"].mean / 1e3)
     axis.set_xlabel(r"vertical stress  $\sigma_{yy}$  [kPa]")
@@ -208,12 +211,51 @@ def draw_k0(ensemble: Ensemble, path: Path) -> None:
 def draw_specimen(ensemble: Ensemble, path: Path) -> None:
     ratio = ensemble.curve("q_over_p")
     figure, axis = plt.subplots(figsize=(7.2, 4.8))
-    _draw(axis, 100 * ensemble.load, ratio, ensemble)
+    draw_bands(axis, 100 * ensemble.load, ratio, ensemble)
     axis.set_xlabel("displacement of the top over the height  [%]")
     axis.set_ylabel("$q / p$  [-]")
     axis.set_xlim(left=0)
     axis.set_title(f"Biaxial specimen, {ensemble.title()}")
     axis.legend()
+    save(figure, path)
+
+
+def motions(ensemble: Ensemble) -> list[scene.Motion]:
+    """The moved boundaries of an ensemble of scenes; Missing is raised where there are none."""
+    return scene.motions_of(ensemble.case, lambda name: ensemble.curves[name].mean if name in ensemble.curves else None)
+
+
+def _reach(values: np.ndarray) -> float:
+    return float(np.ptp(values)) if len(values) else 0.0
+
+
+def boundary_bands(ensemble: Ensemble, motion: scene.Motion) -> tuple[np.ndarray, Bands, float]:
+    """Mean displacement [mm] and reaction [N/m] of a moved boundary in the stage that moves it most while it is held,
+    and the sign of the reaction with which the support first pushes the ground."""
+    x = ensemble.curve(f"displacement_{motion.name}_{motion.axis}").mean
+    bands = ensemble.curve(f"reaction_{motion.name}_{motion.axis}")
+    far = {
+        name: _reach(x[(ensemble.stage == name) & (bands.mean != 0)])
+        for name in dict.fromkeys(ensemble.stage)
+        if np.any(bands.mean[ensemble.stage == name] != 0)
+    }
+    if not any(far.values()):
+        raise Missing(f"no stage moves {motion.name} while it is held")
+    rows = np.flatnonzero(ensemble.stage == max(far, key=lambda name: far[name]))
+    return (1e3 if motion.forward else -1e3) * x[rows], bands.part(rows), scene.first_sign(bands.mean)
+
+
+def draw_boundaries(ensemble: Ensemble, path: Path) -> None:
+    """What the moved boundaries of a scene bear, over the mean of their displacement."""
+    moved = motions(ensemble)
+    figure, axes = plt.subplots(1, len(moved), figsize=(7.2 * len(moved), 4.8), squeeze=False, layout="constrained")
+    for axis, motion in zip(axes.flat, moved):
+        x, bands, sign = boundary_bands(ensemble, motion)
+        draw_bands(axis, x, bands, ensemble, 1e-3 * sign)
+        axis.set_xlabel(f"displacement {motion.movement}  [mm]")
+        axis.set_ylabel(f"reaction on the ground, {scene.TOWARDS[motion.axis, sign > 0]}  [kN/m]")
+        axis.set_title(f"{motion.name}, {ensemble.title()}")
+        axis.legend(fontsize=8.5)
     save(figure, path)
 
 
@@ -224,6 +266,7 @@ FIGURES: dict[str, Callable[[Ensemble, Path], None]] = {
     "ensemble_trough_width.png": draw_width,
     "ensemble_k0.png": draw_k0,
     "ensemble_specimen.png": draw_specimen,
+    "ensemble_boundaries.png": draw_boundaries,
 }
 
 

@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
-from . import q8
+from . import q8, regions, scene
 from .resolution import percent
 from .result import Increment, Missing, Result
 from .style import DIVERGING, STRAIN, save
@@ -29,10 +29,15 @@ def state(increment: Increment) -> str:
 
 
 def since_start(result: Result, name: str, increment: Increment) -> np.ndarray:
-    """A field at an increment; within the volume loss grain rotations are counted from V_l = 0."""
+    """A field at an increment. Grain rotations are counted from V_l = 0 within the volume loss, and in a scene from the
+    last state whose displacements are zero."""
     values = increment.field(name)
-    turns = name == "gauss/grain_rotation" and increment["volume_loss"] > 0
-    return values - result.start.field(name) if turns else values
+    if name != "gauss/grain_rotation":
+        return values
+    if result.kind == "scene":
+        start = scene.start_of_displacements(result, increment)
+        return values if start is None else values - start.field(name)
+    return values - result.start.field(name) if increment["volume_loss"] > 0 else values
 
 
 def magnification(result: Result, displacement: np.ndarray) -> float:
@@ -48,21 +53,27 @@ def magnification(result: Result, displacement: np.ndarray) -> float:
 
 
 def canvas(result: Result, increment: Increment) -> tuple[Figure, Axes, np.ndarray, str]:
-    """Figure with deformed element edges; returns (figure, axis, deformed coordinates, line on magnification).
+    """Figure with deformed edges of the elements that are not dug out, and of regions; returns (figure, axis, deformed
+    coordinates, line on magnification).
 
     The line, which may be empty, goes below the first line of the title, beside the key of the arrows.
     """
     displacement = increment.field("node/displacement")
     factor = magnification(result, displacement)
     deformed = result.coordinates + factor * displacement
-    figure, axis = plt.subplots(figsize=(7.4, 6.6))
+    wide, high = np.ptp(result.coordinates, axis=0)
+    size = (8.2, float(np.clip(6.2 * high / wide, 1.8, 9.0)) + 1.2) if result.kind == "scene" else (7.4, 6.6)
+    figure, axis = plt.subplots(figsize=size)
+    there = regions.alive(result, increment)
     edges = LineCollection(
-        list(q8.outlines(deformed, result.connectivity)), colors="0.5", linewidths=0.35, alpha=0.6, zorder=2
+        list(q8.outlines(deformed, result.connectivity[there])), colors="0.5", linewidths=0.35, alpha=0.6, zorder=2
     )
     axis.add_collection(edges)
+    draw_interfaces(axis, result, deformed, there)
     axis.set_aspect("equal")
     axis.grid(False)
-    low, high = deformed.min(axis=0), deformed.max(axis=0)
+    standing = deformed[np.unique(result.connectivity[there])]
+    low, high = standing.min(axis=0), standing.max(axis=0)
     margin = 0.03 * np.max(high - low)
     axis.set_xlim(low[0] - margin, high[0] + margin)
     axis.set_ylim(low[1] - margin, high[1] + margin)
@@ -73,12 +84,23 @@ def canvas(result: Result, increment: Increment) -> tuple[Figure, Axes, np.ndarr
     return figure, axis, deformed, note
 
 
+def draw_interfaces(axis: Axes, result: Result, deformed: np.ndarray, there: np.ndarray) -> None:
+    """Lines between the regions of the ground, where there are several."""
+    between = regions.interfaces(result, there)
+    if len(between):
+        axis.add_collection(LineCollection(list(deformed[between]), colors="black", linewidths=1.3, zorder=2.5))
+
+
 def draw_displacement(result: Result, path: Path) -> None:
     increment = last_increment(result)
     figure, axis, deformed, note = canvas(result, increment)
     displacement = increment.field("node/displacement")
     size = np.linalg.norm(displacement, axis=1)
-    triangles = Triangulation(deformed[:, 0], deformed[:, 1], q8.triangles(result.connectivity))
+    there = regions.alive(result, increment)
+    triangles = Triangulation(deformed[:, 0], deformed[:, 1], q8.triangles(result.connectivity[there]))
+    standing = np.zeros(len(size), dtype=bool)
+    standing[np.unique(result.connectivity[there])] = True
+    size = np.where(standing, size, 0.0)
     # Where the displacement is the same everywhere (none, at a stage's start), it has no contours.
     filled = (
         axis.tricontourf(triangles, size, levels=21, cmap="viridis", zorder=1)
@@ -86,7 +108,7 @@ def draw_displacement(result: Result, path: Path) -> None:
         else axis.tripcolor(triangles, size, cmap="viridis", zorder=1)
     )
     figure.colorbar(filled, ax=axis, label="displacement  $|u|$  [m]", shrink=0.85)
-    _add_arrows(axis, result, deformed, displacement)
+    _add_arrows(axis, result, deformed, np.where(standing[:, None], displacement, 0.0))
     axis.set_title(f"Displacement, {state(increment)}\n{note}", loc="left")
     save(figure, path)
 
@@ -130,12 +152,13 @@ def _draw_points(
     values = factor * since_start(result, name, increment)
     figure, axis, deformed, note = canvas(result, increment)
     patches = q8.gauss_patches(deformed, result.connectivity)
+    there = regions.alive(result, increment)
     finite = values[np.isfinite(values)]
     limit = np.max(np.abs(finite)) if finite.size else 1.0
     limits = (-limit, limit) if symmetric else (finite.min(), finite.max()) if finite.size else (0, 1)
     collection = PolyCollection(
-        list(patches.reshape(-1, 4, 2)),
-        array=values.ravel(),
+        list(patches[there].reshape(-1, 4, 2)),
+        array=values[there].ravel(),
         cmap=colour_map,
         edgecolors="face",
         linewidths=0.6,

@@ -6,11 +6,12 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
 
-from . import q8
-from .fields import since_start
+from . import q8, regions
+from .fields import draw_interfaces, since_start
 from .resolution import percent
-from .result import Missing, Result
+from .result import Increment, Missing, Result
 from .style import DIVERGING, STRAIN, save
 
 # Field, factor, label, colour map, symmetric about the value at V_l = 0.
@@ -46,10 +47,27 @@ def draw(result: Result, path: Path, losses: Sequence[float] = ()) -> None:
     if not fields:
         raise Missing("there is no field of the Gauss points")
     (diameter, surface_y) = result.need("diameter", "surface_y")
+    titles = [f"$V_l$ = {percent(i['volume_loss'])}" for i in chosen]
+    figure, axes = draw_rows(result, fields, chosen, titles, (4.0, 4.0))
+    reach = min(result.coordinates[:, 0].max(), 4 * diameter)
+    axes[0, 0].set_xlim(-reach if result.is_whole else 0, reach)
+    axes[0, 0].set_ylim(result.crown_height - 1.6 * diameter, surface_y * 1.01)
+    figure.suptitle("Localisation, on the deformed mesh", fontsize=12)
+    save(figure, path)
+
+
+def draw_rows(
+    result: Result,
+    fields: Sequence[tuple[str, float, str, str, bool]],
+    chosen: Sequence[Increment],
+    titles: Sequence[str],
+    size: tuple[float, float],
+) -> tuple[Figure, np.ndarray]:
+    """A row for each field and a column for each increment; `size` of a panel [inches]. Returns figure and axes."""
     figure, axes = plt.subplots(
         len(fields),
         len(chosen),
-        figsize=(4.0 * len(chosen) + 1.2, 4.0 * len(fields)),
+        figsize=(size[0] * len(chosen) + 1.2, size[1] * len(fields)),
         squeeze=False,
         sharex=True,
         sharey=True,
@@ -58,24 +76,23 @@ def draw(result: Result, path: Path, losses: Sequence[float] = ()) -> None:
     for row, (name, factor, label, colour_map, symmetric) in zip(axes, fields):
         values = [factor * since_start(result, name, i) for i in chosen]
         range_of = limits(np.concatenate([v.ravel() for v in values]), symmetric)
-        for axis, increment, value in zip(row, chosen, values):
+        for axis, increment, value, title in zip(row, chosen, values, titles):
+            there = regions.alive(result, increment)
             moved = result.coordinates + increment.field("node/displacement")
-            patches = q8.gauss_patches(moved, result.connectivity).reshape(-1, 4, 2)
+            patches = q8.gauss_patches(moved, result.connectivity)[there].reshape(-1, 4, 2)
             drawn = PolyCollection(
-                list(patches), array=value.ravel(), cmap=colour_map, edgecolors="face", linewidths=0.3
+                list(patches), array=value[there].ravel(), cmap=colour_map, edgecolors="face", linewidths=0.3
             )
             drawn.set_clim(*range_of)
             axis.add_collection(drawn)
             axis.set_aspect("equal")
             axis.grid(False)
-            axis.set_title(f"$V_l$ = {percent(increment['volume_loss'])},  largest {largest(value):.3g}", fontsize=10)
+            draw_interfaces(axis, result, moved, there)
+            axis.set_title(f"{title},  largest {largest(value):.3g}", fontsize=10)
         figure.colorbar(
             drawn, ax=list(row), label=label, shrink=0.85, extend="max" if not symmetric else "both", pad=0.01
         )
         row[0].set_ylabel("$y$  [m]")
-    axes[0, 0].set_xlim(0, min(result.coordinates[:, 0].max(), 4 * diameter))
-    axes[0, 0].set_ylim(result.crown_height - 1.6 * diameter, surface_y * 1.01)
     for axis in axes[-1]:
         axis.set_xlabel("$x$  [m]")
-    figure.suptitle("Localisation, on the deformed mesh", fontsize=12)
-    save(figure, path)
+    return figure, axes

@@ -86,11 +86,13 @@ def describe(result: Result, point: Point) -> str:
     return f"{point.name}  ({point.position[0]:.2f} m, {(point.position[1] - result.crown_height) / diameter:+.2f} $D$)"
 
 
-def crown_element(result: Result) -> int:
-    """The element just above the crown: of those that hold the crown's node, the one whose centre lies highest."""
+def crown_elements(result: Result) -> np.ndarray:
+    """The element just above the crown: of those that hold the crown's node, the one whose centre lies highest. A
+    tunnel with both halves has one on either side of its axis, with the same height to a hundredth."""
     holders = np.flatnonzero(np.any(result.connectivity == result.crown(), axis=1))
-    heights = result.coordinates[result.connectivity[holders]].mean(axis=1)[:, 1]
-    return holders[np.argmax(heights)]
+    heights = result.coordinates[result.connectivity[holders]].mean(axis=1)[:, 1] - result.crown_height
+    highest = heights.max()
+    return holders[heights >= 0.99 * highest] if result.is_whole else holders[[np.argmax(heights)]]
 
 
 def on_level(result: Result, y: float, width: float = np.inf) -> np.ndarray:

@@ -17,8 +17,8 @@ from .soils import Curve, State, curve_of, name_of, nearest_soil, state_of
 
 FORMAT_VERSION = 1  # of docs/reference/files.md
 KINDS = (
-    "figures are drawn from runs of the kinds tunnel, column, biaxial_bvp, biaxial, calibrate and probe, of packings "
-    "(files or their folder), ensembles and sweeps"
+    "figures are drawn from runs of the kinds scene, tunnel, column, biaxial_bvp, biaxial, calibrate and probe, of "
+    "packings (files or their folder), ensembles and sweeps"
 )
 
 LENGTHS = ("surface_y", "diameter", "axis_depth", "width", "height")  # of the geometry, which must be positive
@@ -183,6 +183,9 @@ class Result(RunIndex):
             self.connectivity = mesh["connectivity"][()]
             self.boundaries = {name: nodes[()] for name, nodes in mesh["boundaries"].items()}
             self.geometry = {name: float(value) for name, value in mesh["geometry"].attrs.items()}
+            # Region of each element, and their names; None where the mesh has one region only.
+            self.regions = mesh["regions"][()].ravel() if "regions" in mesh else None
+            self.region_names = [str(plain(name)) for name in mesh["region_names"][()]] if "regions" in mesh else []
 
     def draw_note(self) -> str:
         """What a single run leaves open, for the foot of its figures; empty where nothing was measured."""
@@ -218,8 +221,10 @@ class Result(RunIndex):
 
     @cached_property
     def loss_increments(self) -> list[Increment]:
-        """Increments of the volume loss, with the one at V_l = 0 where it was written; at least one has V_l > 0."""
-        found = self.stage("volume_loss")
+        """Increments of the volume loss, with the one at V_l = 0 where it was written; at least one has V_l > 0. A
+        scene may give this stage any name."""
+        losing = [i["stage"] for i in self.increments if i["volume_loss"] > 0] if self.kind == "scene" else []
+        found = self.stage(losing[0] if losing else "volume_loss")
         if found[-1]["volume_loss"] <= 0:
             raise Missing("no increment has a volume loss")
         return found
@@ -236,6 +241,12 @@ class Result(RunIndex):
     def volume_loss(self) -> np.ndarray:
         """V_l of `loss_increments` [-]."""
         return np.array([i["volume_loss"] for i in self.loss_increments])
+
+    @property
+    def is_whole(self) -> bool:
+        """True where the mesh lies on both sides of a tunnel's axis x = 0, as a scene's full tunnel does."""
+        x = self.coordinates[:, 0]
+        return bool(x.min() < -1e-6 * np.ptp(x))
 
     def history(self, name: str) -> np.ndarray:
         """A field over `loss_increments`, e.g. "gauss/stress": (increment, element, 4, components)."""
@@ -280,9 +291,9 @@ class Result(RunIndex):
     def crown(self) -> int:
         """Node of the opening on the axis of symmetry, at the top."""
         self.need("diameter")
-        if "tunnel" not in self.boundaries:
+        nodes = self.boundaries.get("tunnel", self.boundaries.get("opening"))  # a scene has the names of its mesh
+        if nodes is None:
             raise Missing("run.h5 has no boundary tunnel")
-        nodes = self.boundaries["tunnel"]
         return nodes[np.argmax(self.coordinates[nodes, 1])]
 
 

@@ -13,7 +13,7 @@ from .style import colours, save
 def on_axis(result: Result, ratio: float) -> np.ndarray:
     """Settlement at x = 0 and z/C = ratio over the volume loss [m]."""
     line = troughs.line_at(result, ratio)
-    return np.array([line.settlement(i)[0] for i in result.loss_increments])
+    return np.array([line.settlement(i)[line.on_axis] for i in result.loss_increments])
 
 
 def growth(loss: np.ndarray, settlement: np.ndarray, window: float = 0.01) -> np.ndarray:

@@ -14,6 +14,7 @@ from .settings import Settings
 from .sweep import Sweep, is_sweep
 
 SORTS = {  # of runs, by their kind
+    "scene": "a scene",
     "tunnel": "a tunnel",
     "column": "a column",
     "biaxial_bvp": "a biaxial specimen",

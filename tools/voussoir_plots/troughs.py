@@ -39,13 +39,19 @@ class Line:
         x, y = result.coordinates.T
         on_surface = np.flatnonzero(np.abs(y - surface_y) < 1e-9 * surface_y) if depth == 0 else np.array([], dtype=int)
         # At the surface the line has the nodes, below it points in the elements.
-        self.x = np.sort(x[on_surface]) if depth == 0 else np.linspace(0, x.max(), 81)
+        below = np.linspace(x.min(), x.max(), 161) if result.is_whole else np.linspace(0, x.max(), 81)
+        self.x = np.sort(x[on_surface]) if depth == 0 else below
         line = np.column_stack([self.x, np.full_like(self.x, surface_y - depth)])
         self.nodes, self.weights = q8.locate(result.coordinates, result.connectivity, line)
         inside = np.isfinite(self.weights[:, 0])
         self.x, self.nodes, self.weights = self.x[inside], self.nodes[inside], self.weights[inside]
         if len(self.x) < 4:
             raise Missing(f"the mesh has too few points at the depth {depth:g} m")
+
+    @property
+    def on_axis(self) -> int:
+        """The place of the line that is nearest to the tunnel's axis x = 0."""
+        return int(np.argmin(np.abs(self.x)))
 
     def settlement(self, increment: Increment) -> np.ndarray:
         """[m], along `x`."""
@@ -60,11 +66,13 @@ class Trough:
         line = line_at(result, ratio)
         self.ratio, self.loss = ratio, increment["volume_loss"]
         self.x, self.settlement = line.x, line.settlement(increment)
+        self.at_axis = float(self.settlement[line.on_axis])
         self.fit = trough_fit.fit(self.x, self.settlement)
         self.depth = ratio * result.cover
         # NumPy's own function has another name in Debian 12's version.
         area = np.sum(np.diff(self.x) * (self.settlement[1:] + self.settlement[:-1]) / 2)
-        self.area_ratio = 2 * area / (self.loss * np.pi * diameter**2 / 4)
+        halves = 1 if result.is_whole else 2
+        self.area_ratio = halves * area / (self.loss * np.pi * diameter**2 / 4)
         self.width = self.fit.inflection / (axis_depth - self.depth)  # K [-]
 
     def row(self) -> tuple[float, ...]:
@@ -74,7 +82,7 @@ class Trough:
             self.depth,
             self.loss,
             self.settlement.max(),
-            self.settlement[0],
+            self.at_axis,
             fit.inflection,
             fit.alpha,
             float(fit.at_bound),
@@ -105,6 +113,9 @@ def all_troughs(result: Result) -> dict[tuple[float, float], Trough]:
 
 
 def mirrored(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Both sides of the axis; values that have both sides already stay as they are."""
+    if x[0] < -1e-6 * np.ptp(x):
+        return x, y
     return np.concatenate([-x[::-1], x]), np.concatenate([y[::-1], y])
 
 

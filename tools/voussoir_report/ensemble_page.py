@@ -9,12 +9,18 @@ from voussoir_plots.ensemble import INDEX, Ensemble
 from voussoir_plots.result import Missing, Result
 from voussoir_plots.study import judging
 
-from . import curves, element_curves, facts, ground, markup, members, paper_sentences, pictures, run_page
+from . import curves, element_curves, facts, ground, markup, members, paper_sentences, pictures, run_page, scene_curves
 from .markup import Page
 from .members import Members
 from .parts import Builder, name_of
 
-SORTS = {"volume_loss": "a tunnel", "biaxial_bvp": "a biaxial specimen", "gravity": "a tunnel", "column": "a column"}
+SORTS = {
+    "scene": "a scene",
+    "volume_loss": "a tunnel",
+    "biaxial_bvp": "a biaxial specimen",
+    "gravity": "a tunnel",
+    "column": "a column",
+}
 
 
 def make(ensemble: Ensemble, folder: Path, only: list[str] | None = None) -> Builder:
@@ -77,21 +83,26 @@ def _ground(builder: Builder, group: Members, name: str, result: Result) -> None
     ensemble = group.ensemble
     try:
         stage, _ = ground.stage_of(result)
-        rows = np.flatnonzero(ensemble.stage == stage)
+        whole = stage == "scene"  # all stages on one slider
+        rows = np.arange(len(ensemble.stage)) if whole else np.flatnonzero(ensemble.stage == stage)
         rows = rows[ground.thinned(len(rows), 3 * 4 * len(result.connectivity) // 2)]
-        loads = ensemble.load[rows]
-        shown = members.increments_at(result, stage, loads)
+        shown = members.increments_of_rows(result, ensemble, rows)
+        loads = ground.loads_of(stage, result, shown)
         mean, half = members.mean_and_half_width(group, rows, stage)
-        member = ground.states_of_run(shown, f"representative member ({name})")
+        member = ground.states_of_run(shown, f"representative member ({name})", result)
     except Missing as reason:
         builder.note(reason)
         return
     member.bits = 14  # three sets are three times the bytes
     packed = ground.shown(result, stage, loads, [mean, half, member])
     packed["tunnel"] = stage == "volume_loss"
+    if whole:
+        packed |= ground.parts_of_scene(result, shown)
     packed["sets"][0]["mean"] = packed["sets"][2]["followed"] = True
     if stage == "volume_loss":
         beside = builder.charts(curves.of_ensemble(group, loads))
+    elif whole:
+        beside = builder.charts(scene_curves.of_ensemble(ensemble))
     else:
         beside = builder.charts(element_curves.of_specimens(ensemble) if stage == "biaxial_bvp" else [])
     run_page.add_ground(builder, packed, run_page.first_point(result, "an ensemble"), beside)

@@ -137,11 +137,14 @@ def named(facts: Facts, where: np.ndarray, column: str, form: str, most: int = F
 def _place(facts: Facts, row: int) -> str:
     stage = str(facts.table["stage"][row])
     load = float(facts.column("load_parameter")[row])
-    return f"{stage} {100 * load:.4g} %" if stage in ("volume_loss", "biaxial_bvp") else f"{stage} at {load:.4g}"
+    share = stage in ("volume_loss", "biaxial_bvp") and facts.kind != "scene"
+    return f"{stage} {100 * load:.4g} %" if share else f"{stage} at {load:.4g}"
 
 
 def unfinished(case: dict[str, Any], facts: Facts) -> list[str]:
-    """A tunnel that ended before the volume loss which its case asks for."""
+    """A tunnel that ended before the volume loss which its case asks for, or a scene before its last stage's end."""
+    if facts.kind == "scene" and facts.increments:
+        return _unfinished_scene(case, facts)
     wanted = _fraction(case.get("volume_loss", {}).get("total")) if facts.kind == "tunnel" else None
     if wanted is None or not facts.increments:
         return []
@@ -149,6 +152,15 @@ def unfinished(case: dict[str, Any], facts: Facts) -> list[str]:
     if reached >= wanted * (1 - 1e-6):
         return []
     return [f"The run reached V_l = {100 * reached:.4g} % of the {100 * wanted:.4g} % that its case asks for."]
+
+
+def _unfinished_scene(case: dict[str, Any], facts: Facts) -> list[str]:
+    stages = [str(stage.get("name", "")) for stage in case.get("stage", [])]
+    name, load = str(facts.table["stage"][-1]), float(facts.column("load_parameter")[-1])
+    if not stages or (name == stages[-1] and load >= 1 - 1e-6):
+        return []
+    place = f"the stage {name}, of {len(stages)} stages number {stages.index(name) + 1}" if name in stages else name
+    return [f"The run reached the load parameter {load:.4g} of {place}."]
 
 
 def _fraction(text: Any) -> float | None:

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from voussoir_plots import q8
+from voussoir_plots import q8, regions, scene
+from voussoir_plots.fields import since_start
 from voussoir_plots.paths import LEAST_PRESSURE
 from voussoir_plots.result import Increment, Missing, Result
 
@@ -18,6 +19,7 @@ LOADS = {  # label, unit and factor of the slider
     "biaxial_bvp": ("displacement of the top over the height", "%", 100.0),
     "gravity": ("load factor of gravity", "-", 1.0),
     "column": ("load factor of gravity", "-", 1.0),
+    "scene": ("stage and load parameter", "-", 1.0),
 }
 MOST_VALUES = 400_000  # frames × points of a field; a longer run is thinned so that the page keeps its size
 
@@ -35,7 +37,9 @@ class States:
 
 
 def stage_of(result: Result) -> tuple[str, list[Increment]]:
-    """The stage that the page shows, and its increments."""
+    """The stage that the page shows, and its increments; of a scene all stages, as the stage "scene"."""
+    if result.kind == "scene":
+        return "scene", result.increments
     for name in STAGES:
         found = [i for i in result.increments if i["stage"] == name]
         if found and (name != "volume_loss" or found[-1]["volume_loss"] > 0):
@@ -49,15 +53,40 @@ def thinned(count: int, points: int) -> np.ndarray:
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
 
 
-def states_of_run(increments: Sequence[Increment], title: str) -> States:
-    """Fields that one of the increments lacks are left out."""
+def loads_of(stage: str, result: Result, increments: Sequence[Increment]) -> np.ndarray:
+    """The load parameters; of a scene with the number of the stages before."""
+    if stage != "scene":
+        return np.array([i["load_parameter"] for i in increments])
+    every = np.concatenate([scene.progress(part) for part in scene.stages(result)])
+    of = {i["index"]: load for i, load in zip(result.increments, every)}
+    return np.array([of[i["index"]] for i in increments])
+
+
+def parts_of_scene(result: Result, increments: Sequence[Increment]) -> dict[str, Any]:
+    """What the view of a scene has besides: names of its states, sides between regions with their two elements, and
+    which elements are there (only where some are dug out)."""
+    names = [f"{i['stage'].replace('_', ' ')}, load parameter {i['load_parameter']:.4g}" for i in increments]
+    parts: dict[str, Any] = {"names": names, "scene": True}
+    between = regions.interfaces_with_elements(result)
+    if len(between):
+        parts["interfaces"] = between.tolist()
+    there = np.array([regions.alive(result, i) for i in increments])
+    if not there.all():
+        parts["there"] = pack(there.astype(float), 8)
+    return parts
+
+
+def states_of_run(increments: Sequence[Increment], title: str, result: Result | None = None) -> States:
+    """Fields that one of the increments lacks are left out. A scene must be given as `result`."""
     nodes = np.array([i.field("node/displacement") for i in increments])
     present = set.intersection(*(i.names for i in increments))
     states = States(title, nodes)
     for wanted in FIELDS:
         if wanted.data in present:
             values = np.array([component(i.field(wanted.data), wanted) for i in increments])
-            if wanted.name == "grain_rotation" and increments[0]["stage"] == "volume_loss":
+            if wanted.name == "grain_rotation" and result is not None and result.kind == "scene":
+                values = np.array([component(since_start(result, wanted.data, i), wanted) for i in increments])
+            elif wanted.name == "grain_rotation" and increments[0]["stage"] == "volume_loss":
                 values -= values[:1]  # as in all figures, rotations are counted from V_l = 0
             states.points[wanted.name] = values
     return states

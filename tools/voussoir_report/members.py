@@ -67,6 +67,11 @@ def increments_at(result: Result, stage: str, loads: np.ndarray) -> list[Increme
     return [found[k] for k in nearest]
 
 
+def increments_of_rows(result: Result, ensemble: Ensemble, rows: np.ndarray) -> list[Increment]:
+    """The increments of an ensemble's rows, whatever their stages."""
+    return [increments_at(result, str(ensemble.stage[row]), ensemble.load[row : row + 1])[0] for row in rows]
+
+
 def mean_and_half_width(members: Members, rows: np.ndarray, stage: str) -> tuple[States, States]:
     """The mean fields and the half widths of the 95 % band of the mean, of the ensemble's increments `rows`."""
     mean, half = (_fields(members, rows, kind) for kind in ("mean", "mean_half_width"))

@@ -1,4 +1,4 @@
-"""The page of one run: a tunnel, a column, a specimen; biaxial tests, a calibration, a probe, packings."""
+"""The page of one run: a scene, a tunnel, a column, a specimen; biaxial tests, a calibration, a probe, packings."""
 
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ from voussoir_plots.catalogue import figures_of
 from voussoir_plots.result import Missing, Result, RunIndex
 from voussoir_plots.source import Source
 
-from . import curves, element_curves, facts, ground, markup, paper_sentences, pictures
+from . import curves, element_curves, facts, ground, markup, paper_sentences, pictures, scene_curves
 from .fields import colour_maps
 from .markup import Page
 from .parts import Builder, name_of
@@ -69,12 +69,13 @@ def _mesh_parts(builder: Builder, result: Result, what: str) -> None:
         stage, increments = ground.stage_of(result)
         kept = ground.thinned(len(increments), 4 * len(result.connectivity))
         shown = [increments[k] for k in kept]
-        states = ground.states_of_run(shown, "this run")
+        states = ground.states_of_run(shown, "this run", result)
     except Missing as reason:
         builder.note(reason)
         return
-    loads = np.array([i["load_parameter"] for i in shown])
-    packed = ground.shown(result, stage, loads, [states])
+    packed = ground.shown(result, stage, ground.loads_of(stage, result, shown), [states])
+    if what == "a scene":
+        packed |= ground.parts_of_scene(result, shown)
     packed["tunnel"] = what == "a tunnel"
     packed["sets"][0]["followed"] = True
     if len(shown) < len(increments):
@@ -91,6 +92,8 @@ def _mesh_parts(builder: Builder, result: Result, what: str) -> None:
 def charts_of(builder: Builder, result: Result, what: str, stage: str, shown: list[Any]) -> str:
     if what == "a tunnel" and stage == "volume_loss":
         return builder.charts(curves.of_tunnel(result, shown))
+    if what == "a scene":
+        return builder.charts(scene_curves.of_scene(result, shown))
     if what == "a biaxial specimen":
         return builder.charts(element_curves.of_specimen(result))
     if what == "a column":
@@ -99,12 +102,16 @@ def charts_of(builder: Builder, result: Result, what: str, stage: str, shown: li
 
 
 def first_point(result: Result, what: str) -> int:
-    """The point that is followed until the reader clicks another one: Aa just above a tunnel's crown."""
+    """The point that is followed until the reader clicks another one: Aa just above a tunnel's crown, and in a scene
+    the point that is sheared most at the end."""
     if what in ("a tunnel", "an ensemble"):
         try:
             return points.above_crown(result)[0].index
         except (Missing, IndexError):
             pass
+    if what == "a scene" and "gauss/deviatoric_strain" in result.increments[-1].names:
+        strain = result.increments[-1].field("gauss/deviatoric_strain").ravel()
+        return int(np.nanargmax(strain)) if np.isfinite(strain).any() else 0
     return 0
 
 

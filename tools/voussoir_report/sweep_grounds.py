@@ -34,20 +34,22 @@ def frames_for(points: list[int]) -> int:
 def small(members: list[Result], frames: int) -> dict[str, Any]:
     """The ground of the member that represents a point: of a tunnel the one with the median settlement."""
     result = members[0]
-    if len(members) > 1 and members[0].loss_increments:
+    if len(members) > 1 and result.kind != "scene" and members[0].loss_increments:
         result = Tunnel("", members).representative
     stage, increments = ground.stage_of(result)
     # Even steps of the load, among them the last state.
-    wanted = np.linspace(increments[0]["load_parameter"], increments[-1]["load_parameter"], frames)
-    have = np.array([i["load_parameter"] for i in increments])
+    have = ground.loads_of(stage, result, increments)
+    wanted = np.linspace(have[0], have[-1], frames)
     shown = [increments[k] for k in sorted({int(np.argmin(np.abs(have - load))) for load in wanted})]
-    states = ground.states_of_run(shown, result.folder.name)
+    states = ground.states_of_run(shown, result.folder.name, result)
     names = {f.name for f in FIELDS if f.name in KEPT}
     states.points = {name: values for name, values in states.points.items() if name in names}
     states.bits = BITS
-    packed = ground.shown(result, stage, np.array([i["load_parameter"] for i in shown]), [states])
+    packed = ground.shown(result, stage, ground.loads_of(stage, result, shown), [states])
     packed["tunnel"] = stage == "volume_loss"
-    packed["first"] = first_point(result, "a tunnel" if packed["tunnel"] else "")
+    if stage == "scene":
+        packed |= ground.parts_of_scene(result, shown)
+    packed["first"] = first_point(result, "a tunnel" if packed["tunnel"] else "a scene" if stage == "scene" else "")
     return packed
 
 

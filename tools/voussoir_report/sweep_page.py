@@ -16,7 +16,7 @@ from . import facts, markup, paper_sentences, pictures, sweep_grounds
 from .fields import colour_maps
 from .markup import Page
 from .parts import Builder, name_of
-from .sweep_points import CHARTS, Curves, Point
+from .sweep_points import CHARTS, Curves, Point, charts_of_scenes
 
 STATES = ("unconverged increments", "cuts", "most RVEs at the step limit")
 NOT_RUN = -1  # exit code of a run that nothing has begun (docs/reference/files.md, "A sweep")
@@ -30,7 +30,7 @@ def make(sweep: Sweep, folder: Path, only: list[str] | None = None) -> Builder:
     for reason in sweep.left_out:
         builder.note(reason)
     points = [Point(table, name, runs, sweep.settings) for name, runs in table.points().items()]
-    members = {p.name: p.members() if p.kind in ("tunnel", "biaxial_bvp", "column") else [] for p in points}
+    members = {p.name: p.members() if p.kind in ("tunnel", "scene", "biaxial_bvp", "column") else [] for p in points}
     curves = {p.name: p.curves(members[p.name]) for p in points}
     grounds, left_out = sweep_grounds.all_of(members)
     builder.missing += left_out
@@ -106,7 +106,8 @@ def _data(
         "units": table.units,
         "grounds": grounds,
         "charts": {
-            key: {"title": title, "xlabel": x, "ylabel": y, **further} for key, (title, x, y, further) in CHARTS.items()
+            key: {"title": title, "xlabel": x, "ylabel": y, **further}
+            for key, (title, x, y, further) in (CHARTS | charts_of_scenes(points)).items()
         },
         "colours": list(CYCLE),
         "many": [viridis[int(k)] for k in np.linspace(0, 225, 16)],

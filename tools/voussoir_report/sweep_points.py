@@ -1,10 +1,11 @@
 """The points of a sweep for its page: means of results with bands, and curves that can lie over one another."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from voussoir_plots import reaction, settlements, troughs
+from voussoir_plots import reaction, scene, scene_boundaries, settlements, troughs
 from voussoir_plots.element_tests import Series
 from voussoir_plots.ensemble import Bands
 from voussoir_plots.result import Missing, Result, RunIndex
@@ -50,6 +51,7 @@ class Point:
         self.folder = table.folder / name
         self.kind, self.grid = runs[0].kind, runs[0].grid
         self.faults: list[Missing] = []
+        self.charts: dict[str, tuple] = {}  # of a scene's boundaries, as CHARTS
 
     def axes(self) -> dict[str, str]:
         """The axes of the point: those whose value all of its members share."""
@@ -89,11 +91,32 @@ class Point:
             elif self.kind == "biaxial":
                 for run in self.runs:
                     _of_tests(found, Series(RunIndex(self.root / run.name)))
+            elif self.kind == "scene" and members:
+                _of_scenes(found, members, self.charts)
             elif self.kind == "biaxial_bvp" and members:
                 _of_specimens(found, members)
         except Missing as reason:
             self.faults.append(reason)
         return found
+
+
+def charts_of_scenes(points: Sequence[Point]) -> dict[str, tuple]:
+    """The charts of all boundaries of scenes, by their keys."""
+    return {key: chart for point in points for key, chart in point.charts.items()}
+
+
+def _of_scenes(found: Curves, members: list[Result], charts: dict[str, tuple]) -> None:
+    """What each moved boundary bears, in the stages that move it; of several members the first one's alone where their
+    increments differ in number."""
+    for k, motion in enumerate(scene.motions(members[0])):
+        each = [scene_boundaries.curves_of(m, scene.motions(m)[k])[0] for m in members]
+        joined = [(np.concatenate(curve.x), np.concatenate(curve.y)) for curve in each]
+        alike = [pair for pair in joined if len(pair[0]) == len(joined[0][0])]
+        key = f"boundary {motion.name}"
+        x = np.where(np.isfinite(joined[0][1]), joined[0][0], np.nan)
+        found[key] = [_curve(x, of_members([y for _, y in alike]))]
+        xlabel, ylabel = (label.replace("  [", " [") for label in (each[0].xlabel, each[0].ylabel))
+        charts[key] = (f"Boundary {motion.name}", xlabel, ylabel.replace(" on the ground,", ""), {"zero": True})
 
 
 def _curve(x: np.ndarray, bands: Bands, factor: float = 1.0, note: str = "") -> dict[str, Any]:

@@ -19,6 +19,7 @@ class GroundView {
     view.y0 = view.mesh.y.frame(0);
     view.nodes = Uint32Array.from(view.mesh.connectivity.frame(0));
     view.points = view.nodes.length / 2;
+    if (ground.there) view.there = await unpack(ground.there);  // which elements are not dug out, of a scene
     view.sets = await Promise.all(ground.sets.map(async (set) => ({...set, data: await unpackAll(set.blobs)})));
     view.controls();
     view.listen();
@@ -58,6 +59,15 @@ class GroundView {
     this.note = element("p", {class: "note"});
     this.host.append(bar, element("div", {class: "canvas"}, this.canvas, this.tip), this.note);
   }
+
+  // The state of a frame: the stage of a scene, or a load.
+  stateName(frame) {
+    const {loads, load, names} = this.ground;
+    return names ? names[frame] : `${load.label} = ${written(loads[frame])}${load.unit === "-" ? "" : ` ${load.unit}`}`;
+  }
+
+  // False for a point whose element has been dug out.
+  isThere(point) { return !this.there || this.there.at(this.frame, Math.floor(point / 4)) > 0.5; }
 
   // A deformation of about 2 % of the width is visible.
   visibleScale() {
@@ -112,6 +122,7 @@ class GroundView {
     const data = this.shown.band ? this.sets[0].data : this.shown.data;
     const m = Number(this.scale.value), ux = data.ux.frame(this.frame), uy = data.uy.frame(this.frame);
     const x = this.x0.map((v, i) => v + m * ux[i]), y = this.y0.map((v, i) => v + m * uy[i]);
+    this.deformed = [x, y];
     const corners = new Float64Array(8 * this.points);
     for (let e = 0; e < this.points / 4; ++e) {
       const n = this.nodes.subarray(8 * e, 8 * e + 8);
@@ -134,8 +145,7 @@ class GroundView {
     this.values = Float64Array.from({length: this.points}, (_, p) => this.value(shown, field, frame, p));
     this.limits = this.range.value === "this" ? this.ownLimits(field) : shown.limits[field.name] || [0, 1];
     this.draw();
-    const {loads, load} = this.ground;
-    this.told.textContent = `${load.label} = ${written(loads[frame])}${load.unit === "-" ? "" : ` ${load.unit}`}`;
+    this.told.textContent = this.stateName(frame);
     this.note.textContent = shown.note || "";
     this.calls.changed?.(frame);
     this.times.push(performance.now() - start);
@@ -164,7 +174,7 @@ class GroundView {
         const xa = c[8 * p + 2 * a], ya = c[8 * p + 2 * a + 1], xb = c[8 * p + 2 * b], yb = c[8 * p + 2 * b + 1];
         if (ya > wy !== yb > wy && wx < xa + (xb - xa) * (wy - ya) / (yb - ya)) inside = !inside;
       }
-      if (inside) return p;
+      if (inside && this.isThere(p)) return p;
     }
     return null;
   }

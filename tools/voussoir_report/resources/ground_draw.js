@@ -86,6 +86,7 @@ Object.assign(GroundView.prototype, {
   drawPoints(pen) {
     const groups = new Map(), colourOf = this.palette();
     this.values.forEach((value, p) => {
+      if (!this.isThere(p)) return;
       const colour = colourOf(value);
       if (groups.has(colour))
         groups.get(colour).push(p);
@@ -98,6 +99,7 @@ Object.assign(GroundView.prototype, {
       pen.fillStyle = colour;
       pen.fill();
     }
+    this.drawInterfaces(pen);
     if (this.point === null) return;
     for (const [colour, line] of [["white", 5], ["black", 2]]) {
       pen.beginPath();
@@ -106,6 +108,26 @@ Object.assign(GroundView.prototype, {
       pen.lineWidth = line;
       pen.stroke();
     }
+  },
+
+  // Lines between the regions of a scene: three nodes and two elements each.
+  drawInterfaces(pen) {
+    if (!this.ground.interfaces) return;
+    const [x, y] = this.deformed;
+    pen.beginPath();
+    for (const [a, m, b, one, other] of this.ground.interfaces) {
+      if (!this.isThere(4 * one) || !this.isThere(4 * other)) continue;
+      [a, m, b].forEach((n, k) => {
+        const at = this.toCanvas(x[n], y[n]);
+        if (k === 0)
+          pen.moveTo(...at);
+        else
+          pen.lineTo(...at);
+      });
+    }
+    pen.strokeStyle = "black";
+    pen.lineWidth = 1.5;
+    pen.stroke();
   },
 
   drawAxes(pen) {
@@ -120,10 +142,10 @@ Object.assign(GroundView.prototype, {
           up = ticks(y0, y1, Math.max(3, (bottom - MARGIN.top) / 70));
     for (const x of along.at) pen.fillText(tickText(x, along.step), this.toCanvas(x, 0)[0], bottom + 15);
     const from = this.ground.tunnel ? "the tunnel's axis" : "the left edge";
-    pen.fillText(`distance from ${from} x [m]`, (MARGIN.left + right) / 2, bottom + 32);
+    pen.fillText(this.ground.scene ? "x [m]" : `distance from ${from} x [m]`, (MARGIN.left + right) / 2, bottom + 32);
     pen.textAlign = "right";
     for (const y of up.at) pen.fillText(tickText(y, up.step), MARGIN.left - 5, this.toCanvas(0, y)[1] + 4);
-    this.upright(pen, "height above the base y [m]", 12, (MARGIN.top + bottom) / 2);
+    this.upright(pen, this.ground.scene ? "y [m]" : "height above the base y [m]", 12, (MARGIN.top + bottom) / 2);
   },
 
   upright(pen, text, x, y) {

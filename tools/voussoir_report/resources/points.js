@@ -87,11 +87,9 @@ class PointPanel {
   update() {
     const {view} = this, {point, frame} = view;
     if (point === null) return;
-    const {loads, load, fields} = view.ground;
+    const {loads, fields} = view.ground;
     for (const plot of this.plots) plot.state(frame, loads[frame]);
-    const head = element(
-        "tr", {},
-        element("th", {}, `at ${load.label} = ${written(loads[frame])}${load.unit === "-" ? "" : ` ${load.unit}`}`));
+    const head = element("tr", {}, element("th", {}, `at ${view.stateName(frame)}`));
     for (const set of view.sets) head.append(element("th", {}, set.title));
     const rows = fields.map((field) => {
       const row = element(

@@ -1,0 +1,138 @@
+"""Figures of scenes: a tiny elastic scene has all that fit, their numbers are those of its table, dug-out elements are
+left out, an opening's pressure is found from known forces, and a sweep's runs are drawn together."""
+
+import os
+import sys
+import unittest
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+
+import figures
+import numpy as np
+from figure_calls import call
+from program import PROGRAM, fresh, run
+from tiny_scene import CASE
+from voussoir_plots import openings, panels, q8, regions, scene, scene_boundaries, scene_ground, scene_lines
+from voussoir_plots.result import Missing, Result
+
+OF_EVERY_SCENE = {
+    *("mesh", "boundary_curves", "boundary_reactions", "record_points", "record_regions", "section_lines"),
+    *("stage_fields", "displacement", "deviatoric_strain", "convergence"),
+}
+
+
+def setUpModule():
+    """One scene, and a sweep of it with two stiffnesses."""
+    fresh("runs").mkdir()
+    Path("runs/tiny.toml").write_text(CASE)
+    run([PROGRAM, "run", "runs/tiny.toml", "-o", "runs/tiny"])
+    Path("runs/sweep.toml").write_text(
+        'base = "tiny.toml"\n[grid]\nname = "doors"\n[grid.modulus]\nsoft = ["elastic.modulus=30 MPa"]\nhard = []\n'
+    )
+    run([PROGRAM, "sweep", "runs/sweep.toml", "-o", "runs/sweep"])
+
+
+class OfAScene(unittest.TestCase):
+    def setUp(self):
+        self.result = Result("runs/tiny")
+        self.stages = {stage.name: stage for stage in scene.stages(self.result)}
+
+    def test_figures(self):
+        """All figures that fit are drawn, in a vector format as well; those of tunnels are skipped with their reason."""
+        status, said, errors = call(figures, "runs/tiny", "-o", "figures")
+        self.assertEqual((status, errors), (0, []))
+        self.assertEqual({Path(line.split()[-1]).stem for line in said if line.startswith("wrote")}, OF_EVERY_SCENE)
+        skipped = [line for line in said if line.startswith("skipped")]
+        self.assertTrue(any("ground_reaction.png: there is no stage volume_loss" in line for line in skipped), skipped)
+        status, said, _ = call(figures, "runs/tiny", "-o", "figures", "--only", "boundary_curves", "--format", "svg")
+        self.assertEqual((status, len(said)), (0, 1))
+        self.assertIn("<svg", Path("figures/boundary_curves.svg").read_text()[:600])
+
+    def test_boundary_curves(self):
+        """The door goes down by 4 mm, is pushed upwards at first, and has no reaction while it is released."""
+        (motion,) = scene.motions(self.result)
+        self.assertEqual((motion.name, motion.axis, motion.movement), ("door", "y", "downwards"))
+        reaction, traction, release = scene_boundaries.curves_of(self.result, motion)
+        self.assertIn("upwards", reaction.ylabel)
+        lower, free = self.stages["lower"], self.stages["free"]
+        np.testing.assert_allclose(reaction.x[lower.number], [0, 1, 2, 3, 4], atol=1e-9)
+        raw = scene.column(lower.increments, "reaction_door_y")
+        np.testing.assert_allclose(reaction.y[lower.number], raw / 1e3)
+        self.assertGreater(raw[0], 0)
+        self.assertLess(raw[-1], raw[0])
+        np.testing.assert_allclose(traction.y[lower.number], scene.column(lower.increments, "traction_door_y") / 1e3)
+        self.assertTrue(np.isnan(reaction.y[free.number]).all())
+        np.testing.assert_allclose(release.y[free.number], [100, 75, 50])
+        np.testing.assert_allclose(scene.progress(free), [3, 3.5, 4])
+
+    def test_dug_out(self):
+        """Half of the elements are dug out; the line between the regions stands while both sides do."""
+        before, after = (self.stages[name].increments[-1] for name in ("weight", "dig"))
+        self.assertTrue(regions.alive(self.result, before).all())
+        there = regions.alive(self.result, after)
+        centres = self.result.coordinates[self.result.connectivity].mean(axis=1)
+        np.testing.assert_array_equal(there, centres[:, 1] < 1)
+        self.assertEqual(self.result.region_names, ["sand", "cut"])
+        between = regions.interfaces(self.result, regions.alive(self.result, before))
+        self.assertEqual(len(between), 4)
+        np.testing.assert_allclose(self.result.coordinates[between][..., 1], 1)
+        self.assertEqual(len(regions.interfaces(self.result, there)), 0)
+        _, axes = panels.draw_rows(self.result, scene_ground.FIELDS[:1], [before, after], ["", ""], (3, 3))
+        self.assertEqual([len(axis.collections[0].get_paths()) for axis in axes[0]], [64, 32])
+
+    def test_lines(self):
+        """Rows of a line's table belong to their increments; a level line has x, an upright one y along it."""
+        found = {line.name: line for line in scene_lines.lines(self.result)}
+        self.assertEqual([found[name].along[0] for name in ("level", "wall")], ["x", "y"])
+        last = self.result.increments[-1]
+        rows = found["level"].at(last)
+        places = np.column_stack([found["level"].table[axis][rows] for axis in ("x", "y")])
+        moved = q8.sample(self.result.coordinates, self.result.connectivity, last.field("node/displacement"), places)
+        np.testing.assert_allclose(found["level"].table["displacement_y"][rows], moved[:, 1], atol=1e-9)
+        names = [name for _, name in scene_lines.chosen(self.result)]
+        self.assertEqual(names, ["dig, 1", "lower, 1", "free, 0.5", "free, 1"])
+
+    def test_sweep(self):
+        status, said, errors = call(figures, "runs/sweep", "-o", "figures/sweep", "--only", "boundary_curves")
+        self.assertEqual((status, errors, len(said)), (0, [], 1))
+        self.assertTrue(said[0].startswith("wrote"), said)
+
+
+class OfAnOpening(unittest.TestCase):
+    """A quarter of a hole of radius 2 with the centre (1, 1), whose sides are parabolas."""
+
+    def setUp(self):
+        angle = np.linspace(0, np.pi / 2, 9)
+        self.points = np.column_stack([1 + 2 * np.cos(angle), 1 + 2 * np.sin(angle)])
+        self.centre = np.array([1.0, 1.0])
+
+    def forces(self, pressure):
+        """Nodal forces of a pressure on the sides, by three Gauss points a side."""
+        found = np.zeros_like(self.points)
+        for k in range(0, len(self.points) - 2, 2):
+            for s, weight in zip((-np.sqrt(0.6), 0.0, np.sqrt(0.6)), (5 / 9, 8 / 9, 5 / 9)):
+                shape = np.array([s * (s - 1) / 2, 1 - s * s, s * (s + 1) / 2])
+                slope = np.array([s - 0.5, -2 * s, s + 0.5]) @ self.points[k : k + 3]
+                found[k : k + 3] += weight * pressure * np.outer(shape, [slope[1], -slope[0]])
+        return found
+
+    def test_area(self):
+        self.assertAlmostEqual(openings.enclosed(self.points, self.centre), np.pi, delta=2e-4)
+
+    def test_pressure(self):
+        reaction = self.forces(200e3)
+        reaction[-1] += [7e4, 0]  # what holds the symmetry at x = 1 does no work
+        fields = {"node/displacement": np.zeros_like(self.points), "node/reaction": reaction}
+        result: Any = SimpleNamespace(boundaries={"hole": np.arange(9)}, coordinates=self.points)
+        increment: Any = SimpleNamespace(field=lambda name: fields[name])
+        motion = scene.Motion("hole", "x", True, ["1 m", "1 m"])
+        (found,) = openings.pressure(result, motion, [increment])
+        self.assertAlmostEqual(found, 200e3, delta=1)
+        self.assertRaises(Missing, openings.pressure, result, scene.Motion("gap", "x", True), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
