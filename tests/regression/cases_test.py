@@ -1,10 +1,12 @@
-"""Every case is checked and run, shrunk where it is long, and compared with the numbers that it must give."""
+"""Every case but the scenes (scenes_test.py) is checked and run, shrunk where it is long, and compared with the numbers
+that it must give."""
 
 import re
 import subprocess
 from pathlib import Path
 
 from expected import check_expected
+from fixed_packings import GRAVEL, LOOSE_SAND, SAND, YADE
 from program import PROGRAM, ROOT, check, command, draw_and_read_back, fresh, run, table
 
 FIGURES = [
@@ -31,13 +33,6 @@ FIGURES_OF_GRAINS = [
 ]
 
 
-def packing(name):
-    """A packing that is always the same: one made from the recipe is another one wherever a last bit differs."""
-    return f"packing.file={ROOT / 'tests/data' / name}_particles.csv"
-
-
-SAND, LOOSE_SAND, GRAVEL = (packing(f"packings/{name}") for name in ("cps_d_150", "cps_md_150", "cpg_d_400"))
-YADE = packing("yade/CPS_D")
 # Settings that shorten a case, and its figures. A shortened case is held to its expected_short.csv, a whole one to its
 # expected.csv.
 RUNS: dict[str, tuple[list[str], list[str]]] = {
@@ -120,6 +115,8 @@ def particle_steps(folder):
 
 for folder in sorted(path.parent for path in (ROOT / "cases").glob("*/case.toml")):
     case = folder.name
+    if 'kind = "scene"' in (folder / "case.toml").read_text():
+        continue
     check((folder / "README.md").exists(), f"cases/{case} has no README.md")
     check(case in RUNS, f"cases/{case} is run by no test")
     settings, figures = RUNS[case]
