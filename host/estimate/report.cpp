@@ -33,7 +33,8 @@ namespace {
 /// Of a scene; describe_scene.hpp tells of each of its regions.
 std::vector<std::string> describe_packings(const CaseSize& size) {
   if (size.packings == 0) return {};
-  return {fmt::format("{} packings have to be made or found; the lanes are {:.0f} % full", size.packings,
+  return {fmt::format("{} packing{} to be made or found; the lanes are {:.0f} % full", size.packings,
+                      size.packings == 1 ? " has" : "s have",
                       100 * size.lanes_share)};
 }
 

@@ -46,6 +46,31 @@ std::vector<fem::Edge> edges_left(const StagePlan& plan, const std::string& boun
   return {};
 }
 
+/// The edges of a boundary, and those of others that go on from its ends in the same direction and are held along the
+/// axis, too: the reaction of a node at its end carries the ground on both sides.
+std::vector<fem::Edge> edges_carried(const StagePlan& plan, const fem::Coordinates& coordinates,
+                                     const std::string& boundary, int axis) {
+  constexpr double same_direction = 0.87;  // 30 deg
+  std::vector<fem::Edge> edges = edges_left(plan, boundary);
+  const std::vector<fem::Edge> own = edges;
+  const auto direction = [&](const fem::Edge& edge) -> fem::Point {
+    return (coordinates.col(edge[2]) - coordinates.col(edge[0])).normalized();
+  };
+  std::set<std::string> others;
+  for (const Holder& holder : plan.holders) {
+    if (holder.is_boundary && holder.axes[axis] && holder.name != boundary) others.insert(holder.name);
+  }
+  for (const std::string& other : others) {
+    for (const fem::Edge& edge : edges_left(plan, other)) {
+      const bool goes_on = std::any_of(own.begin(), own.end(), [&](const fem::Edge& one) {
+        return (one[2] == edge[0] || edge[2] == one[0]) && direction(one).dot(direction(edge)) > same_direction;
+      });
+      if (goes_on) edges.push_back(edge);
+    }
+  }
+  return edges;
+}
+
 /// Its nodes at elements that are left.
 std::vector<int> nodes_left(const StagePlan& plan, std::vector<int> nodes) {
   const std::set<int> idle(plan.idle_nodes.begin(), plan.idle_nodes.end());
@@ -100,15 +125,15 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
   for (const std::string& name : boundaries.held) {
     const std::vector<int> nodes = nodes_left(plan, ground.mesh.node_set(name));
     if (nodes.empty()) continue;
-    const std::vector<fem::Edge> edges = edges_left(plan, name);
-    const Eigen::VectorXd width = widths(coordinates, edges);
+    const bool is_outside = !edges_left(plan, name).empty();
     const fem::Point moved = mean_displacement(nodes, displacement);
     for (int axis = 0; axis < 2; ++axis) {
+      const Eigen::VectorXd width = widths(coordinates, edges_carried(plan, coordinates, name, axis));
       const Owned owned = owned_by(name, axis, plan, reactions, width);
       const std::string end = name + "_" + axis_names[axis];
       to["reaction_" + end] = {owned.reaction, "N/m"};
       to["displacement_" + end] = {moved[axis], "m"};
-      if (!edges.empty()) to["traction_" + end] = {owned.width > 0 ? owned.reaction / owned.width : 0.0, "Pa"};
+      if (is_outside) to["traction_" + end] = {owned.width > 0 ? owned.reaction / owned.width : 0.0, "Pa"};
     }
     const auto area = boundaries.with_area.find(name);
     if (area != boundaries.with_area.end()) to["area_" + name] = {lost_area(ground, name, area->second), "-"};

@@ -72,7 +72,7 @@ class SceneColumns {
       if (count > 0) list += fmt::format("{}{} ({} nodes at the most)", list.empty() ? "" : ", ", name, count);
     }
     if (list.empty()) return {};
-    return fmt::format("supports pulled the ground, which has no cohesion, at {}: a real boundary would part from it",
+    return fmt::format("supports pulled the ground at {}: where it has no cohesion, a real boundary would part from it",
                        list);
   }
 

@@ -121,7 +121,8 @@ TEST(SceneCase, AllCasesOfTheRepositoryRead) {
     EXPECT_EQ(input.remarks, std::vector<std::string>{});
     // What a scene resolves to is a scene that says the same.
     write("resolved.toml", input.resolved);
-    if (input.scene.mesh.file.empty()) EXPECT_EQ(load_case("resolved.toml").fingerprint, input.fingerprint);
+    if (!input.scene.mesh.file.empty()) continue;  // its name is relative to the case's folder
+    EXPECT_EQ(load_case("resolved.toml").fingerprint, input.fingerprint);
   }
   EXPECT_GE(scenes, 10);
 }
