@@ -14,7 +14,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from key_limits_scene import NEEDED, scene_tables
+from key_limits_scene import NEEDED, OR_ONE, scene_tables
 from program import PROGRAM, check
 
 KINDS = ("pack", "probe", "biaxial", "biaxial_bvp", "calibrate", "column", "tunnel", "scene")
@@ -147,11 +147,9 @@ def keys_of(kind):
 def lines_of(kind, settings):
     """The tiny case of a kind as TOML, with further settings, a dictionary of full keys. Returns text and, for each
     key, its line."""
-    tables = (
-        scene_tables(settings, TINY["scene"])
-        if kind == "scene"
-        else {name: dict(keys) for name, keys in TINY[kind].items()}
-    )
+    tables = {name: dict(keys) for name, keys in TINY[kind].items()}
+    if kind == "scene":
+        tables = scene_tables(settings, tables)
     known = {key["key"] for key in keys_of_kind(kind)}
     for key, value in settings.items():
         if key.rsplit(".", 1)[0] == key:
@@ -230,13 +228,6 @@ def values_inside(key):
     if kind.startswith("list") and key["key"] != "probe.path[].gradient":
         return []
     return []
-
-
-# Lists in whose place one value may stand, and texts or numbers that are such values.
-OR_ONE = {
-    f"mesh.{name}" for name in ("columns", "rows", "x_ratio", "y_ratio", "layers", "base", "top", "left", "right")
-}
-OR_ONE |= {"support[].boundary"}
 
 
 def wrong_forms(key):

@@ -25,6 +25,11 @@ NEEDED = {  # what an entry of an array of tables cannot be without
     "stage[].move[]": {},
     "record[]": {"name": '"record"'},
 }
+# Lists in whose place one value may stand, and texts or numbers that are such values.
+OR_ONE = {
+    f"mesh.{name}" for name in ("columns", "rows", "x_ratio", "y_ratio", "layers", "base", "top", "left", "right")
+}
+OR_ONE |= {"support[].boundary"}
 
 
 def scene_tables(settings, tiny):
