@@ -14,6 +14,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from key_limits_scene import NEEDED, OR_ONE, scene_tables
 from program import PROGRAM, check
 
 KINDS = ("pack", "probe", "biaxial", "biaxial_bvp", "calibrate", "column", "tunnel", "scene")
@@ -63,46 +64,6 @@ TINY = {
         "stage[]": {"name": '"load"', "steps": "1"},
     },
 }
-# A scene has one of these as [mesh]: the first that has the key in question or, for keys with a default, one like it.
-MESHES = {
-    "grid": {"x": '["0 m", "1 m"]', "columns": "1", "y": '["0 m", "1 m"]', "rows": "1"},
-    "tunnel": {
-        "width": '"40 m"',
-        "height": '"20 m"',
-        "diameter": '"5 m"',
-        "cover_ratio": "1",
-        "size_opening": '"2.5 m"',
-        "size_far": '"8 m"',
-    },
-    "ring": {"radius": '"1 m"', "outer": '"2 m"', "columns": "2", "rows": "2"},
-}
-LIKE = {"interfaces": "width", "ratio": "radius", "part": "radius"}
-HELD = {"grid": '"base"', "tunnel": '["base", "left", "right"]', "ring": '["x0", "y0"]'}
-MOVED = {"grid": '"top"', "tunnel": '"top"', "ring": '"far"'}
-NEEDED = {  # what an entry of an array of tables cannot be without
-    "soil.class[]": {"size_to": '"1 m"'},
-    "region[].soil.class[]": {"size_to": '"1 m"'},
-    "stage[].press[]": {"boundary": '"top"'},
-    "stage[].release[]": {"boundary": '"base"'},
-    "stage[].excavate[]": {"region": '"ground"'},
-    "stage[].move[]": {},
-    "record[]": {"name": '"record"'},
-}
-
-
-def scene_tables(settings):
-    """The tiny scene whose shape has these keys. Its move is left out where another table of the stage has a key."""
-    names = [key.removeprefix("mesh.") for key in settings if key.startswith("mesh.")]
-    wanted = LIKE.get(names[0], names[0]) if names else "x"
-    shape = next((one for one, keys in MESHES.items() if wanted in keys), "grid")
-    tables = {"mesh": {"shape": f'"{shape}"', **MESHES[shape]}}
-    tables |= {name: dict(keys) for name, keys in TINY["scene"].items()}
-    tables["support[]"]["boundary"] = HELD[shape]
-    if not any(key.startswith("stage[].") and key.count(".") == 2 and ".move" not in key for key in settings):
-        tables["stage[].move[]"] = {"boundary": MOVED[shape], "y": '"1 mm"'}
-    return tables
-
-
 # What a value at its limit needs beside it, so that no relation between keys forbids it; by key and limit, or by key.
 SMALL_TUNNEL = {
     "ground.width": '"2 cm"',
@@ -186,7 +147,9 @@ def keys_of(kind):
 def lines_of(kind, settings):
     """The tiny case of a kind as TOML, with further settings, a dictionary of full keys. Returns text and, for each
     key, its line."""
-    tables = scene_tables(settings) if kind == "scene" else {name: dict(keys) for name, keys in TINY[kind].items()}
+    tables = {name: dict(keys) for name, keys in TINY[kind].items()}
+    if kind == "scene":
+        tables = scene_tables(settings, tables)
     known = {key["key"] for key in keys_of_kind(kind)}
     for key, value in settings.items():
         if key.rsplit(".", 1)[0] == key:
@@ -265,13 +228,6 @@ def values_inside(key):
     if kind.startswith("list") and key["key"] != "probe.path[].gradient":
         return []
     return []
-
-
-# Lists in whose place one value may stand, and texts or numbers that are such values.
-OR_ONE = {
-    f"mesh.{name}" for name in ("columns", "rows", "x_ratio", "y_ratio", "layers", "base", "top", "left", "right")
-}
-OR_ONE |= {"support[].boundary"}
 
 
 def wrong_forms(key):
