@@ -24,14 +24,14 @@ struct RelaxationOptions {
   /// Bounds of the factor on K^-1 R, which is the substep's time over the viscous time. The first substep takes the
   /// factor with which the relaxation before it ended, or 1 at the start of a stage [-].
   double least_factor = 0.25;
-  double largest_factor = 3;   ///< the matrix of eq. (4) is too stiff by no more than this [-]
+  double largest_factor = 3;  ///< the matrix of eq. (4) is too stiff by no more than this [-]
   /// Substeps in turn that overshoot even with the least factor, after which the matrix is made anew: grains that have
   /// touched again since the last one are stiffer than it says, so that the mesh would swing about them without end.
   int most_overshoots = 3;
   /// Substeps without a residual of 0.9 of the least so far, after which the matrix is made anew, too, and the largest
   /// factor is halved: a few stiff points overshoot with the factor that suits all others, and the mesh swings.
   int most_in_vain = 20;
-  double least_cap = 0.5;  ///< the largest factor is not halved below this [-]
+  double least_cap = 0.5;      ///< the largest factor is not halved below this [-]
   double factor_growth = 1.5;  ///< largest growth of the factor per substep: softening ground would let it grow on [-]
 };
 

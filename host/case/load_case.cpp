@@ -159,8 +159,8 @@ Case read_case(const io::CaseFile& text, const std::filesystem::path& file) {
   return input;
 }
 
-/// Cases of this kind in which every key has been read: one, or for a scene several, because some of its keys exclude one
-/// another. `more` is added to their text.
+/// Cases of this kind in which every key has been read: one, or for a scene several, because some of its keys exclude
+/// one another. `more` is added to their text.
 std::vector<io::CaseFile> known_cases_of(CaseKind kind, const std::string& more) {
   std::string text = "kind = \"" + to_string(kind) + "\"\n";
   // One entry of each array of tables, and what cannot be left out: the values do not matter.

@@ -42,8 +42,8 @@ struct SceneMeshCase {
   std::vector<std::string> layers = {"ground"};  ///< names of regions, from the base upwards (grid, half_tunnel,
                                                  ///< tunnel)
 
-  // ring about (0, 0); its boundaries are "cavity", "far", "x0" (x = 0; not of a whole ring) and "y0" (y = 0; of a quarter);
-  // half a ring lies at x >= 0
+  // ring about (0, 0); its boundaries are "cavity", "far", "x0" (x = 0; not of a whole ring) and "y0" (y = 0; of a
+  // quarter); half a ring lies at x >= 0
   double radius = 1.0, outer = 10.0;  ///< [m]
   int ring_columns = 16;              ///< elements around
   int ring_rows = 16;                 ///< elements outwards
@@ -111,7 +111,7 @@ struct StageCase {
   std::string name;
   double end = 1;  ///< 1 in case files; kinds that are scenes inside count in their own parameter. Motions are those of
                    ///< a parameter of 1.
-  int steps = 0;                  ///< 0: the steps of [gravity]
+  int steps = 0;   ///< 0: the steps of [gravity]
   std::optional<double> gravity;  ///< load factor of the weights at the end [-]
   std::optional<double> tilt;     ///< of gravity from the vertical at the end [rad]
   LossGeometry geometry = LossGeometry::updated_lagrangian;

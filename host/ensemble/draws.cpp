@@ -17,10 +17,10 @@ void expect_draws_of_regions(const Case& input) {
     if (region.elastic) continue;
     grains = true;
     const PackingCase& packing = region.packing;
-    const char* fault = !packing.files.empty()                     ? "names its packings"
-                        : !packing.seeds.empty()                   ? "names its seeds"
-                        : packing.seed != input.packing.seed       ? "has a seed of its own"
-                                                                   : nullptr;
+    const char* fault = !packing.files.empty()               ? "names its packings"
+                        : !packing.seeds.empty()             ? "names its seeds"
+                        : packing.seed != input.packing.seed ? "has a seed of its own"
+                                                             : nullptr;
     if (fault == nullptr) continue;
     const std::string key = fmt::format("region[{}]", k);
     throw io::InputError(place_of(input, key), key,

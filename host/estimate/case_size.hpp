@@ -18,10 +18,10 @@ struct RegionSize {
 
 struct CaseSize {
   std::vector<std::string> sentences = {};  ///< of a scene: mesh, boundaries, regions, stages, for `check`
-  std::size_t points = 0;         ///< Gauss points of the largest mesh
-  std::size_t column_points = 0;  ///< Gauss points of the column
-  std::size_t increments = 0;     ///< planned, all stages
-  double grains = 0;              ///< grains of all RVEs of the largest mesh; 0 without grains
+  std::size_t points = 0;                   ///< Gauss points of the largest mesh
+  std::size_t column_points = 0;            ///< Gauss points of the column
+  std::size_t increments = 0;               ///< planned, all stages
+  double grains = 0;                        ///< grains of all RVEs of the largest mesh; 0 without grains
   double particle_steps = 0;  ///< estimate for the whole run [grains x steps] without the making of packings; 0 without
                               ///< grains
   std::size_t tests = 0;      ///< tests of packings, for kinds without a mesh

@@ -116,8 +116,7 @@ void add_softness(const Case& input, const SoilCase& soil, const kernels::Packin
   const bool is_soft = soft < least_usual_stiffness;
   if (!is_soft && stiff <= most_usual_stiffness) return;
   const std::string modulus = soil.classes.empty()
-                                  ? "soil.modulus of " +
-                                        io::format_quantity(soil.modulus, io::Dimension::pressure)
+                                  ? "soil.modulus of " + io::format_quantity(soil.modulus, io::Dimension::pressure)
                                   : "soil.class";
   warnings.push_back(fmt::format(
       "{} with soil.thickness of {} makes {} contacts: kappa = {:.3g} at {:.4g} kPa, outside of {:.0f} to {:.0f}; {} "
@@ -168,7 +167,8 @@ Foretold foretell(const Case& input, double height) {
   for (const SoilRecipe& recipe : recipes_of(input)) {
     if (recipe.packing->has_state()) continue;  // its pressure is known when it is read
     const std::string said = recipe.name.empty() ? "" : fmt::format("region {}: ", recipe.name);
-    auto [one, overlap] = foretell_grains(input, *recipe.soil, largest_load(input, height), grains_of(input, recipe), said);
+    auto [one, overlap] = foretell_grains(input, *recipe.soil, largest_load(input, height), grains_of(input, recipe),
+                                          said);
     out.warnings.insert(out.warnings.end(), one.warnings.begin(), one.warnings.end());
     if (overlap > most) out.line = std::move(one.line);
     most = std::max(most, overlap);

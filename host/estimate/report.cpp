@@ -34,8 +34,7 @@ namespace {
 std::vector<std::string> describe_packings(const CaseSize& size) {
   if (size.packings == 0) return {};
   return {fmt::format("{} packing{} to be made or found; the lanes are {:.0f} % full", size.packings,
-                      size.packings == 1 ? " has" : "s have",
-                      100 * size.lanes_share)};
+                      size.packings == 1 ? " has" : "s have", 100 * size.lanes_share)};
 }
 
 }  // namespace

@@ -157,8 +157,8 @@ std::vector<std::string> column_names(const std::vector<PlacedRecord>& records) 
   for (const PlacedRecord& record : records) {
     const std::string& name = record.input.name;
     if (record.input.point) {
-      for (const char* column : {"displacement_{}_x", "displacement_{}_y", "stress_{}_xx", "stress_{}_yy",
-                                 "stress_{}_xy"})
+      for (const char* column :
+           {"displacement_{}_x", "displacement_{}_y", "stress_{}_xx", "stress_{}_yy", "stress_{}_xy"})
         names.push_back(fmt::format(fmt::runtime(column), name));
     }
     if (record.input.region.empty()) continue;

@@ -77,7 +77,8 @@ struct StagePlan {
 /// ...
 [[nodiscard]] std::vector<StagePlan> plan_stages(const Scene& scene);
 
-/// The largest vertical stress of the weights at load factor 1: of the heaviest region over the height of the mesh [Pa].
+/// The largest vertical stress of the weights at load factor 1: of the heaviest region over the height of the mesh
+/// [Pa].
 [[nodiscard]] double weight_stress(const Scene& scene);
 
 /// The node of a point or of coordinates that lie on a node; -1 where there is none within 1e-6 of the mesh's size.

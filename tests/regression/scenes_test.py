@@ -4,17 +4,15 @@ Each must give its expected_short.csv, and its reactions, weights and loads must
 biaxial_bvp are one problem and must give the same bits; tunnel_scene must give the numbers of tunnel_quick.
 """
 
-import re
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 
 import h5py
 import numpy as np
 from equilibrium import Array, Pressure, balances, check_balance
 from expected import check_expected
-from fixed_packings import GRAVEL, LOOSE_SAND, SAND, YADE, packing_file
-from program import PROGRAM, ROOT, check, command, fresh, run, table
+from fixed_packings import LOOSE_SAND, SAND, YADE, packing_file
+from program import ROOT, check, command, fresh, run, table
 
 GRAVITY = "gravity.uniform_step=0.2"
 P0 = 1e3  # packing.pressure of the scenes with gravity [Pa]
@@ -75,12 +73,27 @@ SHORT: dict[str, Short] = {
         stages=("volume_loss",),
     ),
     "layers": Short(
-        [LOOSE_SAND, "packing.candidates=1", f"region[0].packing.file={GRAVEL_FILE}", "mesh.width=8 m", *COARSE_TUNNEL, "mesh.size_opening=2 m"],
+        [
+            LOOSE_SAND,
+            "packing.candidates=1",
+            f"region[0].packing.file={GRAVEL_FILE}",
+            "mesh.width=8 m",
+            *COARSE_TUNNEL,
+            "mesh.size_opening=2 m",
+        ],
         heavier=lambda at: 21e3 if at[1] < 19 else 19e3,
         stages=("volume_loss",),
     ),
     "slope": Short(
-        [SAND, "packing.variety=1", "packing.candidates=1", "gravity.ratio=2", "gravity.uniform_step=0.5", "stage[1].steps=2", "stage[1].press[0].pressure=11 kPa"],
+        [
+            SAND,
+            "packing.variety=1",
+            "packing.candidates=1",
+            "gravity.ratio=2",
+            "gravity.uniform_step=0.5",
+            "stage[1].steps=2",
+            "stage[1].press[0].pressure=11 kPa",
+        ],
         on_crest,
     ),
     "tunnel_scene": Short([SAND, "packing.variety=1", *TUNNEL, "stage[1].move[0].area=-1 %"], stages=("volume_loss",)),
@@ -88,12 +101,28 @@ SHORT: dict[str, Short] = {
         [YADE, "mesh.columns=[1]", "mesh.rows=[2]", "stage[0].steps=10", "stage[0].move[0].y=-1 mm"], axes="y"
     ),
     "cavity": Short(
-        [SAND, "packing.pressure=200 kPa", "mesh.columns=[3]", "mesh.rows=[6]", "mesh.ratio=1.8", "stage[0].steps=4",
-         "stage[1].steps=4", "stage[1].move[0].area=4 %"]
+        [
+            SAND,
+            "packing.pressure=200 kPa",
+            "mesh.columns=[3]",
+            "mesh.rows=[6]",
+            "mesh.ratio=1.8",
+            "stage[0].steps=4",
+            "stage[1].steps=4",
+            "stage[1].move[0].area=4 %",
+        ]
     ),
     "infinite_slope": Short(
-        [SAND, 'mesh.x=["0 m", "8 m"]', "mesh.columns=[8]", "mesh.rows=[2]", GRAVITY, "stage[1].steps=4",
-         "stage[1].tilt=20 deg", 'record[0].point=["4 m", "1 m"]']
+        [
+            SAND,
+            'mesh.x=["0 m", "8 m"]',
+            "mesh.columns=[8]",
+            "mesh.rows=[2]",
+            GRAVITY,
+            "stage[1].steps=4",
+            "stage[1].tilt=20 deg",
+            'record[0].point=["4 m", "1 m"]',
+        ]
     ),
 }
 
@@ -125,7 +154,9 @@ def same_bits() -> None:
     check(len(first) == len(second) == 16, "the two runs have other increments")
     for one, other in zip(first, second, strict=True):
         for name in ("evaluations", "residual", "particle_steps"):
-            check(one[name] == other[name], f"increment {one['index']}: {name} is {one[name]}, in the scene {other[name]}")
+            check(
+                one[name] == other[name], f"increment {one['index']}: {name} is {one[name]}, in the scene {other[name]}"
+            )
         files = [folder / "increments" / f"{row['index']:04d}.h5" for folder, row in ((built_in, one), (scene, other))]
         with h5py.File(files[0]) as a, h5py.File(files[1]) as b:
             for name in ("gauss/stress", "gauss/strain", "node/displacement", "node/reaction"):
@@ -146,7 +177,5 @@ if __name__ == "__main__":
         short, results = SHORT[case], fresh(f"results_{case}")
         run(command(case, results, [*short.settings, "packing.folder=packings"]))
         check_expected(results, folder / "expected_short.csv")
-        worst = check_balance(
-            balances(results, short.pressure, short.heavier, short.stages), short.left, short.axes
-        )
+        worst = check_balance(balances(results, short.pressure, short.heavier, short.stages), short.left, short.axes)
         print(f"cases/{case}: ran; at most {worst:.1e} of the reactions are left of the sum of forces")

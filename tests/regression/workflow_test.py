@@ -32,9 +32,9 @@ def refused(sentence, *words):
 
 
 def killed_with_survivor():
-    """Kills Snakemake in a fresh folder and halts the run that survives it: the folder, the run's process and the text of
-    its lock. The run is halted after the kill, because a kill wakes those that are halted. None where it has come to
-    its end by then, as on a fast machine."""
+    """Kills Snakemake in a fresh folder and halts the run that survives it: the folder, the run's process and the text
+    of its lock. The run is halted after the kill, because a kill wakes those that are halted. None where it has come
+    to its end by then, as on a fast machine."""
     swept = fresh("swept")
     first = start(by_workflow(SWEEP, swept, "--cores", "1"), "first.log")
     lock = swept / "tunnels/middle/run.lock"
