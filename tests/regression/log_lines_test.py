@@ -54,6 +54,7 @@ STATUSES = (
 )
 NOT_SHOWN = {
     "recipe … d … damping … t … grains … mu_t … p … seed …": "the text from which a recipe's fingerprint is made",
+    "a point is dug out that does not exist": "a fault of the program: stages name elements of the mesh",
     "there is no Gauss point of this number": "a fault of the program: `check` refuses such a point before",
     'checkpoint: "…" has … bytes, which is no multiple of …': "a fault of the program: a checksum is compared before",
     'checkpoint: "…" has … bytes and not …': "the same",

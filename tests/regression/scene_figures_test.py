@@ -41,7 +41,7 @@ class OfAScene(unittest.TestCase):
         self.stages = {stage.name: stage for stage in scene.stages(self.result)}
 
     def test_figures(self):
-        """All figures that fit are drawn, in a vector format as well; those of tunnels are skipped with their reason."""
+        """All figures that fit are drawn, as vectors, too; those of tunnels are skipped with their reason."""
         status, said, errors = call(figures, "runs/tiny", "-o", "figures")
         self.assertEqual((status, errors), (0, []))
         self.assertEqual({Path(line.split()[-1]).stem for line in said if line.startswith("wrote")}, OF_EVERY_SCENE)
