@@ -169,8 +169,8 @@ void press(StagePlan& plan, const PressCase& press, double own_pressure, bool no
     load.pressure_to[axis] = press.kind == PressKind::pressure ? press.pressure : 0.0;
     load.traction_to[axis] = press.kind == PressKind::traction ? press.traction[axis] : 0.0;
     load.rest_to[axis] = press.kind == PressKind::at_rest ? 1.0 : 0.0;
-    const bool is_at_rest = no_weights && load.pressure_from[axis] == own_pressure &&
-                            load.traction_from[axis] == 0 && load.rest_from[axis] == 0;
+    const bool is_at_rest = no_weights && load.pressure_from[axis] == own_pressure && load.traction_from[axis] == 0 &&
+                            load.rest_from[axis] == 0;
     if (press.kind == PressKind::at_rest && is_at_rest) {
       load.pressure_from[axis] = 0;
       load.rest_from[axis] = 1;
