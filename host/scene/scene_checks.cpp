@@ -232,8 +232,9 @@ void check_stage(const Scene& scene, const StagePlan& plan, std::size_t number) 
   }
   check_at_rest(plan, key);
   const std::vector<std::vector<int>> pieces = pieces_of(scene.mesh, plan.dug_out);
+  const bool is_of_supports = number == 0 && plan.input.releases.empty() && plan.input.excavations.empty();
   for (const std::vector<int>& piece : pieces)
-    check_held(scene, plan, piece, pieces.size() == 1, number == 0 ? "support" : key);
+    check_held(scene, plan, piece, pieces.size() == 1, is_of_supports ? "support" : key);
 }
 
 void check_steps(const Scene& scene, const StagePlan& plan, std::size_t number) {

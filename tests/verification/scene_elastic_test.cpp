@@ -18,7 +18,7 @@ constexpr double p0 = 1e3;     ///< [Pa]
 constexpr double young = 5e7;  ///< [Pa]
 constexpr double poisson = 0.3;
 constexpr double shear = young / (2 * (1 + poisson));
-constexpr double stiff = 5e12;  ///< strains of 1e-8, so that the ground stays as drawn [Pa]
+constexpr double stiff = 5e9;  ///< strains of 1e-5, so that the ground stays nearly as drawn [Pa]
 constexpr double degree = std::numbers::pi / 180;
 
 /// Inward displacement at the radius a where the pressure there falls by `fall`; the far edge at b is fixed, or free
@@ -148,8 +148,8 @@ TEST(Column, OfTwoLayersIsExact) {
   for (int p = 0; p < scene.mesh.n_points(); ++p) {
     const double y = points.positions(1, p);
     const double weight = y > 3 ? 15e3 * (6 - y) : 15e3 * 3 + 20e3 * (3 - y);
-    EXPECT_NEAR(end.stress[p][1], -(p0 + weight), 1e-6 * (p0 + weight)) << y;
-    EXPECT_NEAR(end.stress[p][0], -(p0 + poisson / (1 - poisson) * weight), 1e-6 * (p0 + weight)) << y;
+    EXPECT_NEAR(end.stress[p][1], -(p0 + weight), 1e-4 * (p0 + weight)) << y;
+    EXPECT_NEAR(end.stress[p][0], -(p0 + poisson / (1 - poisson) * weight), 1e-4 * (p0 + weight)) << y;
   }
   double base = 0;
   for (const int node : scene.mesh.node_set("base")) base += end.reactions[2 * node + 1];
@@ -219,7 +219,7 @@ TEST(Excavation, InThreeLiftsIsTheSameAsAtOnce) {
     difference = std::max(difference, (a[p] - b[p]).cwiseAbs().maxCoeff());
     size = std::max(size, a[p].cwiseAbs().maxCoeff());
   }
-  EXPECT_LT(difference, 1e-6 * size);
+  EXPECT_LT(difference, 1e-4 * size);
   // The weight that is left and p0 on what is left of the top, as the base bears them.
   double base = 0;
   for (const int node : scene.mesh.node_set("base")) base += lifts.back().reactions[2 * node + 1];
@@ -299,10 +299,10 @@ TEST(Reactions, AreConjugateToTheMotion) {
   Scene scene = scene_on(fem::make_grid(options), 0, p0);
   scene.input.supports = {support({"floor", "door"}, "xy"), support({"left", "right"}, "x")};
   StageCase lower = stage("lower");
-  const double down = 1e-6;
+  const double down = 1e-5;
   lower.moves = {move_by("door", {}, -down)};
   scene.input.stages = {lower};
-  const StageEnd end = ElasticRun{.scene = scene, .tolerance = 1e-12}.run("door").back();
+  const StageEnd end = ElasticRun{.scene = scene, .tolerance = 1e-9}.run("door").back();
   const StagePlan plan = plan_stages(scene).front();
   double door = 0;
   for (const auto& [dof, owner] : plan.owners) {
