@@ -110,7 +110,7 @@ struct StageCase {
   std::string name;
   double end = 1;  ///< 1 in case files; kinds that are scenes inside count in their own parameter. Motions are those of
                    ///< a parameter of 1.
-  int steps = 0;                  ///< 0: the steps of [gravity]
+  int steps = 0;   ///< 0: the steps of [gravity]
   std::optional<double> gravity;  ///< load factor of the weights at the end [-]
   std::optional<double> tilt;     ///< of gravity from the vertical at the end [rad]
   LossGeometry geometry = LossGeometry::updated_lagrangian;

@@ -72,10 +72,10 @@ std::vector<std::string> region_lines(const Scene& scene) {
       ++elements;
       for (int p = 4 * e; p < 4 * e + 4; ++p) area += points.volumes[p];
     }
-    const std::string material =
-        region.elastic ? fmt::format("linear elastic, {:.4g} MPa", region.elastic->modulus * 1e-6)
-                       : fmt::format("grains, {} packing{} of {} grains", region.packing.variety,
-                                     region.packing.variety == 1 ? "" : "s", region.packing.grains);
+    const std::string material = region.elastic
+                                     ? fmt::format("linear elastic, {:.4g} MPa", region.elastic->modulus * 1e-6)
+                                     : fmt::format("grains, {} packing{} of {} grains", region.packing.variety,
+                                                   region.packing.variety == 1 ? "" : "s", region.packing.grains);
     lines.push_back(fmt::format("region {}: {}; {:.4g} m2, {:.4g} kN/m, {} points", region.name, material, area,
                                 area * region.unit_weight * 1e-3, 4 * elements));
   }
@@ -91,8 +91,9 @@ std::string pressure_line(const PlannedScene& planned) {
     pressed.push_back(fmt::format("{} ({:.4g} m)", load.boundary.empty() ? "edges without a name" : load.boundary,
                                   measure(scene.mesh, load.edges).length));
   }
-  std::string line = fmt::format("packing.pressure = {:.4g} kPa acts on {}", scene.pressure * 1e-3,
-                                 pressed.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(pressed, ", ")));
+  std::string line = fmt::format(
+      "packing.pressure = {:.4g} kPa acts on {}", scene.pressure * 1e-3,
+      pressed.empty() ? std::string("nothing") : fmt::format("{}", fmt::join(pressed, ", ")));
   double heaviest = 0;
   for (const RegionCase& region : scene.input.regions) heaviest = std::max(heaviest, region.unit_weight);
   if (heaviest == 0 || pressed.empty()) return line;
@@ -111,9 +112,7 @@ std::string motion_of(const Holder& holder, double end) {
   return fmt::format("{} moves: {}", holder.name, fmt::join(parts, ", "));
 }
 
-std::string name_of(const Holder& holder) {
-  return holder.name.empty() ? std::string("a point") : holder.name;
-}
+std::string name_of(const Holder& holder) { return holder.name.empty() ? std::string("a point") : holder.name; }
 
 std::string held_by(const StagePlan& plan) {
   std::vector<std::string> parts;
@@ -127,16 +126,16 @@ std::string stage_line(const Scene& scene, const StagePlan& plan, std::size_t nu
                                  plan.input.geometry == LossGeometry::fixed_mesh ? "fixed_mesh" : "updated_lagrangian",
                                  held_by(plan));
   if (plan.gravity_from != plan.gravity_to)
-    line += fmt::format("; the weights go from {:.4g} to {:.4g} of their full value", plan.gravity_from, plan.gravity_to);
+    line += fmt::format("; the weights go from {:.4g} to {:.4g} of their full value", plan.gravity_from,
+                        plan.gravity_to);
   if (plan.tilt_from != plan.tilt_to)
     line += fmt::format("; gravity turns from {:.4g} to {:.4g} deg", plan.tilt_from / degree, plan.tilt_to / degree);
   for (const PressCase& press : plan.input.presses) {
     line += press.kind == PressKind::pressure
                 ? fmt::format("; {} is pressed by {:.4g} kPa", press.boundary, press.pressure * 1e-3)
-            : press.kind == PressKind::traction
-                ? fmt::format("; {} bears ({:.4g}, {:.4g}) kPa", press.boundary, press.traction[0] * 1e-3,
-                              press.traction[1] * 1e-3)
-                : fmt::format("; ground at rest presses on {}", press.boundary);
+            : press.kind == PressKind::traction ? fmt::format("; {} bears ({:.4g}, {:.4g}) kPa", press.boundary,
+                                                              press.traction[0] * 1e-3, press.traction[1] * 1e-3)
+                                                : fmt::format("; ground at rest presses on {}", press.boundary);
   }
   for (const ReleaseCase& release : plan.input.releases)
     line += fmt::format("; {} is released by {:.4g} %", release.boundary, 100 * release.share);
@@ -163,7 +162,8 @@ std::vector<std::string> owner_lines(const Scene& scene, const StagePlan& plan) 
       for (const int node : holder.nodes) {
         if (!holder.axes[axis]) continue;
         const std::size_t owner = plan.owners.at(2 * node + axis);
-        const bool moved = plan.holders[owner].move.x || plan.holders[owner].move.y || plan.holders[owner].move.is_affine();
+        const bool moved = plan.holders[owner].move.x || plan.holders[owner].move.y ||
+                           plan.holders[owner].move.is_affine();
         if (owner == k || !moved) continue;
         Shared& entry = shared[{k, owner}];
         if (std::find(entry.nodes.begin(), entry.nodes.end(), node) == entry.nodes.end()) entry.nodes.push_back(node);

@@ -8,8 +8,8 @@
 
 namespace voussoir::host {
 
-/// Mesh, boundaries, regions, the pressure at the start, stages with what is held, moved, pressed, released and dug out,
-/// and the nodes at which the owner rule decides.
+/// Mesh, boundaries, regions, the pressure at the start, stages with what is held, moved, pressed, released and dug
+/// out, and the nodes at which the owner rule decides.
 [[nodiscard]] std::vector<std::string> describe(const PlannedScene& planned);
 
 }  // namespace voussoir::host

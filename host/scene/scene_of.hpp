@@ -15,7 +15,7 @@ struct PlannedScene {
   std::vector<StagePlan> plans = {};
   std::vector<PlacedRecord> records = {};
   std::vector<std::string> remarks = {};  ///< what is worth telling about the mesh
-  std::vector<GroundLayer> layers = {};  ///< from the surface down; empty where no stage presses at rest
+  std::vector<GroundLayer> layers = {};   ///< from the surface down; empty where no stage presses at rest
 };
 
 /// Throws io::InputError with the place and the key at fault where the nouns of the scene do not fit one another.
