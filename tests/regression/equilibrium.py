@@ -79,7 +79,7 @@ def balances(
     heavier: Callable[[Array], float] | None = None,
     stages: tuple[str, ...] = (),
 ) -> list[Balance]:
-    """The balance after every increment of the stages (all, where none is named) that left its file.
+    """The balance after every increment of the stages (all, where none is named).
 
     `pressure`: of edges along the axes on which they are not held; left out, packing.pressure.
     """
@@ -108,7 +108,8 @@ def balances(
             for axis in range(2):
                 if not all(reaction[[a, middle, b], axis] != 0):
                     left[axis] -= load * outward[axis]
-        if not stages or stage in stages:
+        # The first state of a stage is not solved for: a packing's own stress is isotropic to some percent only.
+        if row["stage_index"] > 0 and (not stages or stage in stages):
             found.append(Balance(stage, at, left, float(np.abs(reaction).sum())))
         moved = now
     return found
