@@ -204,8 +204,10 @@ std::vector<io::CaseFile> known_cases(const std::vector<CaseKind>& kinds) {
 /// Throws InputError for a key that the kind of this case does not have; of a case without a kind, or with a wrong one,
 /// for a key that no kind has.
 void refuse_unknown_keys(const io::CaseFile& text) {
+  const std::vector<CaseKind> kinds = possible_kinds(text.root());
+  if (kinds == std::vector{CaseKind::scene}) return;  // no single case has all keys of a scene
   std::vector<io::InputError> unknown;
-  for (const io::CaseFile& known : known_cases(possible_kinds(text.root()))) {
+  for (const io::CaseFile& known : known_cases(kinds)) {
     try {
       text.finish_as(known);
       return;
@@ -213,10 +215,6 @@ void refuse_unknown_keys(const io::CaseFile& text) {
       unknown.push_back(found);
     }
   }
-  // A key that one case does not know may be known to another, where several share the keys of a kind.
-  const auto same = [&](const io::InputError& one) { return std::string(one.what()) == unknown.back().what(); };
-  const bool several_cases = possible_kinds(text.root()) == std::vector{CaseKind::scene};
-  if (several_cases && !std::all_of(unknown.begin(), unknown.end(), same)) return;
   if (!unknown.empty()) throw io::InputError(unknown.back());
 }
 

@@ -79,7 +79,7 @@ def balances(
     heavier: Callable[[Array], float] | None = None,
     stages: tuple[str, ...] = (),
 ) -> list[Balance]:
-    """The balance after every increment of the stages (all, where none is named) that left its file.
+    """The balance after every increment of the stages (all, where none is named).
 
     `pressure`: of edges along the axes on which they are not held; left out, packing.pressure.
     """
@@ -88,17 +88,19 @@ def balances(
         x, connectivity = run["mesh/coordinates"][()], run["mesh/connectivity"][()]
     p0 = 1e3 * float(case["packing"]["pressure"].split()[0])
     weight, edges = _weights(case, x, connectivity, heavier), outer_edges(connectivity)
-    gravity = {stage["name"]: stage.get("gravity") for stage in case["stage"]}
-    factor, found, moved = 0.0, [], x
+    stages_of_case = {stage["name"]: stage for stage in case["stage"]}
+    factor, tilt, found, moved = 0.0, 0.0, [], x
     for row in table(folder):
         stage, at = row["stage"], row["load_parameter"]
         file = folder / "increments" / f"{row['index']:04d}.h5"
         with h5py.File(file) as increment:
             reaction = increment["node/reaction"][()]
             now = increment["mesh/coordinates"][()] if "mesh/coordinates" in increment else x
-        if gravity.get(stage):
+        if stages_of_case[stage].get("gravity"):
             factor = at
-        left = reaction.sum(axis=0) + np.array([0.0, -factor * weight])
+        if "tilt" in stages_of_case[stage]:  # of the first stage that has one; before it gravity is vertical
+            tilt = np.radians(at * float(stages_of_case[stage]["tilt"].split()[0]))
+        left = reaction.sum(axis=0) + factor * weight * np.array([np.sin(tilt), -np.cos(tilt)])
         for a, middle, b in edges:
             along = moved[b] - moved[a]
             outward = np.array([along[1], -along[0]])  # integral of the normal along the edge, exact for curved ones
@@ -106,7 +108,8 @@ def balances(
             for axis in range(2):
                 if not all(reaction[[a, middle, b], axis] != 0):
                     left[axis] -= load * outward[axis]
-        if not stages or stage in stages:
+        # The first state of a stage is not solved for: a packing's own stress is isotropic to some percent only.
+        if row["stage_index"] > 0 and (not stages or stage in stages):
             found.append(Balance(stage, at, left, float(np.abs(reaction).sum())))
         moved = now
     return found

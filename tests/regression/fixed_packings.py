@@ -16,3 +16,5 @@ def packing(name):
 
 SAND, LOOSE_SAND, GRAVEL = (packing(f"packings/{name}") for name in ("cps_d_150", "cps_md_150", "cpg_d_400"))
 YADE = packing("yade/CPS_D")
+TWO_SANDS = f'packing.file=["{packing_file("packings/cps_d_150")}", "{packing_file("packings/cps_md_150")}"]'
+GRAVEL_FILE = packing_file("packings/cpg_d_400")  # for the key of a region

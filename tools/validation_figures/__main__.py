@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 from voussoir_plots import output, style
 from voussoir_plots.result import Missing
 
-from validation_figures import budget, elastic_ground, lattice, yade_test
+from validation_figures import budget, elastic_ground, lattice, scenes, yade_test
 from validation_figures.program import ROOT, Program, ProgramFailed
 
 FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
@@ -18,6 +18,7 @@ FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
     "closed_forms_lattice": lattice.draw,
     "yade_biaxial": yade_test.draw,
     "error_budget": budget.draw,
+    "scenes": scenes.draw,
 }
 
 
