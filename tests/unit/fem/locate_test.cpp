@@ -41,14 +41,10 @@ TEST(Locate, InDistortedAndCurvedElements) {
   expect_found(make_ring({.radius = 1, .outer = 6, .columns = 4, .rows = 3, .ratio = 1.5, .quarters = 4}), 1);
   // Far from the origin, where coordinates have few digits left.
   expect_found(fem_support::mapped(fem_support::distorted_rectangle(4, 2, 4, 3, 0.15),
-                                   [](const Point& x) -> Point {
-                                     return {x.x() + 5e6, x.y() - 3e6};
-                                   }),
+                                   [](const Point& x) -> Point { return {x.x() + 5e6, x.y() - 3e6}; }),
                1e-2);
   expect_found(fem_support::mapped(make_rectangle(1, 1, 3, 3),
-                                   [](const Point& x) -> Point {
-                                     return {x.x() + 2 * x.y(), 1e-3 * x.y()};
-                                   }),
+                                   [](const Point& x) -> Point { return {x.x() + 2 * x.y(), 1e-3 * x.y()}; }),
                1e-3);
 }
 
