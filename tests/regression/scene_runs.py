@@ -39,7 +39,8 @@ def on_crest(edge: Array, stage: str, at: float) -> float:
 
 def in_hole(edge: Array, stage: str, at: float) -> float:
     """Of the cavity: nine tenths of 200 kPa are taken off the hole, whose radius is 0.5 m."""
-    return 200e3 * (1 - 0.9 * at) if np.all(np.hypot(edge[:, 0], edge[:, 1]) < 0.51) else 200e3
+    inside = stage == "contraction" and np.all(np.hypot(edge[:, 0], edge[:, 1]) < 0.51)
+    return 200e3 * (1 - 0.9 * at) if inside else 200e3
 
 
 TUNNEL = ["gravity.uniform_step=0.1", "mesh.size_opening=2.5 m", "mesh.size_far=8 m", "stage[1].steps=4"]
