@@ -50,8 +50,9 @@ std::string describe(const NewtonReport& newton, double from, double to) {
   std::ostringstream text;
   text.precision(10);
   text << to_string(newton.status) << " in the increment from " << from << " to " << to << " (residual "
-       << newton.residual << " N/m, allowed " << newton.residual_bound << " N/m, " << newton.iterations
-       << " iterations";
+       << newton.residual << " N/m, allowed " << newton.residual_bound << " N/m, the largest part at (";
+  text.precision(4);
+  text << newton.worst_place.x() << ", " << newton.worst_place.y() << ") m, " << newton.iterations << " iterations";
   if (newton.relaxations > 0)
     text << ", " << newton.relaxations << " of them substeps of a relaxation that found no equilibrium";
   text << ")";

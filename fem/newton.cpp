@@ -238,9 +238,14 @@ void NewtonSolver::Workspace::form_residual() {
   report.residual_bound = allowed + report.noise_floor;
   report.unsettled_force = noise_force(mesh, increment.points, constrained, report.material.unsettled_stress);
   report.largest_nodal_ratio = 0;
+  double largest = -1;
   for (int node = 0; node < mesh.n_nodes(); ++node) {
     const double scale = internal.magnitude[node] + load.external_force.segment<2>(2 * node).norm();
     const double force = residual.segment<2>(2 * node).norm();
+    if (force > largest) {
+      largest = force;
+      report.worst_place = state.coordinates.col(node);
+    }
     if (force > 0) report.largest_nodal_ratio = std::max(report.largest_nodal_ratio, force / scale);
   }
 }

@@ -70,6 +70,7 @@ struct NewtonReport {
   double reference_force = 0;              ///< IncrementLoad::reference_force [N/m]
   double increment_norm = 0;               ///< |Du| [m]
   double largest_nodal_ratio = 0;          ///< max over nodes of |R_i| / (sum of |element forces| + |f_ext|) there [-]
+  Point worst_place = Point::Zero();       ///< of the node with the largest |R_i| [m]
   int relaxations = 0;                     ///< substeps of a relaxation (relaxation.hpp); 0 where there was none
   double viscous_work = 0;                 ///< dissipated by these substeps [J/m]
   std::size_t work = 0;                    ///< sum of BatchReport::work
