@@ -19,7 +19,7 @@ PlaceCase place_case(const io::Place& place) { return {.name = place.name, .at =
 SupportCase read_support(const io::Table& entry) {
   SupportCase support;
   support.boundaries = entry.texts({"boundary", "Boundary that is held, or an array of boundaries, unless a point is."},
-                                   std::vector<std::string>{}, name_rule, {.or_one = true});
+                                   std::vector<std::string>{}, column_name_rule, {.or_one = true});
   const auto point = read_place(
       entry, {"point", "Point that is held: its name in the mesh, or coordinates, where a node must lie."});
   if (support.boundaries.empty() == !point)
@@ -34,7 +34,8 @@ SupportCase read_support(const io::Table& entry) {
 
 RecordCase read_record(const io::Table& entry) {
   RecordCase record;
-  record.name = entry.text({"name", "Name of the record in the names of its columns or of its table."}, {}, name_rule);
+  record.name = entry.text({"name", "Name of the record in the names of its columns or of its table."}, {},
+                           column_name_rule);
   record.point = read_place(
       entry, {"point", "Point whose displacement and stress become columns: its name in the mesh, or coordinates."});
   const std::vector<io::Place> line = entry.places(
@@ -47,7 +48,7 @@ RecordCase read_record(const io::Table& entry) {
                       .optional_text({"region",
                                       "Region whose means become columns: of p, q, q/p, volumetric strain and void "
                                       "ratio over its area."},
-                                     name_rule)
+                                     column_name_rule)
                       .value_or("");
   if ((record.point ? 1 : 0) + (record.line ? 1 : 0) + (record.region.empty() ? 0 : 1) != 1)
     throw entry.error("", "must have one of point, line and region");

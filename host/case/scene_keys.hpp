@@ -19,9 +19,10 @@ namespace voussoir::host {
 // What the readers share.
 
 /// Names of regions, stages, records and boundaries become parts of the names of columns.
-inline const io::TextRule name_rule{.pattern = "[A-Za-z0-9_-]{1,64}",
-                                    .fault = "names columns of results: it must have 1 to 64 letters, digits, _ or -",
-                                    .default_words = {}};
+inline const io::TextRule column_name_rule{
+    .pattern = "[A-Za-z0-9_-]{1,64}",
+    .fault = "names columns of results: it must have 1 to 64 letters, digits, _ or -",
+    .default_words = {}};
 
 /// Coordinates and displacements.
 inline const io::QuantityRule coordinate_rule{.at_least = "-10 km", .at_most = "10 km"};

@@ -104,7 +104,8 @@ void read_axis(const io::Table& table, const AxisKeys& keys, std::vector<double>
 }
 
 std::vector<std::string> read_names(const io::Table& table, const io::Key& key, const std::string& otherwise) {
-  return table.texts(key, std::vector{otherwise}, name_rule, {.least = 1, .most = most_intervals, .or_one = true});
+  return table.texts(key, std::vector{otherwise}, column_name_rule,
+                     {.least = 1, .most = most_intervals, .or_one = true});
 }
 
 constexpr io::Key layers_key{

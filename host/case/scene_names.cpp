@@ -129,8 +129,8 @@ void check_scene_names(const Case& input, const MeshNames& mesh) {
   const NameCheck check(input, mesh);
   const SceneCase& scene = input.scene;
   for (const std::string& name : mesh.boundaries) {
-    if (!std::regex_match(name, std::regex(name_rule.pattern)))
-      throw check.error("mesh.file", fmt::format("the boundary '{}' {}", name, name_rule.fault));
+    if (!std::regex_match(name, std::regex(column_name_rule.pattern)))
+      throw check.error("mesh.file", fmt::format("the boundary '{}' {}", name, column_name_rule.fault));
   }
   check_regions(check, scene, mesh);
   for (std::size_t k = 0; k < scene.supports.size(); ++k) {

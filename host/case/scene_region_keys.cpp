@@ -52,7 +52,7 @@ void read_grains(const io::Table& entry, const io::Table& root, const Case& inpu
 
 RegionCase read_region(const io::Table& entry, const io::Table& root, const Case& input) {
   RegionCase region;
-  region.name = entry.text({"name", "Name of the region in the mesh."}, {}, name_rule);
+  region.name = entry.text({"name", "Name of the region in the mesh."}, {}, column_name_rule);
   read_quantity(
       entry, {"unit_weight", "Unit weight of the region, which the load factor of stages with `gravity` multiplies."},
       io::Dimension::unit_weight, region.unit_weight, {.at_least = "0 N/m3", .at_most = "1 MN/m3"});

@@ -17,7 +17,7 @@ namespace {
 
 /// Reads `boundary` or `point`, of which a table has one.
 void read_target(const io::Table& entry, MoveCase& move) {
-  move.boundary = entry.optional_text({"boundary", "Boundary that is moved, unless a point is."}, name_rule)
+  move.boundary = entry.optional_text({"boundary", "Boundary that is moved, unless a point is."}, column_name_rule)
                       .value_or("");
   const auto point = read_place(
       entry, {"point", "Point that is moved: its name in the mesh, or coordinates, where a node must lie."});
@@ -62,7 +62,7 @@ MoveCase read_move(const io::Table& entry) {
 
 PressCase read_press(const io::Table& entry) {
   PressCase press;
-  press.boundary = entry.text({"boundary", "Boundary that is loaded."}, {}, name_rule);
+  press.boundary = entry.text({"boundary", "Boundary that is loaded."}, {}, column_name_rule);
   const auto pressure = entry.optional_quantity(
       {"pressure", "Normal pressure at the stage's end, compression positive; it follows the boundary as it moves."},
       Dimension::pressure, {.at_least = "0 Pa", .at_most = "10 GPa"});
@@ -88,7 +88,7 @@ PressCase read_press(const io::Table& entry) {
 
 ReleaseCase read_release(const io::Table& entry) {
   ReleaseCase release;
-  release.boundary = entry.text({"boundary", "Boundary that is released."}, {}, name_rule);
+  release.boundary = entry.text({"boundary", "Boundary that is released."}, {}, column_name_rule);
   read_quantity(entry,
                 {"share",
                  "Share of the forces that held the boundary at the stage's beginning which is taken off; the rest "
@@ -116,7 +116,7 @@ void read_changes(const io::Table& entry, StageCase& stage) {
     check_once(release, "boundary", stage.releases.back().boundary, released);
   }
   for (const io::Table& excavate : entry.tables(tables::stage_excavate)) {
-    stage.excavations.push_back({excavate.text({"region", "Region that is dug out."}, {}, name_rule)});
+    stage.excavations.push_back({excavate.text({"region", "Region that is dug out."}, {}, column_name_rule)});
     check_once(excavate, "region", stage.excavations.back().region, dug);
   }
 }
@@ -173,7 +173,7 @@ void check_changes(const io::Table& entry, const StageCase& stage, Weights& weig
 
 StageCase read_stage(const io::Table& entry, Weights& weights) {
   StageCase stage;
-  stage.name = entry.text({"name", "Name of the stage in the log and the results."}, {}, name_rule);
+  stage.name = entry.text({"name", "Name of the stage in the log and the results."}, {}, column_name_rule);
   stage.gravity = entry.optional_quantity({"gravity",
                                            "Load factor on the unit weights at the stage's end: 1 is the ground's own "
                                            "weight. Without the key it stays what "

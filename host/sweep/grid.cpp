@@ -33,8 +33,8 @@ constexpr auto contains = [](const auto& list, const auto& one) {
 /// Says why a text cannot be the name of a run's folder and, without quotes, a field of summary.csv.
 std::string fault_of_name(const std::string& name) {
   constexpr std::size_t longest = 1000;  // of a text that std::regex, which calls itself for each letter, is given
-  static const std::regex allowed(name_rule.pattern);
-  if (name.size() > longest || !std::regex_match(name, allowed)) return name_rule.fault;
+  static const std::regex allowed(run_name_rule.pattern);
+  if (name.size() > longest || !std::regex_match(name, allowed)) return run_name_rule.fault;
   return contains(taken_names, name) ? "is the name of a file that the sweep itself writes" : "";
 }
 

@@ -14,7 +14,7 @@ namespace voussoir::host {
 inline constexpr std::size_t most_runs_of_a_sweep = 100'000;
 
 /// What a name of a run or of a grid may be, besides those of files that a sweep writes itself.
-inline const io::TextRule name_rule{
+inline const io::TextRule run_name_rule{
     .pattern = "[A-Za-z0-9_-][A-Za-z0-9_.-]{0,199}",
     .fault = "must consist of letters, digits and _ . - (at most 200) and must not begin with a dot"};
 

@@ -52,7 +52,7 @@ struct GridHead {
 GridHead read_grid(const io::Table& grid, const Common& above) {
   GridHead head{.common = common_of(grid, above), .name = {}, .members = {}};
   const io::Key name{"name", "Name of the grid, which is a folder around those of its runs."};
-  if (const auto given = grid.optional_text(name, name_rule)) head.name = checked_name(grid, "name", *given);
+  if (const auto given = grid.optional_text(name, run_name_rule)) head.name = checked_name(grid, "name", *given);
   head.members = grid.optional_integer(
       {"members",
        "Number of runs at each point of the grid, with different draws of the packings, which are reduced to means and "
@@ -69,7 +69,7 @@ struct RunHead {
 
 RunHead read_run(const io::Table& table, const Common& above) {
   const io::Key name{"name", "Name of the run, which is its folder below that of the sweep."};
-  RunHead head{.name = checked_name(table, "name", table.text(name, {}, name_rule)), .common = {}};
+  RunHead head{.name = checked_name(table, "name", table.text(name, {}, run_name_rule)), .common = {}};
   head.common = common_of(table, above);
   return head;
 }

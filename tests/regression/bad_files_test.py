@@ -327,7 +327,7 @@ for setting, fragment in (
 complain(["check", "good.toml", "--set", b"packing.folder=\xff".decode(errors="surrogateescape")], "UTF-8")
 
 # A kind of which there are no keys.
-complain(["keys", "tunel"], "must be one of pack")
+complain(["keys", "tunel"], "is no kind of case, no table and no key; did you mean tunnel?")
 
 # Sweeps.
 for content, *fragments in (

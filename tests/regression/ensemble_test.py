@@ -332,7 +332,7 @@ def figures(folder, *words):
 
 # Figures: each is drawn or says why not; what cannot be read is told in one line.
 status, said, complaints = figures(whole, "-o", "figures")
-check((status, complaints) == (0, []) and len(said) == 6, f"figures: {status} {said} {complaints}")
+check((status, complaints) == (0, []) and len(said) == 7, f"figures: {status} {said} {complaints}")
 for name in ("settlement", "ground_reaction", "trough", "trough_width", "k0"):
     file = Path("figures") / f"ensemble_{name}.png"
     check(f"wrote {file}" in said and file.stat().st_size > 20000, f"{file}: {said}")

@@ -375,7 +375,8 @@ TEST(SceneCase, ShapesHaveKeysOfTheirOwn) {
       "shape = \"tunnel\"\nwidth = \"70 m\"\nheight = \"35 m\"\ndiameter = \"5 m\"\ncover_ratio = 2\n"
       "size_opening = \"1 m\"\nsize_far = \"4 m\"\n";
   expect_said(mesh(tunnel + "interfaces = [\"10 m\"]\n"), "[mesh]",
-              "mesh.layers: must have 2 entries, one more than interfaces, has 1");
+              "mesh.layers: must have 2 entries, one more than interfaces, has 1; layers is not in the file, its "
+              "default is [\"ground\"]");
   expect_said(mesh("shape = \"tunnel\"\nwidth = \"14 m\"\nheight = \"35 m\"\ndiameter = \"5 m\"\ncover_ratio = 2\n"
                    "size_opening = \"1 m\"\nsize_far = \"4 m\"\n"),
               "width", "mesh.width: is less than 3 tunnel diameters");
