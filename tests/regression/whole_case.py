@@ -19,9 +19,10 @@ if case.startswith("tunnel_"):
         "displacement",
         "deviatoric_strain",
         "ground_reaction",
-        "geostatic_stress",
         "convergence",
     ]
+    if case != "tunnel_scene":  # a scene has no check of the stresses after gravity
+        names.append("geostatic_stress")
     if case != "tunnel_elastic":
         names += ["void_ratio", "grain_rotation"]
     draw_and_read_back(results, [f"{name}.png" for name in names])
