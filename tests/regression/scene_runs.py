@@ -80,6 +80,14 @@ GRIDS: dict[str, Short] = {
         in_hole,
         stages=("contraction",),
     ),
+    "trench": Short(
+        [
+            *(SAND, *ONE, "mesh.columns=[2, 1, 4]", "mesh.rows=[2, 1, 1, 1, 1]", GRAVITY),
+            *("stage[1].steps=2", "stage[2].steps=2", "stage[3].steps=2"),
+        ],
+        heavier=lambda at: 24e3 if 1 < at[0] < 1.2 and at[1] > 4 else 20e3,
+        stages=("gravity",),  # of the sum behind it, expected_short.csv has the reaction of the base
+    ),
     "infinite_slope": Short(
         [
             *(SAND, 'mesh.x=["0 m", "8 m"]', "mesh.columns=[8]", "mesh.rows=[2]", GRAVITY),

@@ -50,7 +50,7 @@ def same_bits() -> None:
 
 
 if __name__ == "__main__":
-    missing = set(scenes()) - set(GRIDS) - set(TUNNELS) - {"trench"}  # whose test comes with excavation
+    missing = set(scenes()) - set(GRIDS) - set(TUNNELS)
     check(not missing, f"run by no test: {', '.join(sorted(missing))}")
     same_bits()
     for name, short in GRIDS.items():
