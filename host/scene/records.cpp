@@ -39,8 +39,8 @@ void add_place(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<in
   record.along.push_back(along);
 }
 
-void place_line(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<int>& rank) {
-  const auto& line = *record.input.line;
+void place_line(PlacedRecord& record, const std::array<PlaceCase, 2>& line, const fem::Mesh& mesh,
+                const std::vector<int>& rank) {
   const fem::Point a = coordinates_of(mesh, line[0]), b = coordinates_of(mesh, line[1]);
   for (int k = 0; k < record.input.points; ++k) {
     const double share = record.input.points > 1 ? static_cast<double>(k) / (record.input.points - 1) : 0.0;
@@ -120,7 +120,7 @@ std::vector<PlacedRecord> place_records(const Scene& scene) {
         throw std::runtime_error(
             fmt::format("{}.point: ({:.6g}, {:.6g}) m lies outside the ground", key, x.x(), x.y()));
     } else if (record.input.line) {
-      place_line(record, scene.mesh, rank);
+      place_line(record, *record.input.line, scene.mesh, rank);
       if (record.places.empty()) throw std::runtime_error(key + ".line: no point of the line lies in the ground");
     } else {
       const auto& names = scene.mesh.region_names;
