@@ -192,8 +192,8 @@ std::string in_child(const std::function<std::string()>& work, const ChildLimits
   const Descriptor from(ends[0]);
   std::string answer;
   const pid_t parent = getpid();
-  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(limits.seconds));
+  const auto end = Clock::now() +
+                   std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds));
   const pid_t process = fork();
   if (process == 0) {
     settle_child(parent, limits.bytes);

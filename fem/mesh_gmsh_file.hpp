@@ -30,9 +30,9 @@ struct GmshFile {
 constexpr double gmsh_seconds = 60;
 
 /// Reads a Gmsh file of version 2.2 or 4.1, text or binary, in a process of its own, because Gmsh may crash or hang
-/// where the file is damaged. The process is ended after `seconds`, and 1 s more for each MB of the file. Only for a file that begins with $MeshFormat: Gmsh runs any
-/// other one as a script. Groups without a name have their tag as a name. Throws std::runtime_error of Gmsh's message,
-/// of how Gmsh ended, or where the program was built without Gmsh.
+/// where the file is damaged. The process is ended after `seconds`, and 1 s more for each MB of the file. Only for a
+/// file that begins with $MeshFormat: Gmsh runs any other one as a script. Groups without a name have their tag as a
+/// name. Throws std::runtime_error of Gmsh's message, of how Gmsh ended, or where the program was built without Gmsh.
 [[nodiscard]] GmshFile read_gmsh_file(const std::filesystem::path& path, double seconds = gmsh_seconds);
 
 }  // namespace voussoir::fem

@@ -10,7 +10,8 @@ namespace voussoir::fem {
 [[nodiscard]] std::string bytes_of(const GmshFile& file);
 
 /// The inverse of bytes_of. The numbers of all lists fit one another: three coordinates for each node, nodes_each nodes
-/// for each element, two nodes at least on curves and one on points, one element at least in a block. Throws std::runtime_error where they do not.
+/// for each element, two nodes at least on curves and one on points, one element at least in a block. Throws
+/// std::runtime_error where they do not.
 [[nodiscard]] GmshFile gmsh_file_of(const std::string& bytes);
 
 }  // namespace voussoir::fem
