@@ -276,9 +276,9 @@ MeshFile mesh_of(const GmshFile& file, double unit) {
   return result;
 }
 
-GmshFile read_file(const std::filesystem::path& path) {
+GmshFile read_file(const std::filesystem::path& path, double seconds) {
   try {
-    return read_gmsh_file(path);
+    return read_gmsh_file(path, seconds);
   } catch (const std::runtime_error& fault) {
     refuse(path.filename().string() + " cannot be read: " + fault.what());
   }
@@ -286,10 +286,10 @@ GmshFile read_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-MeshFile read_mesh_file(const std::filesystem::path& path, double unit) {
+MeshFile read_mesh_file(const std::filesystem::path& path, double unit, double seconds) {
   check_is_mesh(path);
   check_nodes_of_version_2(path);
-  const GmshFile file = read_file(path);
+  const GmshFile file = read_file(path, seconds);
   check_has_end(path);
   return mesh_of(file, unit);
 }

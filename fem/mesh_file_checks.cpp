@@ -124,7 +124,7 @@ void check_nodes_of_version_2(const std::filesystem::path& path) {
     if (std::size_t tag = 0; section == "$Nodes" && numbers >> tag) nodes.insert(tag);
     std::size_t element = 0, type = 0, n_tags = 0, number = 0;
     if (section != "$Elements" || !(numbers >> element >> type >> n_tags)) continue;
-    for (std::size_t k = 0; k < n_tags; ++k) numbers >> number;
+    for (std::size_t k = 0; k < n_tags && numbers; ++k) numbers >> number;
     while (numbers >> number)
       if (nodes.count(number) == 0)
         refuse("element " + std::to_string(element) + " has the node " + std::to_string(number) +

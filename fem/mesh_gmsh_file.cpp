@@ -3,7 +3,11 @@
 #include <gmsh.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <system_error>
 
+#include "fem/mesh_gmsh_child.hpp"
+#include "fem/mesh_gmsh_message.hpp"
 #include "fem/mesh_gmsh_session.hpp"
 
 namespace voussoir::fem {
@@ -23,6 +27,7 @@ void read_entity(int dimension, int tag, GmshFile& file) {
   gmsh::model::getPhysicalGroupsForEntity(dimension, tag, groups);
   std::sort(groups.begin(), groups.end());
   for (std::size_t t = 0; t < types.size(); ++t) {
+    if (tags[t].empty()) continue;
     GmshBlock block;
     block.dimension = dimension;
     int of_type = 0, order = 0, corners = 0;
@@ -38,7 +43,9 @@ void read_entity(int dimension, int tag, GmshFile& file) {
   }
 }
 
-GmshFile read_model() {
+GmshFile read_model(const std::filesystem::path& path) {
+  const GmshSession session;
+  gmsh::merge(path.string());
   GmshFile file;
   std::vector<double> parametric;
   gmsh::model::mesh::getNodes(file.node_tags, file.positions, parametric);
@@ -51,16 +58,20 @@ GmshFile read_model() {
   return file;
 }
 
+/// A file of n MB may take n seconds and 64 n MB of memory more than a small one: Gmsh and what it hands over need less
+/// than a tenth of both.
+ChildLimits limits_of(const std::filesystem::path& path, double seconds) {
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  const std::size_t megabytes = unknown ? 0 : static_cast<std::size_t>(size >> 20U);
+  return {.seconds = seconds + static_cast<double>(megabytes), .bytes = (1024 + 64 * megabytes) << 20U};
+}
+
 }  // namespace
 
-GmshFile read_gmsh_file(const std::filesystem::path& path) {
-  return call_gmsh(
-      [&] {
-        const GmshSession session;
-        gmsh::merge(path.string());
-        return read_model();
-      },
-      "");
+GmshFile read_gmsh_file(const std::filesystem::path& path, double seconds) {
+  const auto read = [&] { return call_gmsh([&] { return bytes_of(read_model(path)); }, ""); };
+  return gmsh_file_of(in_child(read, limits_of(path, seconds)));
 }
 
 }  // namespace voussoir::fem

@@ -26,9 +26,13 @@ struct GmshFile {
   std::array<std::vector<std::string>, 4> groups;  ///< names by dimension, in the order of their tags
 };
 
-/// Reads a Gmsh file of version 2.2 or 4.1, text or binary. Only for a file that begins with $MeshFormat: Gmsh runs any
-/// other one as a script. Groups without a name have their tag as a name. Throws std::runtime_error of Gmsh's message,
-/// or where the program was built without Gmsh.
-[[nodiscard]] GmshFile read_gmsh_file(const std::filesystem::path& path);
+/// Time that Gmsh may take for a small file [s].
+constexpr double gmsh_seconds = 60;
+
+/// Reads a Gmsh file of version 2.2 or 4.1, text or binary, in a process of its own, because Gmsh may crash or hang
+/// where the file is damaged. The process is ended after `seconds`, and 1 s more for each MB of the file. Only for a
+/// file that begins with $MeshFormat: Gmsh runs any other one as a script. Groups without a name have their tag as a
+/// name. Throws std::runtime_error of Gmsh's message, of how Gmsh ended, or where the program was built without Gmsh.
+[[nodiscard]] GmshFile read_gmsh_file(const std::filesystem::path& path, double seconds = gmsh_seconds);
 
 }  // namespace voussoir::fem

@@ -2,6 +2,7 @@
 /// Gmsh's global state, and its exceptions.
 
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -20,13 +21,18 @@ class GmshSession {
   int threads_before_;
 };
 
-/// What `call` returns. Throws std::runtime_error of `prefix` and Gmsh's message, whichever type Gmsh throws.
+/// What `call` returns. Throws std::bad_alloc where memory is lacking, otherwise std::runtime_error of `prefix` and
+/// Gmsh's message, whichever type Gmsh throws.
 template <class Call>
 auto call_gmsh(Call&& call, const std::string& prefix) {
   try {
     return call();
   } catch (const std::string& message) {  // Gmsh 4.8 throws texts
     throw std::runtime_error(prefix + message);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::length_error&) {  // a list with more entries than any memory holds
+    throw std::bad_alloc();
   } catch (const std::exception& error) {  // later versions
     throw std::runtime_error(prefix + error.what());
   } catch (int code) {  // the wrapper of older versions

@@ -13,7 +13,7 @@ QuadMesh generate_quads(const HalfTunnelOptions& /*options*/) {
       "names");
 }
 
-GmshFile read_gmsh_file(const std::filesystem::path& /*path*/) {
+GmshFile read_gmsh_file(const std::filesystem::path& /*path*/, double /*seconds*/) {
   throw std::runtime_error(
       "this program was built without Gmsh, which reads mesh files; it makes the shapes grid and ring itself");
 }
