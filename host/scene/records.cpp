@@ -39,9 +39,10 @@ void add_place(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<in
   record.along.push_back(along);
 }
 
-void place_line(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<int>& rank) {
+void place_line(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<int>& rank, const std::string& key) {
   const auto& line = *record.input.line;
   const fem::Point a = coordinates_of(mesh, line[0]), b = coordinates_of(mesh, line[1]);
+  if ((b - a).norm() == 0) throw std::runtime_error(key + ".line: begins and ends at one place");
   for (int k = 0; k < record.input.points; ++k) {
     const double share = record.input.points > 1 ? static_cast<double>(k) / (record.input.points - 1) : 0.0;
     add_place(record, mesh, rank, a + share * (b - a), share * (b - a).norm());
@@ -120,7 +121,7 @@ std::vector<PlacedRecord> place_records(const Scene& scene) {
         throw std::runtime_error(
             fmt::format("{}.point: ({:.6g}, {:.6g}) m lies outside the ground", key, x.x(), x.y()));
     } else if (record.input.line) {
-      place_line(record, scene.mesh, rank);
+      place_line(record, scene.mesh, rank, key);
       if (record.places.empty()) throw std::runtime_error(key + ".line: no point of the line lies in the ground");
     } else {
       const auto& names = scene.mesh.region_names;

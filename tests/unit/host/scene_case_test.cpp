@@ -11,6 +11,7 @@
 
 #include "host/case/load_case.hpp"
 #include "host/case/scene_names.hpp"
+#include "host/ensemble/draws.hpp"
 #include "io/input_error.hpp"
 
 namespace voussoir::host {
@@ -394,6 +395,15 @@ TEST(SceneCase, SaysWhichKeysDoNotCount) {
   EXPECT_TRUE(said("gravity.ratio (scene.toml:7): not used, because no stage puts gravity on alone"));
   EXPECT_TRUE(said("region[0].packing.consolidation_friction (scene.toml:"));
   EXPECT_TRUE(said("soil.density (scene.toml:3): not used, because the motion")) << "not of the region besides";
+}
+
+/// Members of an ensemble draw seeds of their own in each region, also where a region draws more than the scene.
+TEST(SceneCase, MembersDrawNoSeedOfAnother) {
+  const Case input = read(head + grid + region + "[region.packing]\ncandidates = 5\n" + support + gravity +
+                          "[packing]\ncandidates = 2\nseed = 7\n");
+  EXPECT_EQ(seed_of(input, 0), 7);
+  EXPECT_EQ(seed_of(input, 1), 12);
+  EXPECT_EQ(seed_of(input, 3), 22);
 }
 
 }  // namespace
