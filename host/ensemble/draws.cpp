@@ -2,6 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+
 #include "host/packing/packings.hpp"
 #include "io/input_error.hpp"
 
@@ -30,10 +32,21 @@ void expect_draws_of_regions(const Case& input) {
     throw io::InputError(place_of(input, "region"), "region", "has no grains: all members would be the same");
 }
 
+/// The number of seeds that one member draws: where regions have recipes of their own, all begin with packing.seed, so
+/// that the largest number counts.
+std::size_t seeds_of_a_member(const Case& input) {
+  if (input.kind != CaseKind::scene) return count_of_packings(input.packing);
+  std::size_t most = 1;
+  for (const RegionCase& region : input.scene.regions) {
+    if (!region.elastic) most = std::max(most, count_of_packings(region.packing));
+  }
+  return most;
+}
+
 }  // namespace
 
 std::int64_t seed_of(const Case& input, std::size_t member) {
-  return input.packing.seed + static_cast<std::int64_t>(member * count_of_packings(input.packing));
+  return input.packing.seed + static_cast<std::int64_t>(member * seeds_of_a_member(input));
 }
 
 std::string member_name(std::size_t member) { return fmt::format("member_{:03}", member); }

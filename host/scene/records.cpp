@@ -40,8 +40,9 @@ void add_place(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<in
 }
 
 void place_line(PlacedRecord& record, const std::array<PlaceCase, 2>& line, const fem::Mesh& mesh,
-                const std::vector<int>& rank) {
+                const std::vector<int>& rank, const std::string& key) {
   const fem::Point a = coordinates_of(mesh, line[0]), b = coordinates_of(mesh, line[1]);
+  if ((b - a).norm() == 0) throw std::runtime_error(key + ".line: begins and ends at one place");
   for (int k = 0; k < record.input.points; ++k) {
     const double share = record.input.points > 1 ? static_cast<double>(k) / (record.input.points - 1) : 0.0;
     add_place(record, mesh, rank, a + share * (b - a), share * (b - a).norm());
@@ -120,7 +121,7 @@ std::vector<PlacedRecord> place_records(const Scene& scene) {
         throw std::runtime_error(
             fmt::format("{}.point: ({:.6g}, {:.6g}) m lies outside the ground", key, x.x(), x.y()));
     } else if (record.input.line) {
-      place_line(record, *record.input.line, scene.mesh, rank);
+      place_line(record, *record.input.line, scene.mesh, rank, key);
       if (record.places.empty()) throw std::runtime_error(key + ".line: no point of the line lies in the ground");
     } else {
       const auto& names = scene.mesh.region_names;

@@ -108,6 +108,19 @@ void check_area(const Scene& scene, const StagePlan& plan, const Holder& moved, 
   if (!fits) refuse(key + ".area", moved.name + " is neither closed nor ends on supports through its point");
 }
 
+/// A stage moves a boundary or a point once along each axis: of two motions the first would be lost.
+void check_moved_once(const StagePlan& plan, std::size_t first_move, std::size_t number, const std::string& key) {
+  const Holder& moved = plan.holders[first_move + number];
+  for (std::size_t k = 0; k < number; ++k) {
+    const Holder& earlier = plan.holders[first_move + k];
+    if (earlier.is_boundary != moved.is_boundary || earlier.nodes != moved.nodes) continue;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (earlier.axes[axis] && moved.axes[axis])
+        refuse(key, fmt::format("moves along {} what move[{}] of this stage moves already", axis_names[axis], k));
+    }
+  }
+}
+
 /// Nodes of the ground that is left, piece by piece.
 std::vector<std::vector<int>> pieces_of(const fem::Mesh& mesh, const std::vector<char>& dug_out) {
   std::vector<int> parent(static_cast<std::size_t>(mesh.n_nodes()), -1);  // -1: of no element that is left
@@ -228,7 +241,13 @@ void check_stage(const Scene& scene, const StagePlan& plan, std::size_t number) 
   const std::size_t first_move = plan.holders.size() - plan.input.moves.size();
   for (std::size_t k = 0; k < plan.input.moves.size(); ++k) {
     const Holder& moved = plan.holders[first_move + k];
-    if (moved.move.area && moved.is_boundary) check_area(scene, plan, moved, fmt::format("{}.move[{}]", key, k));
+    const std::string move_key = fmt::format("{}.move[{}]", key, k);
+    if (moved.nodes.empty())
+      refuse(move_key + (moved.is_boundary ? ".boundary" : ".point"),
+             moved.is_boundary ? fmt::format("all of {} has been dug out", moved.name)
+                               : "the ground about the point has been dug out");
+    check_moved_once(plan, first_move, k, move_key);
+    if (moved.move.area && moved.is_boundary) check_area(scene, plan, moved, move_key);
   }
   check_at_rest(plan, key);
   const std::vector<std::vector<int>> pieces = pieces_of(scene.mesh, plan.dug_out);

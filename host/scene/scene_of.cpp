@@ -6,8 +6,11 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "host/case/scene_names.hpp"
+#include "host/scene/boundary_columns.hpp"
+#include "host/scene/records.hpp"
 #include "host/scene/scene_checks.hpp"
 #include "host/scene/scene_mesh.hpp"
 #include "io/input_error.hpp"
@@ -37,6 +40,18 @@ std::vector<GroundLayer> layers_at_rest(const Scene& scene) {
   return openings.empty() ? std::vector<GroundLayer>{} : level_layers(scene, openings, first_key);
 }
 
+/// No record writes a column that a boundary or an earlier record writes.
+void check_columns(const PlannedScene& planned) {
+  std::set<std::string> known;
+  for (const std::string& name : column_names(watched(planned.plans), planned.scene.mesh)) known.insert(name);
+  for (std::size_t k = 0; k < planned.records.size(); ++k) {
+    for (const std::string& name : column_names(std::vector{planned.records[k]})) {
+      if (!known.insert(name).second)
+        throw std::runtime_error(fmt::format("record[{}].name: makes a second column {}", k, name));
+    }
+  }
+}
+
 PlannedScene make(const Case& input) {
   SceneMesh made = scene_mesh_with_remarks(input.scene.mesh);
   PlannedScene planned{.scene = {.input = input.scene,
@@ -49,6 +64,7 @@ PlannedScene make(const Case& input) {
   planned.plans = plan_stages(planned.scene);
   for (std::size_t k = 0; k < planned.plans.size(); ++k) check_steps(planned.scene, planned.plans[k], k);
   planned.records = place_records(planned.scene);
+  check_columns(planned);
   planned.layers = layers_at_rest(planned.scene);
   return planned;
 }

@@ -332,6 +332,25 @@ TEST(Refused, APointThatIsNoNode) {
   expect_refused(scene, "support[2].point: no node of the mesh lies at (0.3, 0.3) m");
 }
 
+TEST(Refused, MotionsOfWhatHasBeenDugOutAndMotionsThatWouldBeLost) {
+  Scene scene = bed();
+  StageCase dig = stage("dig"), lift = stage("lift");
+  dig.excavations = {{"upper"}};
+  lift.moves = {move_by("top", {}, 0.01)};
+  scene.input.stages = {dig, lift};
+  expect_refused(scene, "stage[1].move[0].boundary: all of top has been dug out");
+  lift.moves = {move_by("", {}, 0.01)};
+  lift.moves[0].point.name = "top_left";
+  scene.input.stages[1] = lift;
+  expect_refused(scene, "stage[1].move[0].point: the ground about the point has been dug out");
+  lift.moves = {move_by("base", {}, 0.01), move_by("base", 0.0, -0.01)};
+  scene.input.stages[1] = lift;
+  expect_refused(scene, "stage[1].move[1]: moves along y what move[0] of this stage moves already");
+  lift.moves = {move_by("base", {}, 0.01), move_by("base", 0.01, {})};
+  scene.input.stages[1] = lift;
+  EXPECT_EQ(plan_stages(scene).size(), 2U);
+}
+
 /// A boundary that shrinks must be closed, or its ends must stay on what holds them.
 TEST(Area, EndsOnSupportsOrIsRefused) {
   const auto ring = [](int quarters) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/ensemble/draws.hpp"
 #include "host/estimate/range.hpp"
 #include "host/estimate/report.hpp"
 #include "host/packing/case_recipes.hpp"
@@ -41,6 +42,17 @@ Case wall() {
   for (std::size_t k = 0; k < 3; ++k) input.scene.regions[k].name = names[k];
   input.scene.regions[1].elastic = ElasticCase{};
   return input;
+}
+
+TEST(Seeds, OfMembersAreNoSeedsOfAnother) {
+  Case input = wall();
+  input.packing.seed = 7;
+  input.packing.candidates = 2;
+  for (RegionCase& region : input.scene.regions) region.packing = input.packing;
+  input.scene.regions[2].packing.candidates = 5;  // more than the scene draws elsewhere
+  EXPECT_EQ(seed_of(input, 0), 7);
+  EXPECT_EQ(seed_of(input, 1), 12);
+  EXPECT_EQ(seed_of(input, 3), 22);
 }
 
 TEST(Recipes, AreThoseOfTheRegionsWithGrains) {
