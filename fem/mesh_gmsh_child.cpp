@@ -62,7 +62,9 @@ void settle_child(pid_t parent, std::size_t bytes) {
   // What the parent has registered for its end must not run here where the code calls std::exit.
   std::atexit([] { _exit(ended_itself); });
   const int nowhere = open("/dev/null", O_RDWR | O_CLOEXEC);
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, stream);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (nowhere >= 0) dup2(nowhere, stream);
+  }
   lower_limit(RLIMIT_CORE, 0);
   const std::size_t now = address_space();
   if (now > 0) lower_limit(RLIMIT_AS, now + bytes);
