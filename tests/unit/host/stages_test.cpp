@@ -190,7 +190,8 @@ std::set<std::string> differences(const Ground& one, const Ground& other) {
   compare("step_limit", a.step_limit == b.step_limit);
   compare("relaxation_factor", a.relaxation_factor == b.relaxation_factor);
   compare("strain", strain_a == strain_b);
-  compare("earlier", earlier_a.displacement == earlier_b.displacement && earlier_a.strain == earlier_b.strain &&
+  compare("earlier", earlier_a.displacement.size() == earlier_b.displacement.size() &&
+                         earlier_a.displacement == earlier_b.displacement && earlier_a.strain == earlier_b.strain &&
                          earlier_a.coordinates == earlier_b.coordinates);
   compare("material", material_a.state() == material_b.state());
   return found;
