@@ -10,8 +10,6 @@
 namespace voussoir::host {
 namespace {
 
-constexpr std::array<const char*, 2> axis_names{"x", "y"};
-
 /// Sums over what the holders of a boundary own, along one axis.
 struct Owned {
   double reaction = 0;  ///< [N/m]
@@ -40,10 +38,8 @@ Eigen::VectorXd widths(const fem::Coordinates& coordinates, const std::vector<fe
 
 /// The outer edges of a boundary at elements that are left.
 std::vector<fem::Edge> edges_left(const StagePlan& plan, const std::string& boundary) {
-  for (const BoundaryLoad& load : plan.loads) {
-    if (load.boundary == boundary) return load.edges;
-  }
-  return {};
+  const BoundaryLoad* load = plan.load_of(boundary);
+  return load == nullptr ? std::vector<fem::Edge>{} : load->edges;
 }
 
 /// The edges of a boundary, and those of others that go on from its ends in the same direction and are held along the

@@ -35,11 +35,7 @@ Chain measure(const fem::Mesh& mesh, const std::vector<fem::Edge>& edges) {
 std::string mesh_line(const fem::Mesh& mesh) {
   const fem::Point size = mesh.coordinates.rowwise().maxCoeff() - mesh.coordinates.rowwise().minCoeff();
   double shortest = std::numeric_limits<double>::infinity();
-  for (const fem::ElementNodes& element : mesh.elements) {
-    for (int k = 0; k < 4; ++k)
-      shortest = std::min(shortest,
-                          (mesh.coordinates.col(element[(k + 1) % 4]) - mesh.coordinates.col(element[k])).norm());
-  }
+  for (const fem::ElementNodes& element : mesh.elements) shortest = std::min(shortest, shortest_edge(mesh, element));
   return fmt::format("mesh: {} elements, {} nodes, {} points, {:.4g} x {:.4g} m; the shortest edge has {:.3g} m",
                      mesh.n_elements(), mesh.n_nodes(), mesh.n_points(), size.x(), size.y(), shortest);
 }

@@ -57,7 +57,9 @@ struct RegionMeans {
   double void_ratio = 0, void_volume = 0;
 };
 
-const fem::PointField* find_field(const std::vector<fem::PointField>& fields, const std::string& name) {
+/// The field of this name, of a material or of a file; null where there is none.
+template <class Field>
+const Field* find_field(const std::vector<Field>& fields, const std::string& name) {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const auto& field) { return field.name == name; });
   return found == fields.end() ? nullptr : &*found;
 }
@@ -99,11 +101,6 @@ void add_region(const PlacedRecord& record, const Ground& ground, const std::vec
   to["q_over_p_" + name] = {p > 0 ? q / p : 0.0, "-"};
   to["volumetric_strain_" + name] = {fem::volumetric_strain(means.strain / means.volume), "-"};
   if (means.void_volume > 0) to["void_ratio_" + name] = {means.void_ratio / means.void_volume, "-"};
-}
-
-const io::Field* find_field(const std::vector<io::Field>& fields, const std::string& name) {
-  const auto found = std::find_if(fields.begin(), fields.end(), [&](const auto& field) { return field.name == name; });
-  return found == fields.end() ? nullptr : &*found;
 }
 
 }  // namespace

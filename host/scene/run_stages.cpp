@@ -5,23 +5,25 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "host/stages/ground_checkpoint.hpp"
 #include "host/stages/ground_record.hpp"
 #include "host/stages/stage_driver.hpp"
 
 namespace voussoir::host {
 namespace {
 
-std::span<const double> numbers(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
-
 void save(const FadingForces& forces, io::Checkpoint& checkpoint) {
-  if (forces.kept.size() > 0) checkpoint.put_doubles("kept_forces", numbers(forces.kept));
-  if (forces.fading.size() > 0) checkpoint.put_doubles("fading_forces", numbers(forces.fading));
+  if (forces.kept.size() > 0) put_vector(checkpoint, "kept_forces", forces.kept);
+  if (forces.fading.size() > 0) put_vector(checkpoint, "fading_forces", forces.fading);
 }
 
-Eigen::VectorXd forces_from(const io::Checkpoint& checkpoint, const std::string& name) {
-  if (!checkpoint.has(name)) return {};
-  const std::vector<double> values = checkpoint.get_doubles(name);
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+/// The forces of a checkpoint; none where it has none.
+FadingForces forces_from(const io::Checkpoint& checkpoint, const fem::Mesh& mesh) {
+  const auto read = [&](const char* name) {
+    return checkpoint.has(name) ? get_vector(checkpoint, name, static_cast<std::size_t>(mesh.n_dofs()))
+                                : Eigen::VectorXd();
+  };
+  return {read("kept_forces"), read("fading_forces")};
 }
 
 /// The number of the stage with which the run begins.
@@ -78,8 +80,7 @@ RunStatus run_stages(GroundRun& run, Scene& scene, const std::vector<StagePlan>&
   const io::Checkpoint* checkpoint = run.recorder().resumed();
   const std::size_t first = first_stage(run.recorder(), plans);
   FadingForces forces;
-  if (checkpoint != nullptr)
-    forces = {forces_from(*checkpoint, "kept_forces"), forces_from(*checkpoint, "fading_forces")};
+  if (checkpoint != nullptr) forces = forces_from(*checkpoint, scene.mesh);
   for (std::size_t k = first; k < plans.size(); ++k) {
     const StagePlan& plan = plans[k];
     const StagePlan* before = k > 0 ? &plans[k - 1] : nullptr;

@@ -23,6 +23,12 @@ fem::Point Holder::displacement(const fem::Point& x, double from, double to, con
   return (to - from) * fem::Point(move.x.value_or(0), move.y.value_or(0));
 }
 
+const BoundaryLoad* StagePlan::load_of(const std::string& boundary) const {
+  const auto found = std::find_if(loads.begin(), loads.end(),
+                                  [&](const BoundaryLoad& load) { return load.boundary == boundary; });
+  return found == loads.end() ? nullptr : &*found;
+}
+
 int node_at(const fem::Mesh& mesh, const PlaceCase& place) {
   if (!place.name.empty()) return mesh.point(place.name);
   const fem::Point wanted(place.at[0], place.at[1]);

@@ -13,6 +13,8 @@
 
 namespace voussoir::host {
 
+inline constexpr std::array<const char*, 2> axis_names{"x", "y"};
+
 struct Scene {
   SceneCase input = {};
   fem::Mesh mesh = {};    ///< `dug_out` changes from stage to stage
@@ -69,6 +71,8 @@ struct StagePlan {
   /// Degrees of freedom of boundaries that were released in part, now or before: the rest of their forces stays.
   std::map<std::string, std::set<int>> part_released = {};
 
+  /// The load of a boundary, or of the edges without a name (""); null where the boundary has no outer edges at all.
+  [[nodiscard]] const BoundaryLoad* load_of(const std::string& boundary) const;
   [[nodiscard]] bool changes_gravity() const { return gravity_from != gravity_to || tilt_from != tilt_to; }
 };
 

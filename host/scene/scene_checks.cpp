@@ -14,8 +14,6 @@
 namespace voussoir::host {
 namespace {
 
-constexpr std::array<const char*, 2> axis_names{"x", "y"};
-
 [[noreturn]] void refuse(const std::string& key, const std::string& sentence) {
   throw std::runtime_error(fmt::format("{}: {}", key, sentence));
 }
@@ -26,8 +24,7 @@ void check_node(const Scene& scene, const std::string& key, const PlaceCase& poi
 }
 
 void check_press(const Scene& scene, const StagePlan& plan, const PressCase& press, const std::string& key) {
-  const auto load = std::find_if(plan.loads.begin(), plan.loads.end(),
-                                 [&](const BoundaryLoad& one) { return one.boundary == press.boundary; });
+  const BoundaryLoad* load = plan.load_of(press.boundary);
   if (load->edges.empty()) refuse(key + ".boundary", fmt::format("all of {} has been dug out", press.boundary));
   for (const Holder& holder : plan.holders) {
     if (!holder.is_boundary || holder.name != press.boundary) continue;
@@ -173,15 +170,21 @@ double shortest_edge_at(const fem::Mesh& mesh, const std::vector<int>& nodes) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const fem::ElementNodes& element : mesh.elements) {
     if (std::none_of(element.begin(), element.end(), [&](int node) { return wanted.contains(node); })) continue;
-    for (int k = 0; k < 4; ++k) {
-      const fem::Point along = mesh.coordinates.col(element[(k + 1) % 4]) - mesh.coordinates.col(element[k]);
-      shortest = std::min(shortest, along.norm());
-    }
+    shortest = std::min(shortest, shortest_edge(mesh, element));
   }
   return shortest;
 }
 
 }  // namespace
+
+double shortest_edge(const fem::Mesh& mesh, const fem::ElementNodes& element) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 4; ++k) {
+    const fem::Point along = mesh.coordinates.col(element[(k + 1) % 4]) - mesh.coordinates.col(element[k]);
+    shortest = std::min(shortest, along.norm());
+  }
+  return shortest;
+}
 
 bool faces(const fem::Mesh& mesh, const std::vector<fem::Edge>& edges, int axis) {
   return std::any_of(edges.begin(), edges.end(), [&](const fem::Edge& edge) {

@@ -29,6 +29,9 @@ void check_steps(const Scene& scene, const StagePlan& plan, std::size_t number);
 /// Whether the outward normal of edges has a component along the axis somewhere.
 [[nodiscard]] bool faces(const fem::Mesh& mesh, const std::vector<fem::Edge>& edges, int axis);
 
+/// The shortest edge of an element, between its corners [m].
+[[nodiscard]] double shortest_edge(const fem::Mesh& mesh, const fem::ElementNodes& element);
+
 /// The largest motion of one step of a holder over the shortest edge of the elements at its nodes [-].
 [[nodiscard]] double step_over_edge(const Scene& scene, const StagePlan& plan, const Holder& holder);
 

@@ -108,10 +108,10 @@ StagePlan plan_on(const Standing& standing, const StageCase& input) {
   return plan;
 }
 
-/// The load of a boundary that has outer edges (check_places).
-BoundaryLoad& load_of(StagePlan& plan, const std::string& boundary) {
-  return *std::find_if(plan.loads.begin(), plan.loads.end(),
-                       [&](const BoundaryLoad& load) { return load.boundary == boundary; });
+/// The same load as StagePlan::load_of, to be changed.
+BoundaryLoad* load_of(StagePlan& plan, const std::string& boundary) {
+  const BoundaryLoad* load = plan.load_of(boundary);
+  return load == nullptr ? nullptr : &plan.loads[static_cast<std::size_t>(load - plan.loads.data())];
 }
 
 void clear(BoundaryLoad& load, int axis) {
@@ -143,9 +143,8 @@ void release(StagePlan& plan, const ReleaseCase& release) {
   part.merge(let_go(plan, release.boundary));
   for (const int dof : part) plan.fading[dof] = release.share;
   if (release.share == 1) plan.part_released.erase(release.boundary);
-  const auto load = std::find_if(plan.loads.begin(), plan.loads.end(),
-                                 [&](const BoundaryLoad& one) { return one.boundary == release.boundary; });
-  if (load == plan.loads.end()) return;
+  BoundaryLoad* load = load_of(plan, release.boundary);
+  if (load == nullptr) return;
   for (int axis = 0; axis < 2; ++axis) {
     if (freed[axis]) clear(*load, axis);
   }
@@ -164,7 +163,7 @@ void replace_rest_of_release(StagePlan& plan, const std::string& boundary) {
 /// @param no_weights the ground has no weight until now, so that ground at rest presses with its own pressure
 void press(StagePlan& plan, const PressCase& press, double own_pressure, bool no_weights) {
   replace_rest_of_release(plan, press.boundary);
-  BoundaryLoad& load = load_of(plan, press.boundary);
+  BoundaryLoad& load = *load_of(plan, press.boundary);  // check_places: it has outer edges
   for (int axis = 0; axis < 2; ++axis) {
     load.pressure_to[axis] = press.kind == PressKind::pressure ? press.pressure : 0.0;
     load.traction_to[axis] = press.kind == PressKind::traction ? press.traction[axis] : 0.0;

@@ -38,34 +38,36 @@ std::vector<Matrix> get_list(const io::Checkpoint& checkpoint, const std::string
   return list;
 }
 
-Eigen::VectorXd get_vector(const io::Checkpoint& checkpoint, const std::string& name, std::size_t size) {
-  const std::vector<double> values = get_sized(checkpoint, name, size);
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(size));
-}
-
 fem::Coordinates get_coordinates(const io::Checkpoint& checkpoint, const std::string& name, const fem::Mesh& mesh) {
   const std::vector<double> values = get_sized(checkpoint, name, static_cast<std::size_t>(mesh.n_dofs()));
   return Eigen::Map<const fem::Coordinates>(values.data(), 2, mesh.n_nodes());
 }
 
-std::span<const double> numbers(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
-
 }  // namespace
+
+void put_vector(io::Checkpoint& checkpoint, const std::string& name, const Eigen::VectorXd& values) {
+  checkpoint.put_doubles(name, {values.data(), static_cast<std::size_t>(values.size())});
+}
+
+Eigen::VectorXd get_vector(const io::Checkpoint& checkpoint, const std::string& name, std::size_t size) {
+  const std::vector<double> values = get_sized(checkpoint, name, size);
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(size));
+}
 
 void save(const Ground& ground, io::Checkpoint& checkpoint) {
   const fem::MeshState& state = ground.state;
-  checkpoint.put_doubles("displacement", numbers(state.displacement));
+  put_vector(checkpoint, "displacement", state.displacement);
   checkpoint.put_doubles("coordinates", {state.coordinates.data(), static_cast<std::size_t>(state.coordinates.size())});
   put_list(checkpoint, "deformation", state.deformation);
   put_list(checkpoint, "initial_tangent", state.initial_tangent);
   put_list(checkpoint, "tangent", state.tangent);
-  checkpoint.put_doubles("last_increment", numbers(state.last_increment));
+  put_vector(checkpoint, "last_increment", state.last_increment);
   const std::array<double, 5> scalars{state.last_step, state.start, state.parameter, state.step_limit,
                                       state.relaxation_factor};
   checkpoint.put_doubles("load", scalars);
   put_list(checkpoint, "strain", ground.strain);
   if (ground.earlier.coordinates.cols() > 0) {
-    checkpoint.put_doubles("earlier_displacement", numbers(ground.earlier.displacement));
+    put_vector(checkpoint, "earlier_displacement", ground.earlier.displacement);
     put_list(checkpoint, "earlier_strain", ground.earlier.strain);
     checkpoint.put_doubles("earlier_coordinates", {ground.earlier.coordinates.data(),
                                                    static_cast<std::size_t>(ground.earlier.coordinates.size())});
