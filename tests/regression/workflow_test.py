@@ -3,8 +3,8 @@ the run that finds no equilibrium, and leaves the folder of `voussoir sweep`; wr
 
 import fcntl
 import os
+import shlex
 import signal
-import time
 from pathlib import Path
 
 from program import PROGRAM, check, fresh, run, wait_until
@@ -31,25 +31,31 @@ def refused(sentence, *words):
     check(sentence in done.stderr and done.stderr.count("\n") == 1, f"{words}: not one line: {done.stderr}")
 
 
+def in_own_session():
+    """A program that does the same in a session of its own. When Snakemake's death orphans its group of processes, the
+    kernel wakes and ends the halted processes of that group, and this program is not one of them."""
+    script = Path("in_own_session").resolve()
+    script.write_text(f'#!/bin/sh\nexec setsid {shlex.quote(PROGRAM)} "$@"\n')
+    script.chmod(0o755)
+    return str(script)
+
+
 def killed_with_survivor():
-    """Kills Snakemake in a fresh folder and halts the run that survives it: the folder, the run's process and the text
-    of its lock. The run is halted after the kill, because a kill wakes those that are halted. None where it has come
-    to its end by then, as on a fast machine."""
+    """Halts the run of a fresh folder and kills its Snakemake: the folder, the run's process and the text of its lock.
+    None where the run has come to its end before it was halted, as on a fast machine."""
     swept = fresh("swept")
-    first = start(by_workflow(SWEEP, swept, "--cores", "1"), "first.log")
+    words = [*by_workflow(SWEEP, swept, "--cores", "1"), "--program", in_own_session()]
+    first = start(words, "first.log")
     lock = swept / "tunnels/middle/run.lock"
     wait_until(lambda: process_of(lock), first, "run")
     run_of_middle = process_of(lock)
     text = lock.read_text()
-    kill(first, swept, all_jobs=False)
-    state = Path(f"/proc/{run_of_middle}/stat")
     try:
         os.kill(run_of_middle, signal.SIGSTOP)
-        time.sleep(0.1)
-        halted = state.read_text().rsplit(")", 1)[1].split()[0] == "T"
-    except (ProcessLookupError, FileNotFoundError):
-        return None
-    return (swept, run_of_middle, text) if halted and "tunnels__middle" not in outcomes(swept) else None
+    except ProcessLookupError:
+        run_of_middle = None
+    kill(first, swept, all_jobs=False)
+    return (swept, run_of_middle, text) if run_of_middle and "tunnels__middle" not in outcomes(swept) else None
 
 
 # Wrong input.
