@@ -17,6 +17,6 @@ std::string one_line(const std::string& place, const std::string& key, const std
 }  // namespace
 
 InputError::InputError(const std::string& place, const std::string& key, const std::string& sentence)
-    : std::runtime_error(one_line(place, key, sentence)) {}
+    : std::runtime_error(one_line(place, key, sentence)), place_(place), key_(key), sentence_(sentence) {}
 
 }  // namespace voussoir::io

@@ -11,6 +11,13 @@ namespace voussoir::io {
 class InputError : public std::runtime_error {
  public:
   InputError(const std::string& place, const std::string& key, const std::string& sentence);
+
+  [[nodiscard]] const std::string& place() const { return place_; }
+  [[nodiscard]] const std::string& key() const { return key_; }  ///< empty where the file itself has the mistake
+  [[nodiscard]] const std::string& sentence() const { return sentence_; }
+
+ private:
+  std::string place_, key_, sentence_;
 };
 
 }  // namespace voussoir::io

@@ -28,6 +28,20 @@ struct Packing {
   [[nodiscard]] std::size_t contacts() const { return contact_i.size(); }
 };
 
+inline constexpr const char* packing_format = "voussoir packing";  ///< attribute `format` of a packing's file
+inline constexpr std::int64_t packing_format_version = 1;
+
+/// A sentence that says where the arrays disagree; empty when they agree.
+[[nodiscard]] std::string disagreement_of(const Packing& packing);
+
+/// A checksum of the grains, the cell and the contacts together, which the file keeps. Each array has a checksum of its
+/// own against damage; this one tells a file that another program has changed.
+[[nodiscard]] std::int64_t content_of(const Packing& packing);
+
+/// Throws std::runtime_error where the arrays of a file disagree, or where its checksum is not `content`.
+/// @param content that the file tells; none: an older file, or one of another program
+void require_agreement(const std::filesystem::path& path, const Packing& packing, std::optional<std::int64_t> content);
+
 /// Writes an HDF5 file (docs/reference/files.md) through a temporary name. Throws std::invalid_argument when sizes
 /// disagree, std::runtime_error when the file cannot be written.
 void save_packing(const std::filesystem::path& path, const Packing& packing);

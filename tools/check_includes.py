@@ -16,7 +16,7 @@ import re
 import sys
 from pathlib import Path
 
-OURS = ("kernels", "fem", "io", "host", "tests")
+OURS = ("kernels", "fem", "io", "host", "python", "tests")
 
 # folder -> (our folders, third-party libraries) that it may include. Standard headers are free to all, and fmt stands
 # in for std::format (not in g++ 12) everywhere but in kernels, which write no text.
@@ -26,6 +26,8 @@ FOLDERS = {
     "io": ({"io"}, {"HDF5", "toml++", "JSON", "fmt", "POSIX"}),
     # host joins the others, so it holds their types (Kokkos views, Eigen matrices) and starts Kokkos.
     "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX", "MPI", "OpenMP"}),
+    # The Python module translates host/library; it stands beside host/main.cpp at the top.
+    "python": ({"kernels", "fem", "io", "host", "python"}, {"nanobind", "POSIX"}),
     "tests": (set(OURS), None),  # None: all libraries
     "tools": (set(), {"CUDA"}),
 }
@@ -57,7 +59,7 @@ CONFINED = {
     "OpenMP": re.compile(r"fem/mesh\w*\.cpp|host/process/(cores|threads)\.cpp|tests/.*"),
     "MPI": re.compile(r"host/ranks/channel\.cpp"),
     # fem reads mesh files in a child process, because Gmsh crashes or hangs where they are damaged
-    "POSIX": re.compile(r"fem/mesh_gmsh_child\.cpp|(kernels|io|host|tests)/.*"),
+    "POSIX": re.compile(r"fem/mesh_gmsh_child\.cpp|(kernels|io|host|python|tests)/.*"),
 }
 
 LIBRARIES = {
@@ -73,6 +75,7 @@ LIBRARIES = {
     "CLI11": r"CLI/\w+\.hpp",
     "spdlog": r"spdlog/.*",
     "fmt": r"fmt/.*",
+    "nanobind": r"nanobind/.*",
     "GoogleTest": r"(gtest|gmock)/.*",
     "Google Benchmark": r"benchmark/.*",
     "CUDA": r"cuda\w*\.h",

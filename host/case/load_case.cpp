@@ -229,10 +229,7 @@ Case checked_case(const io::CaseFile& text, const std::filesystem::path& file) {
   }
 }
 
-}  // namespace
-
-Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  const io::CaseFile text = io::CaseFile::load(file, overrides);
+Case whole_case(const io::CaseFile& text, const std::filesystem::path& file) {
   Case input = checked_case(text, file);
   for (std::string& line : text.idle_keys()) input.remarks.push_back(std::move(line));
   input.resolved = text.resolved();
@@ -249,6 +246,16 @@ Case load_case(const std::filesystem::path& file, const std::vector<std::string>
   }
   if (!input.scene.mesh.file.empty()) add(bytes_of(input.scene.mesh.file));
   return input;
+}
+
+}  // namespace
+
+Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return whole_case(io::CaseFile::load(file, overrides), file);
+}
+
+Case case_of_text(const std::string& text, const std::string& name) {
+  return whole_case(io::CaseFile::of_text(text, name), name);
 }
 
 io::KeyList keys_of(CaseKind kind, const std::string& more) {

@@ -22,6 +22,9 @@ inline const std::array<std::string, 6> keys_without_results{"title",         "o
 /// the input is wrong: unknown keys, wrong units, values outside their limits, values that do not fit together.
 [[nodiscard]] Case load_case(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
+/// The same for a case that is given as text. @param name stands for the file in messages
+[[nodiscard]] Case case_of_text(const std::string& text, const std::string& name);
+
 /// All keys and tables of a kind with their types, defaults and limits, as the readers of the tables state them.
 /// @param more lines of a case whose defaults are wanted, such as "[engine]\npreset = \"fast\"\n"
 [[nodiscard]] io::KeyList keys_of(CaseKind kind, const std::string& more = {});

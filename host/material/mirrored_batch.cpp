@@ -8,16 +8,10 @@
 namespace voussoir::host {
 namespace {
 
-void mirror(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) {
-  for (std::size_t p = 0; p < stress.size(); ++p) {
-    if (!MirroredBatch::is_mirrored(p)) continue;
-    stress[p][2] = -stress[p][2];
-    if (tangent.empty()) continue;
-    for (const int k : {0, 1}) {
-      tangent[p](k, 2) = -tangent[p](k, 2);
-      tangent[p](2, k) = -tangent[p](2, k);
-    }
-  }
+std::vector<bool> every_second(std::size_t n) {
+  std::vector<bool> mirrored(n);
+  for (std::size_t p = 1; p < n; p += 2) mirrored[p] = true;
+  return mirrored;
 }
 
 /// Mirrors x to -x and moves the grains back into the mirrored cell, whose first vector is the mirror image of the old
@@ -36,6 +30,26 @@ void mirror(io::RveSnapshot& rve) {
 }
 
 }  // namespace
+
+MirroredBatch::MirroredBatch(std::unique_ptr<fem::MaterialBatch> batch)
+    : batch_(std::move(batch)), mirrored_(every_second(batch_->size())) {}
+
+MirroredBatch::MirroredBatch(std::unique_ptr<fem::MaterialBatch> batch, std::vector<bool> mirrored)
+    : batch_(std::move(batch)), mirrored_(std::move(mirrored)) {
+  if (mirrored_.size() != batch_->size()) throw std::invalid_argument("each point is mirrored or not");
+}
+
+void MirroredBatch::mirror(std::span<fem::Stress> stress, std::span<fem::Tangent> tangent) const {
+  for (std::size_t p = 0; p < stress.size(); ++p) {
+    if (!is_mirrored(p)) continue;
+    stress[p][2] = -stress[p][2];
+    if (tangent.empty()) continue;
+    for (const int k : {0, 1}) {
+      tangent[p](k, 2) = -tangent[p](k, 2);
+      tangent[p](2, k) = -tangent[p](2, k);
+    }
+  }
+}
 
 fem::BatchReport MirroredBatch::evaluate(std::span<const fem::Gradient> gradients, std::span<fem::Stress> stress,
                                          std::span<fem::Tangent> tangent) {
@@ -78,7 +92,7 @@ std::vector<io::RveSnapshot> MirroredBatch::snapshots(std::span<const std::int64
   if (source == nullptr) return {};
   std::vector<io::RveSnapshot> snapshots = source->snapshots(points);
   for (std::size_t k = 0; k < snapshots.size(); ++k) {
-    if (is_mirrored(static_cast<std::size_t>(points[k]))) mirror(snapshots[k]);
+    if (is_mirrored(static_cast<std::size_t>(points[k]))) voussoir::host::mirror(snapshots[k]);
   }
   return snapshots;
 }

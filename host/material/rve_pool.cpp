@@ -155,8 +155,13 @@ kernels::Work RvePool::advance(std::span<const fem::Gradient> gradients, bool wi
   kernels::EngineSettings settings = settings_;
   if (!with_tangents) settings.tangent = kernels::TangentKind::contact;
   choose_running(gradients);
-  const kernels::Work work = kernels::advance(batch_, std::span<const kernels::StrainRequest>(requests_), settings,
-                                              trial_reports_, running_);
+  kernels::Work work;
+  try {
+    work = pieces_.advance(batch_, requests_, settings, trial_reports_, running_);
+  } catch (...) {
+    begin_increment();
+    throw;
+  }
   for (const int rve : running_) {
     const auto k = static_cast<std::size_t>(rve);
     deferral_.check(k, gradients[k], trial_reports_[k]);

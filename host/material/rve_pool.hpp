@@ -8,6 +8,7 @@
 #include "host/material/deferral.hpp"
 #include "host/material/devices.hpp"
 #include "host/material/held_rves.hpp"
+#include "host/material/piecewise.hpp"
 #include "host/material/snapshot_source.hpp"
 #include "host/material/state_records.hpp"
 #include "host/packing/variety.hpp"
@@ -54,6 +55,10 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] double void_ratio_of(std::size_t rve) const;  ///< of the committed state [-]
   [[nodiscard]] PackedRve packed(std::size_t rve) const;  ///< grains after their last run; another pool may start so
 
+  /// Evaluations pause now and then (piecewise.hpp). Where a pause throws, the committed state is as it was, and the
+  /// increment begins anew.
+  void set_pause(Pause pause) { pieces_.set_pause(std::move(pause)); }
+
   /// The functions from here on are for a pool that is one rank's part of a larger pool, which needs the engine's own
   /// reports and the states of single RVEs. `advance` evaluates as `evaluate` does and leaves the answers in
   /// trial_reports(); without `with_tangents` their tangents are those of eq. (4), which cost nothing.
@@ -69,7 +74,9 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   [[nodiscard]] std::uint64_t identity() const { return identity(batch_.packing_of); }
   /// The identity of a larger pool of the same packings, of which this one is a part.
   [[nodiscard]] std::uint64_t identity(std::span<const int> packing_of) const;
-  [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;  ///< of `n` RVEs
+  /// The records (state_records.hpp) of these RVEs, in their order, or of `n` RVEs from `first` on.
+  [[nodiscard]] std::vector<std::vector<std::byte>> records(std::span<const std::size_t> rves) const;
+  [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
 
  private:
@@ -83,6 +90,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   std::vector<kernels::RveReport> committed_reports_;
   Deferral deferral_;
   fem::RetiredPoints retired_;
+  Piecewise pieces_;
   std::vector<int> running_;              ///< RVEs whose grains the evaluation needs
   std::vector<fem::Gradient> increment_;  ///< of the last evaluation
   bool steps_are_fixed_ = false;

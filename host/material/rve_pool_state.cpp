@@ -142,11 +142,17 @@ HeldRves RvePool::committed_rves() const {
   return held;
 }
 
-std::vector<std::vector<std::byte>> RvePool::records(std::size_t first, std::size_t n) const {
+std::vector<std::vector<std::byte>> RvePool::records(std::span<const std::size_t> rves) const {
   const HeldRves held = committed_rves();
-  std::vector<std::vector<std::byte>> records(n);
-  for (std::size_t k = 0; k < n; ++k) held.write_record(first + k, records[k]);
+  std::vector<std::vector<std::byte>> records(rves.size());
+  for (std::size_t k = 0; k < rves.size(); ++k) held.write_record(rves[k], records[k]);
   return records;
+}
+
+std::vector<std::vector<std::byte>> RvePool::records(std::size_t first, std::size_t n) const {
+  std::vector<std::size_t> rves(n);
+  std::iota(rves.begin(), rves.end(), first);
+  return records(rves);
 }
 
 std::shared_ptr<const fem::HeldState> RvePool::hold() {

@@ -64,18 +64,31 @@ bool is_refused(const PackedRve& rve, const PackingNote& note) {
   return !fault.empty();
 }
 
-/// Makes the packings of these seeds side by side, stores those that come to rest and notes the others.
-void make_and_keep(const SoilCase& soil, const PackingCase& recipe, std::span<const std::int64_t> seeds,
-                   const PackingNote& note) {
-  for (const PackedRve& rve : make_packings(soil, recipe, seeds)) {
+/// Makes the packings of these seeds side by side. Those that do not come to rest are noted and left out.
+std::vector<PackedRve> make_resting(const SoilCase& soil, const PackingCase& recipe,
+                                    std::span<const std::int64_t> seeds, const PackingNote& note) {
+  std::vector<PackedRve> out;
+  for (PackedRve& rve : make_packings(soil, recipe, seeds)) {
     if (rve.status != kernels::RveStatus::converged) {
       if (note)
         note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
                          kernels::name_of(rve.status)));
     } else if (!is_refused(rve, note)) {
-      keep(soil, recipe, rve);
+      out.push_back(std::move(rve));
     }
   }
+  return out;
+}
+
+void make_and_keep(const SoilCase& soil, const PackingCase& recipe, std::span<const std::int64_t> seeds,
+                   const PackingNote& note) {
+  for (const PackedRve& rve : make_resting(soil, recipe, seeds, note)) keep(soil, recipe, rve);
+}
+
+void require_one(const std::vector<PackedRve>& found, const PackingCase& recipe, std::span<const std::int64_t> seeds) {
+  if (!found.empty()) return;
+  throw NoEquilibrium(fmt::format("none of the {} packings of this recipe (first seed {}) comes to rest at {:.4g} kPa",
+                                  seeds.size(), seeds.empty() ? 0 : seeds.front(), recipe.pressure * 1e-3));
 }
 
 /// Makes the packings that are missing. Those at which another process is at work are waited for at the end, when this
@@ -198,15 +211,19 @@ std::vector<PackedRve> obtain_packings(const SoilCase& soil, const PackingCase& 
     auto rve = find(soil, recipe, seed);
     if (rve && !is_refused(*rve, note)) out.push_back(std::move(*rve));
   }
-  if (out.empty())
-    throw NoEquilibrium(
-        fmt::format("none of the {} packings of this recipe (first seed {}) comes to rest at {:.4g} kPa", seeds.size(),
-                    seeds.empty() ? 0 : seeds.front(), recipe.pressure * 1e-3));
+  require_one(out, recipe, seeds);
   if (bias == Bias::measured && out.size() > 1) measure_bias(soil, recipe, out, note);
   for (const PackedRve& rve : out) {
     const bool made = std::find(made_here.begin(), made_here.end(), rve.seed) != made_here.end();
     if (note) note((made ? "packing made:  " : "packing found: ") + table_line(rve));
   }
+  return out;
+}
+
+std::vector<PackedRve> fresh_packings(const SoilCase& soil, const PackingCase& recipe,
+                                      std::span<const std::int64_t> seeds, const PackingNote& note) {
+  std::vector<PackedRve> out = make_resting(soil, recipe, seeds, note);
+  require_one(out, recipe, seeds);
   return out;
 }
 

@@ -25,6 +25,11 @@ enum class Bias { measured, left };
                                                      std::span<const std::int64_t> seeds, const PackingNote& note = {},
                                                      Bias bias = Bias::measured);
 
+/// The packings of these seeds, made side by side and not stored. A seed whose packing does not come to rest is noted
+/// and left out. Throws NoEquilibrium when no packing is left.
+[[nodiscard]] std::vector<PackedRve> fresh_packings(const SoilCase& soil, const PackingCase& recipe,
+                                                    std::span<const std::int64_t> seeds, const PackingNote& note = {});
+
 /// The file in the recipe's folder that holds the packing of a seed, or will hold it.
 [[nodiscard]] std::filesystem::path stored_path(const SoilCase& soil, const PackingCase& recipe, std::int64_t seed);
 

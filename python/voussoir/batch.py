@@ -1,0 +1,329 @@
+"""Batches of RVEs (representative volume elements of grains) as a material law: displacement gradients in, stresses and
+tangents out."""
+
+import logging
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from voussoir.engine import running
+from voussoir.packings import Floats, Integers, Packing, as_dict, drawing, from_dict, load_packing
+from voussoir.settings import Settings, name, text_of
+
+_log = logging.getLogger("voussoir")
+
+#: Columns of a report. A column's unit is [-] where none is given.
+#:   status          index into `status_names`
+#:   steps           time steps that the grains took, with those of the hold at the end
+#:   contacts        number of contacts that carry force
+#:   unbalanced      unbalanced ratio at the end: rms force on a grain over pressure x thickness x mean diameter
+#:   inertial_number of the straining, at the final pressure
+#:   largest_overlap of a contact, over r_i + r_j
+#:   mean_overlap    the same, mean over the contacts
+#:   cell_area       at the end [m^2]
+report_dtype = np.dtype(
+    {
+        "names": ["status", "steps", "contacts", "unbalanced", "inertial_number", "largest_overlap", "mean_overlap",
+                  "cell_area"],
+        "formats": ["i4", "i4", "i4", "f8", "f8", "f8", "f8", "f8"],
+        "offsets": [0, 4, 8, 16, 24, 32, 40, 48],
+        "itemsize": 56,
+    }
+)  # fmt: skip
+
+#: Names of the numbers in a report's column `status`. The last three are failures, and such a point answers with NaN.
+status_names: tuple[str, ...] = (
+    "converged",
+    "step_limit",
+    "open",
+    "neighbour_overflow",
+    "overlap_limit",
+    "not_finite",
+)
+
+_precisions = {"float": "float", "double": "double", "float32": "float", "float64": "double"}
+
+
+class Answer(NamedTuple):
+    """What all points answer."""
+
+    stress: Floats  #: (n, 2, 2) Cauchy stress, tension positive [Pa]
+    tangent: Floats | None  #: (n, 3, 3) d stress / d strain in (xx, yy, gamma_xy), symmetric [Pa]; None: not asked for
+    report: NDArray[Any]  #: (n,) of report_dtype
+    usable: bool  #: False where a point has failed; its stress and tangent are NaN, and `commit` refuses
+    message: str  #: which point has failed, and why; empty where usable
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """The grains of a point and the forces between them, in the committed state."""
+
+    radius: Floats  #: (g,) [m]
+    position: Floats  #: (g, 2) centres [m]
+    rotation: Floats  #: (g,) since the reference state [rad]
+    cell: Floats  #: (2, 2) periodic cell; its columns are the periodic vectors [m]
+    thickness: float  #: out of the plane [m]
+    contacts: Integers  #: (c, 2) numbers i < j of the grains of each contact
+    branch: Floats  #: (c, 2) vector from i to j [m]
+    force: Floats  #: (c, 2) force on grain i [N]
+
+    def _repr_svg_(self) -> str:
+        return drawing(self.radius, self.position, self.cell)
+
+
+class RveBatch:
+    """n points of a continuum, each with an RVE of grains, that answer together.
+
+    An evaluation starts from the committed state, however often it is repeated; `commit` makes the last one the
+    committed state. Within an increment the numbers of time steps are frozen at those of the first evaluation, so that
+    the stress is a fixed function of the gradient; `commit` and `begin_increment` end this. What an evaluation answers
+    may therefore differ by some 0.1 % from what it would have answered as the first one of its increment.
+
+    A batch may be used by several threads, one at a time. It works while other Python threads run, and Ctrl-C stops it
+    within a second.
+    """
+
+    def __init__(
+        self,
+        packings: "Packing | str | os.PathLike[str] | Iterable[Packing | str | os.PathLike[str]]",
+        n: int | None = None,
+        *,
+        packing_of: ArrayLike | None = None,
+        preset: str = "standard",
+        accuracy: float | None = None,
+        precision: str | None = None,
+        tangent: str = "elastic",
+        mirrored: bool | ArrayLike = False,
+        microstructure: Sequence[str] = (),
+        backend: str = "lanes",
+        settings: Settings | None = None,
+    ) -> None:
+        """Makes a batch whose points are at rest under the pressure of their packings.
+
+        Args:
+            packings: a Packing or a packing file, or several
+            n: number of points; as many as packings where it is left out
+            packing_of: (n,) index of the packing of each point; dealt out in turn where it is left out
+            preset: "fast", "standard" or "reference": speed against accuracy (docs/validation/trade.md)
+            accuracy: wanted error of the stress over the pressure [-], in place of the preset's rate of strain
+            precision: "float" or "double" of the pair forces; that of the preset where it is left out
+            tangent: "contact" (eq. 4 of the paper), "elastic", "static" or "loading" (docs/explanation/tangents.md)
+            mirrored: whether points answer as the mirror image (x to -x) of their packing: all, or (n,) of them
+            microstructure: quantities to add to `fields`, such as "fabric" (key output.microstructure)
+            backend: "lanes" of the processor, "gpu", or "auto" for a GPU where there is one
+            settings: further keys of [engine] and newton.tangent_strain; they override the arguments above
+
+        Raises:
+            InputError: a setting is wrong
+            ValueError: wrong shape or index; a packing that is not of this program
+            RuntimeError: no GPU for backend="gpu"; after fork()
+        """
+        listed = _listed(packings)
+        count = len(listed) if n is None else int(n)
+        index = np.arange(count) % max(len(listed), 1) if packing_of is None else np.asarray(packing_of)
+        if index.shape != (count,) or index.dtype.kind not in "iu":
+            raise ValueError(f"packing_of needs {count} integers, one for each point")
+        given: dict[str, Any] = {
+            "engine.preset": preset,
+            "engine.backend": backend,
+            "newton.tangent": tangent,
+            "output.microstructure": list(microstructure),
+        }
+        if accuracy is not None:
+            given["engine.accuracy"] = accuracy
+        if precision is not None:
+            given["engine.precision"] = _precisions.get(precision, precision)
+        allowed = ("engine", "newton.tangent", "newton.tangent_strain", "output.microstructure")
+        text = text_of("biaxial_bvp", settings, allowed, given)
+        self._begin(
+            running().new_batch(
+                [as_dict(packing) for packing in listed], index.tolist(), text, name, _mirrored(mirrored, count)
+            )
+        )
+
+    @classmethod
+    def from_case(
+        cls,
+        case_file: str | os.PathLike[str],
+        n: int,
+        settings: Sequence[str] = (),
+        *,
+        mirrored: bool | ArrayLike = False,
+    ) -> Self:
+        """A batch as a case of the program describes it by its tables [soil], [packing] and [engine], by
+        newton.tangent and by output.microstructure. Its packings are made, or found in packing.folder, which needs
+        h5py.
+
+        Args:
+            case_file: of one of the kinds pack, probe, column, tunnel
+            n: number of points
+            settings: as --set of the program, such as ["packing.grains=300"]
+            mirrored: as in RveBatch. packing.mirrored of the case does not count.
+
+        Raises:
+            InputError: with file, line and key
+            NoEquilibrium: no packing comes to rest
+        """
+        batch, notes = running().batch_of_case(str(case_file), list(settings), int(n), _mirrored(mirrored, int(n)))
+        for note in notes:
+            _log.info(note)
+        new = cls.__new__(cls)
+        new._begin(batch)
+        return new
+
+    def _begin(self, batch: Any) -> None:
+        self._core = batch
+        self._packing_of = batch.packing_of().astype(np.int64)
+        if device := batch.device():
+            _log.info(device)
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    def __repr__(self) -> str:
+        state = "" if self._core.is_open else ", closed"
+        return f"<voussoir.RveBatch of {len(self)} points, {len(np.unique(self._packing_of))} packings{state}>"
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Gives the grains' memory back. Every later use raises RuntimeError, but a second close()."""
+        self._core.close()
+
+    def evaluate(self, f_minus_i: ArrayLike, tangent: bool = True) -> Answer:
+        """Stresses and tangents after displacement gradients.
+
+        Args:
+            f_minus_i: (n, 2, 2) F - I, where F maps the committed configuration to the new one [-]
+            tangent: False saves the time of the tangents
+
+        Returns:
+            Answer. A point that has failed has NaN.
+
+        Raises:
+            ValueError: wrong shape, or a gradient that is not finite
+            KeyboardInterrupt: after Ctrl-C; the committed state is as before, and the next evaluation is the first one
+                of the increment
+            RuntimeError: the batch is closed; after fork()
+        """
+        gradients = np.ascontiguousarray(f_minus_i, dtype=np.float64)
+        if gradients.shape != (len(self), 2, 2):
+            raise ValueError(f"f_minus_i needs the shape ({len(self)}, 2, 2), has {gradients.shape}")
+        return _answer(self._core.evaluate(gradients, tangent))
+
+    def commit(self) -> None:
+        """Makes the state of the last evaluation the committed one and begins an increment.
+
+        Raises:
+            RuntimeError: there is no evaluation since the last commit or set_state, or it was not usable, or it was
+                interrupted
+        """
+        self._core.commit()
+
+    def begin_increment(self) -> None:
+        """Lets the next evaluation choose the numbers of time steps anew, such as after a step that is cut."""
+        self._core.begin_increment()
+
+    def committed(self, tangent: bool = True) -> Answer:
+        """The answer of the committed state. The tangent is the one that was found when it was evaluated."""
+        return _answer(self._core.committed(tangent))
+
+    def state(self, points: ArrayLike | None = None) -> bytes:
+        """The committed state of these points (None: of all) as bytes, for `set_state` of this or an equal batch.
+
+        Raises:
+            IndexError: there is no such point
+        """
+        return bytes(self._core.state(self._points(points)))
+
+    def set_state(self, state: bytes, points: ArrayLike | None = None) -> None:
+        """Gives a state to these points (None: to all). Their packings must be those of the points that it was taken
+        from, in the same order. An increment begins.
+
+        Raises:
+            ValueError: the bytes are no state of such points
+            IndexError: there is no such point
+        """
+        self._core.set_state(state, self._points(points))
+
+    def fields(self) -> dict[str, Floats]:
+        """Quantities of the committed state at each point, (n,) or (n, components), with the names and units of result
+        files (docs/reference/files.md): void_ratio, coordination, ..., and the microstructure that was asked for."""
+        return {name: values for name, _, values in self._core.fields()}
+
+    def field_units(self) -> dict[str, str]:
+        """The unit of each of `fields`."""
+        return {name: unit for name, unit, _ in self._core.fields()}
+
+    @property
+    def void_ratio(self) -> Floats:
+        """(n,) of the committed state [-]."""
+        return np.asarray(self._core.void_ratio())
+
+    @property
+    def packing_of(self) -> Integers:
+        """(n,) index of each point's packing."""
+        return self._packing_of
+
+    def snapshot(self, point: int) -> Snapshot:
+        """Grains and contact network of a point in the committed state, mirrored where the point is."""
+        grains = self._core.snapshot(self._point(point))
+        return Snapshot(
+            radius=grains["radius"],
+            position=np.stack([grains["x"], grains["y"]], axis=1),
+            rotation=grains["rotation"],
+            cell=grains["cell"],
+            thickness=grains["thickness"],
+            contacts=np.stack([grains["contact_i"], grains["contact_j"]], axis=1),
+            branch=grains["branch"],
+            force=grains["force"],
+        )
+
+    def packing(self, point: int) -> Packing:
+        """The grains of a point in the committed state, from which another batch may start. They are never mirrored:
+        a mirrored point answers as the image of these grains."""
+        return from_dict(self._core.packing(self._point(point)))
+
+    def _point(self, point: int) -> int:
+        number = int(point)
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"there is no point {number}: the batch has {len(self)}")
+        return number % len(self)
+
+    def _points(self, points: ArrayLike | None) -> list[int]:
+        if points is None:
+            return list(range(len(self)))
+        array = np.asarray(points)
+        if array.dtype == bool and array.shape == (len(self),):
+            return [int(k) for k in np.flatnonzero(array)]
+        return [self._point(int(k)) for k in np.atleast_1d(array)]
+
+
+def _listed(packings: Any) -> list[Packing]:
+    if isinstance(packings, Packing | str | os.PathLike):
+        packings = [packings]
+    return [packing if isinstance(packing, Packing) else load_packing(packing) for packing in packings]
+
+
+def _mirrored(mirrored: bool | ArrayLike, n: int) -> list[bool]:
+    """Empty where no point is mirrored."""
+    flags = np.broadcast_to(np.asarray(mirrored, dtype=bool), (n,)) if np.ndim(mirrored) == 0 else np.asarray(mirrored)
+    if flags.shape != (n,) or flags.dtype != bool:
+        raise ValueError(f"mirrored needs one truth value, or {n} of them")
+    return [bool(flag) for flag in flags] if flags.any() else []
+
+
+def _answer(parts: tuple[Any, ...]) -> Answer:
+    stress, tangent, report, usable, message = parts
+    return Answer(stress, tangent, report.view(report_dtype), usable, message)
