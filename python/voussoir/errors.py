@@ -1,0 +1,63 @@
+"""The exceptions of the package; every one of them is a voussoir.Error, but for the end by Ctrl-C, which is a
+KeyboardInterrupt as everywhere in Python.
+
+| exception | what happened |
+|---|---|
+| InputError | a value that the user wrote is wrong: a case file, a key, a setting (exit status 2 of the program) |
+| NoEquilibrium | an increment, a packing or a test came to no equilibrium (exit status 3) |
+| MachineFailure | the machine failed: disk, memory, a file that vanished (exit status 4) |
+| Interrupted | a signal other than Ctrl-C stopped a run after an increment (exit status 130) |
+| Missing | results lack the data that were asked for |
+| Unreadable | a file or a folder of results cannot be read: damaged, of another program, not there |
+
+The compiled module raises them too: InputError(sentence) finds file, line and key in the program's own sentence.
+"""
+
+import re
+from pathlib import Path
+
+_FILE = re.compile(r"(?P<place>(?P<file>\S.*?\.\w+)(?::(?P<line>\d+))?): (?:(?P<key>[A-Za-z_][\w.\[\]-]*): )?")
+_SET = re.compile(r"(?P<place>--set) (?P<key>[^\s:]+): ")
+
+
+class Error(RuntimeError):
+    """What all exceptions of Voussoir have in common."""
+
+
+class InputError(Error, ValueError):
+    """A mistake of the user. The message is the program's line, such as "case.toml:12: soil.friction_angle: must be
+    positive, is -3 deg".
+
+    file, line: the file and its line, or None; key: the key, such as "soil.friction_angle", or ""; place: "FILE:LINE",
+    "FILE", or "--set" where the value was given beside the file, or "". Where they are not given, they are read from
+    the message.
+    """
+
+    def __init__(self, message: str, *, place: str | None = None, key: str | None = None) -> None:
+        super().__init__(message)
+        found = _SET.match(message) or _FILE.match(message)
+        told = found.groupdict() if found else {}
+        self.file = Path(told["file"]) if told.get("file") else None
+        self.line = int(told["line"]) if told.get("line") else None
+        self.place = (told.get("place") or "") if place is None else place
+        self.key = (told.get("key") or "") if key is None else key
+
+
+class NoEquilibrium(Error):
+    """An increment, a packing or a test came to no equilibrium; the message has the program's last sentences."""
+
+
+class MachineFailure(Error):
+    """The machine failed (disk, memory, a file that vanished), or the program has an error within."""
+
+
+class Interrupted(Error):
+    """A signal stopped the run after an increment; it goes on with resume=True."""
+
+
+class Missing(Error):
+    """The result lacks data that were asked for; the message names these data."""
+
+
+class Unreadable(Missing):
+    """A file of the results cannot be read; the message names it and the reason."""
