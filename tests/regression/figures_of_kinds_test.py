@@ -8,19 +8,19 @@ import sys
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
-import figures
 import h5py
 import numpy as np
 from figure_calls import call, copy
 from program import command, run
-from voussoir_plots import calibration, element_tests, grading, probes, rve_size, small_samples, table_two
-from voussoir_plots.packings import Packing
-from voussoir_plots.result import Missing, RunIndex, Unreadable
-from voussoir_plots.sweep import Sweep
-from voussoir_plots.sweep_table import SweepTable
-from voussoir_plots.units import quantity
+from voussoir.figures import __main__ as figures
+from voussoir.figures import calibration, element_tests, grading, probes, rve_size, small_samples, table_two
+from voussoir.figures.packings import Packing
+from voussoir.figures.result import Missing, RunIndex, Unreadable
+from voussoir.figures.sweep import Sweep
+from voussoir.figures.sweep_table import SweepTable
+from voussoir.figures.units import quantity
 
 TESTS = ["packing.grains=100", "packing.seeds=[1, 2]", "packing.folder=packings"]
 

@@ -15,16 +15,17 @@ from pathlib import Path
 from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 import compare_runs
 import compare_tunnels
-import figures
 import h5py
 import numpy as np
 from figure_calls import call, copy
 from program import PROGRAM, check, run, start_and_signal
-from voussoir_plots import source, trend_table
-from voussoir_plots.catalogue import FIGURES
+from voussoir.figures import __main__ as figures
+from voussoir.figures import source, trend_table
+from voussoir.figures.catalogue import FIGURES
 
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 GROUND = """

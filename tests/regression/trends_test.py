@@ -8,12 +8,12 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 import numpy as np
-from voussoir_plots import chains, points, q8, settlements, tensors, trends
-from voussoir_plots.packings import Packing
-from voussoir_plots.result import Result
+from voussoir.figures import chains, points, q8, settlements, tensors, trends
+from voussoir.figures.packings import Packing
+from voussoir.figures.result import Result
 
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 LOSS = np.linspace(0, 0.2, 81)

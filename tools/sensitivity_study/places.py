@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from voussoir_plots import points, reaction
-from voussoir_plots.result import Missing, Result
+from voussoir.figures import points, reaction
+from voussoir.figures.result import Missing, Result
 
 from .measures import Contraction, contraction
 

@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from voussoir_plots.result import Missing, check_format, plain, reading
+
+from voussoir.figures.result import Missing, check_format, plain, reading
 
 MOST_NAMED = 12  # unconverged increments that a warning names one by one; of other warnings FEW
 FEW = 4

@@ -3,8 +3,9 @@
 from collections.abc import Callable
 
 import numpy as np
-from voussoir_plots.ensemble import Ensemble
-from voussoir_plots.result import Missing, Result
+
+from voussoir.figures.ensemble import Ensemble
+from voussoir.figures.result import Missing, Result
 
 from .curves import BLUE, GREY, ORANGE, Chart, banded, line
 from .pack import numbers

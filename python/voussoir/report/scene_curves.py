@@ -4,11 +4,12 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from voussoir_plots import scene, scene_boundaries
-from voussoir_plots.ensemble import Ensemble, boundary_bands, motions
-from voussoir_plots.result import Increment, Missing, Result
-from voussoir_plots.scene import Motion
-from voussoir_plots.style import CYCLE
+
+from voussoir.figures import scene, scene_boundaries
+from voussoir.figures.ensemble import Ensemble, boundary_bands, motions
+from voussoir.figures.result import Increment, Missing, Result
+from voussoir.figures.scene import Motion
+from voussoir.figures.style import CYCLE
 
 from .curves import BLUE, GREY, Chart, line
 from .pack import numbers

@@ -11,13 +11,12 @@ import warnings
 from pathlib import Path
 
 try:
-    from voussoir_plots import guard, settings
-    from voussoir_plots.output import make_folder, say, write
-    from voussoir_plots.result import Missing, Unreadable
-    from voussoir_plots.source import open_source
-
-    from voussoir_report import ensemble_page, run_page, sweep_page
-    from voussoir_report.parts import Builder
+    from voussoir.figures import guard, settings
+    from voussoir.figures.output import make_folder, say, write
+    from voussoir.figures.result import Missing, Unreadable
+    from voussoir.figures.source import open_source
+    from voussoir.report import ensemble_page, run_page, sweep_page
+    from voussoir.report.parts import Builder
 except ModuleNotFoundError as missing:
     print(
         f"Python has no module {missing.name}; in a checkout .prefix/venv/bin/python has it, after tools/setup",

@@ -4,10 +4,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from voussoir_plots import points
-from voussoir_plots.catalogue import figures_of
-from voussoir_plots.result import Missing, Result, RunIndex
-from voussoir_plots.source import Source
+
+from voussoir.figures import points
+from voussoir.figures.catalogue import figures_of
+from voussoir.figures.result import Missing, Result, RunIndex
+from voussoir.figures.source import Source
 
 from . import curves, element_curves, facts, ground, markup, paper_sentences, pictures, scene_curves
 from .fields import colour_maps

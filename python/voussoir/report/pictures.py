@@ -11,10 +11,11 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 from PIL import Image
-from voussoir_plots import guard, style
-from voussoir_plots.catalogue import Figures
-from voussoir_plots.output import is_of_the_machine
-from voussoir_plots.result import Missing, Unreadable
+
+from voussoir.figures import guard, style
+from voussoir.figures.catalogue import Figures
+from voussoir.figures.output import is_of_the_machine
+from voussoir.figures.result import Missing, Unreadable
 
 DOTS_PER_INCH = 100
 QUALITY = 75  # of WebP; a figure takes 20 to 90 kB

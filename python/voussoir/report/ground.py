@@ -5,10 +5,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from voussoir_plots import q8, regions, scene
-from voussoir_plots.fields import since_start
-from voussoir_plots.paths import LEAST_PRESSURE
-from voussoir_plots.result import Increment, Missing, Result
+
+from voussoir.figures import q8, regions, scene
+from voussoir.figures.fields import since_start
+from voussoir.figures.paths import LEAST_PRESSURE
+from voussoir.figures.result import Increment, Missing, Result
 
 from .fields import COMPUTED, FIELDS, Field, described
 from .pack import Blob, pack, pack_numbers

@@ -7,11 +7,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from voussoir_plots import reaction, settlements, troughs
-from voussoir_plots.ensemble import Bands
-from voussoir_plots.result import Increment, Missing, Result
-from voussoir_plots.study.bands import of_members
-from voussoir_plots.style import colours
+
+from voussoir.figures import reaction, settlements, troughs
+from voussoir.figures.ensemble import Bands
+from voussoir.figures.result import Increment, Missing, Result
+from voussoir.figures.study.bands import of_members
+from voussoir.figures.style import colours
 
 from .members import Members, increments_at
 from .pack import numbers, pack

@@ -5,7 +5,8 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from voussoir_plots import style
+
+from voussoir.figures import style
 
 KILOPASCAL = 1e-3
 DEGREE = 180 / np.pi

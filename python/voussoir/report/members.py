@@ -1,8 +1,9 @@
 """The ground of an ensemble: its mean fields, the half widths of their bands, and its representative member."""
 
 import numpy as np
-from voussoir_plots.ensemble import INDEX, Bands, Ensemble
-from voussoir_plots.result import Increment, Missing, Result, plain, reading
+
+from voussoir.figures.ensemble import INDEX, Bands, Ensemble
+from voussoir.figures.result import Increment, Missing, Result, plain, reading
 
 from . import ground
 from .fields import FIELDS

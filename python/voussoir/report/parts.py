@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from voussoir_plots import trend_table
-from voussoir_plots.output import is_of_the_machine
-from voussoir_plots.result import Missing, Result, Unreadable
-from voussoir_plots.study import judging
+from voussoir.figures import trend_table
+from voussoir.figures.output import is_of_the_machine
+from voussoir.figures.result import Missing, Result, Unreadable
+from voussoir.figures.study import judging
 
 from . import facts, markup
 from .markup import Page

@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from voussoir_plots.catalogue import figures_of
-from voussoir_plots.result import Missing
-from voussoir_plots.study import judging
-from voussoir_plots.style import CYCLE
-from voussoir_plots.sweep import Sweep
-from voussoir_plots.sweep_table import COST, Run, SweepTable
+
+from voussoir.figures.catalogue import figures_of
+from voussoir.figures.result import Missing
+from voussoir.figures.study import judging
+from voussoir.figures.style import CYCLE
+from voussoir.figures.sweep import Sweep
+from voussoir.figures.sweep_table import COST, Run, SweepTable
 
 from . import facts, markup, paper_sentences, pictures, sweep_grounds
 from .fields import colour_maps

@@ -5,14 +5,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from voussoir_plots import reaction, scene, scene_boundaries, settlements, troughs
-from voussoir_plots.element_tests import Series
-from voussoir_plots.ensemble import Bands
-from voussoir_plots.result import Missing, Result, RunIndex
-from voussoir_plots.settings import Settings
-from voussoir_plots.study.bands import number, of_members
-from voussoir_plots.study.data import Tunnel, equally_far
-from voussoir_plots.sweep_table import Run, SweepTable
+
+from voussoir.figures import reaction, scene, scene_boundaries, settlements, troughs
+from voussoir.figures.element_tests import Series
+from voussoir.figures.ensemble import Bands
+from voussoir.figures.result import Missing, Result, RunIndex
+from voussoir.figures.settings import Settings
+from voussoir.figures.study.bands import number, of_members
+from voussoir.figures.study.data import Tunnel, equally_far
+from voussoir.figures.sweep_table import Run, SweepTable
 
 from .pack import numbers
 

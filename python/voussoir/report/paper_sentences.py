@@ -1,14 +1,14 @@
-"""Which figure of the study a picture stands for, and one sentence how it compares (voussoir_plots/paper.py)."""
+"""Which figure of the study a picture stands for, and one sentence how it compares (voussoir.figures/paper.py)."""
 
 from collections.abc import Iterable
 from pathlib import Path
 
-from voussoir_plots import paper
-from voussoir_plots.result import Missing
-from voussoir_plots.settings import Settings
-from voussoir_plots.study import catalogue
-from voussoir_plots.study.data import Study, open_study
-from voussoir_plots.sweep import Sweep
+from voussoir.figures import paper
+from voussoir.figures.result import Missing
+from voussoir.figures.settings import Settings
+from voussoir.figures.study import catalogue
+from voussoir.figures.study.data import Study, open_study
+from voussoir.figures.sweep import Sweep
 
 from .pictures import Picture
 

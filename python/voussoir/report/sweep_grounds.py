@@ -3,8 +3,9 @@
 from typing import Any
 
 import numpy as np
-from voussoir_plots.result import Missing, Result
-from voussoir_plots.study.data import Tunnel
+
+from voussoir.figures.result import Missing, Result
+from voussoir.figures.study.data import Tunnel
 
 from . import ground
 from .fields import FIELDS

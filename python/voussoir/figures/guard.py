@@ -23,7 +23,7 @@ from .result import Missing, Unreadable
 
 DRAWN, FAULT, UNREADABLE, MACHINE, STOPPED = 0, 1, 2, 4, 130
 
-TOOLS = Path(__file__).resolve().parent.parent
+PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
@@ -72,14 +72,14 @@ class Guard:
 def describe(error: Exception) -> str:
     """The kind of an exception, its message in one line, and the innermost place of our own code on its way."""
     frames = traceback.extract_tb(error.__traceback__)
-    ours = [frame for frame in frames if Path(frame.filename).is_relative_to(TOOLS)] or list(frames)
+    ours = [frame for frame in frames if Path(frame.filename).is_relative_to(PACKAGE)] or list(frames)
     where = f" ({_place(ours[-1].filename, ours[-1].lineno)}, {ours[-1].name})" if ours else ""
     return f"{type(error).__name__}: {' '.join(str(error).split())}{where}"
 
 
 def _place(file: str, line: int | None) -> str:
     path = Path(file)
-    return f"{path.relative_to(TOOLS) if path.is_relative_to(TOOLS) else path.name}:{line}"
+    return f"{path.relative_to(PACKAGE.parent) if path.is_relative_to(PACKAGE) else path.name}:{line}"
 
 
 def run(main: Callable[[], int]) -> int:

@@ -4,10 +4,11 @@ import csv
 from pathlib import Path
 
 import numpy as np
-from voussoir_plots.catalogue import Figures, figures_of
-from voussoir_plots.ensemble import INDEX, Ensemble
-from voussoir_plots.result import Missing, Result
-from voussoir_plots.study import judging
+
+from voussoir.figures.catalogue import Figures, figures_of
+from voussoir.figures.ensemble import INDEX, Ensemble
+from voussoir.figures.result import Missing, Result
+from voussoir.figures.study import judging
 
 from . import curves, element_curves, facts, ground, markup, members, paper_sentences, pictures, run_page, scene_curves
 from .markup import Page
