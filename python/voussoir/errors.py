@@ -21,7 +21,14 @@ _SET = re.compile(r"(?P<place>--set) (?P<key>[^\s:]+): ")
 
 
 class Error(RuntimeError):
-    """What all exceptions of Voussoir have in common."""
+    """What all exceptions of Voussoir have in common.
+
+    folder, lines: of a run that ended so, the folder of its results, which opens as far as it was written, and the last
+    lines that the program printed.
+    """
+
+    folder: Path | None = None
+    lines: tuple[str, ...] = ()
 
 
 class InputError(Error, ValueError):

@@ -19,8 +19,8 @@ from voussoir.figures import calibration, element_tests, grading, probes, rve_si
 from voussoir.figures.packings import Packing
 from voussoir.figures.result import Missing, RunIndex, Unreadable
 from voussoir.figures.sweep import Sweep
-from voussoir.figures.sweep_table import SweepTable
 from voussoir.figures.units import quantity
+from voussoir.sweeps import SweepTable
 
 TESTS = ["packing.grains=100", "packing.seeds=[1, 2]", "packing.folder=packings"]
 
@@ -322,7 +322,7 @@ class BadInput(unittest.TestCase):
     def test_sweeps(self):
         shutil.rmtree("nothing", ignore_errors=True)
         Path("nothing/a/b").mkdir(parents=True)
-        self.assert_one_line("nothing has no run.h5: figures are drawn from", "nothing")
+        self.assert_one_line("nothing has no run.h5: results are", "nothing")
         Path("nothing/summary.csv").write_text("name,status\n")
         self.assert_one_line("nothing has no run with a run.h5", "nothing")
         Path("nothing/a/run.h5").write_bytes(b"half")

@@ -96,7 +96,7 @@ class Runs(unittest.TestCase):
         bare = Path("runs/bare")
         shutil.rmtree(bare, ignore_errors=True)
         bare.mkdir()
-        self.assert_one_line(bare, "has no run.h5: figures are drawn from runs of the kinds")
+        self.assert_one_line(bare, "has no run.h5: results are runs of the kinds")
         shutil.copy("runs/coarse/run.h5", bare)
         self.assert_one_line(bare, "has no increments that can be drawn")
         self.assert_one_line("runs/none", "does not exist")

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 
 from . import points
-from .packings import Packing, Packings
+from .packings import Packing, Packings, branches
 from .resolution import percent
 from .result import Increment, Missing, Result, Snapshot
 from .style import STRONG_FORCE, STRONGEST_FORCE, WEAK_FORCE, save
@@ -115,6 +115,21 @@ def draw_rve(axis: Axes, snapshot: Snapshot) -> None:
         colour = np.where(share >= STRONGEST, STRONGEST_FORCE, np.where(share >= STRONG, STRONG_FORCE, WEAK_FORCE))
         axis.add_collection(LineCollection(bars, linewidths=np.clip(0.9 * share[order], 0.1, 6), colors=colour[order]))
     frame_cell(axis, snapshot["cell"])
+
+
+def draw_packing(
+    axis: Axes, radius: np.ndarray, position: np.ndarray, cell: np.ndarray, contacts: np.ndarray | None = None
+) -> None:
+    """Draws the grains of a packing in its cell: radius (grain), position (grain, 2), cell (2, 2; columns are the
+    periodic vectors), all in m; contacts (contact, 2), where they are given, as lines between the grains."""
+    snapshot = {"cell": cell, "x": position[:, 0], "y": position[:, 1], "radius": radius}
+    inside = draw_grains(axis, snapshot, face="0.85", edge="0.45")
+    if contacts is not None and len(contacts):
+        i, j = contacts.T
+        start = inside[i]
+        lines = np.stack([start, start + branches(position, cell, i, j)], axis=1)
+        axis.add_collection(LineCollection(list(lines), linewidths=0.7, colors=STRONG_FORCE))
+    frame_cell(axis, cell)
 
 
 def branches_from(inside: np.ndarray, snapshot: Snapshot, chosen: np.ndarray) -> list[np.ndarray]:

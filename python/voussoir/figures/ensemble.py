@@ -1,78 +1,31 @@
 """The figures of an ensemble: means over its members with both bands, and the members as thin lines."""
 
-import tomllib
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from .. import ensembles
+from ..ensembles import INDEX, Bands
+from ..errors import Missing
 from . import scene
 from .resolution import percent
-from .result import Missing, Unreadable, check_format, plain, reading
 from .settings import Settings
 from .stresses import plain_ticks
 from .style import save
 
-INDEX = "ensemble.h5"
-NAMES = ("mean", "deviation", "mean_half_width", "prediction_half_width", "members")
 MEAN, FURTHER, MEMBER = "C0", "C1", "0.45"
 
 
-@dataclass
-class Bands:
-    """Values over the members; the bands are mean ± half width. `members` has one axis more, the first one."""
-
-    mean: np.ndarray
-    deviation: np.ndarray
-    mean_half_width: np.ndarray
-    prediction_half_width: np.ndarray
-    members: np.ndarray
-
-    def part(self, chosen: np.ndarray | int) -> "Bands":
-        """The bands of chosen rows."""
-        return Bands(
-            self.mean[chosen],
-            self.deviation[chosen],
-            self.mean_half_width[chosen],
-            self.prediction_half_width[chosen],
-            self.members[:, chosen],
-        )
-
-
-class Ensemble:
-    """An ensemble's means and bands; `settings` hold the volume losses that figures show."""
+class Ensemble(ensembles.Ensemble):
+    """An ensemble with the volume losses that figures show."""
 
     def __init__(self, folder: Path | str, settings: Settings | None = None) -> None:
-        self.folder = Path(folder)
         self.settings = settings or Settings()
-        self.left_out: list[Missing] = []  # as of a run: an ensemble's index is read whole or not at all
-        path = self.folder / INDEX
-        with reading(path) as file:
-            check_format(file, path, "voussoir ensemble")
-            self.case = tomllib.loads(plain(file["input"][()])) if "input" in file else {}
-            self.count = int(file["bands"].attrs["members"])
-            self.confidence = float(file["bands"].attrs["confidence"])
-            self.begun = len(file["members/name"])
-            self.stage = np.array([plain(value) for value in file["table/stage"][()]])
-            self.load = file["table/load_parameter"][()]
-            self.curves = {name: _bands(group) for name, group in file["curves"].items()}
-            self.tables = {
-                name: {column: _bands(group) for column, group in table.items()}
-                for name, table in file["tables"].items()
-            }
-            self.good_troughs = file["table/good_troughs"][()] if "table/good_troughs" in file else None
-            self.trough_x = file["trough/x"][()] if "trough" in file else None
-            self.trough = _bands(file["trough/settlement"]) if "trough" in file else None
-
-    def curve(self, name: str) -> Bands:
-        if name not in self.curves:
-            raise Missing(f"{self.folder / INDEX} has no curve {name}")
-        return self.curves[name]
+        super().__init__(folder)
 
     def losing(self) -> np.ndarray:
         """Rows of the volume loss."""
@@ -85,10 +38,6 @@ class Ensemble:
         left_out = self.begun - self.count
         further = f", {left_out} left out" if left_out else ""
         return f"{self.count} members{further}"
-
-
-def _bands(group: h5py.Group) -> Bands:
-    return Bands(*(group[name][()] for name in NAMES))
 
 
 def draw_bands(axis: Axes, x: np.ndarray, bands: Bands, ensemble: Ensemble, scale: float = 1.0) -> None:
@@ -268,19 +217,3 @@ FIGURES: dict[str, Callable[[Ensemble, Path], None]] = {
     "ensemble_specimen.png": draw_specimen,
     "ensemble_boundaries.png": draw_boundaries,
 }
-
-
-def is_ensemble(folder: Path) -> bool:
-    """True for the folder of a reduced ensemble. An ensemble without means and bands is told in one line."""
-    try:
-        if (folder / INDEX).exists():
-            return True
-        begun = (folder / "member_000").exists() and not (folder / "run.h5").exists()
-    except OSError as error:
-        raise Unreadable(f"{folder} cannot be read: {error.strerror}") from error
-    if begun:
-        raise Unreadable(
-            f"{folder} is an ensemble without {INDEX}: it is not finished, or fewer than two members are; each member "
-            "is a run of its own"
-        )
-    return False

@@ -1,14 +1,15 @@
 """Packing files (docs/reference/files.md, "Packings"): grains, contacts, and the normal forces that the linear law
 makes of the overlaps (kernels/contact/linear_law.hpp)."""
 
-import re
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from .result import Missing, Snapshot, Unreadable, check_format, plain, reading
+from ..errors import Missing, Unreadable
+from ..increments import Snapshot
+from ..packing_files import PackingFile
 from .soils import Curve, State, curve_of, name_of
 from .units import quantity
 
@@ -20,42 +21,8 @@ def branches(positions: np.ndarray, cell: np.ndarray, i: np.ndarray, j: np.ndarr
     return (cell @ (apart - np.round(apart))).T
 
 
-class Packing:
-    """One packing; lengths in m, grains as discs of the thickness."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        with reading(path) as file:
-            check_format(file, path, "voussoir packing")
-            self.radius, self.x, self.y = (file[name][()] for name in ("radius", "x", "y"))
-            self.cell = file["cell"][()]
-            self.contact_i, self.contact_j = file["contact_i"][()], file["contact_j"][()]
-            self.thickness = float(file.attrs["thickness"])
-            self.numbers = {name: float(value) for name, value in file["numbers"].attrs.items()}
-            self.labels = {name: str(plain(value)) for name, value in file["labels"].attrs.items()}
-        grains = len(self.radius)
-        whole = (
-            grains and len(self.x) == len(self.y) == grains and np.all(self.radius > 0) and self.cell.shape == (2, 2)
-        )
-        if not whole or not np.linalg.det(self.cell) > 0:
-            raise Unreadable(f"{path} cannot be read: its grains or its cell are impossible")
-        contacts = np.concatenate([self.contact_i, self.contact_j])
-        if len(contacts) and (contacts.min() < 0 or contacts.max() >= grains):
-            raise Unreadable(f"{path} cannot be read: a contact has a grain that does not exist")
-
-    @property
-    def recipe(self) -> str:
-        """What packings that differ by their seed alone have in common."""
-        return re.sub(r"\bseed \d+ ?", "", self.labels.get("recipe", ""))
-
-    @property
-    def seed(self) -> int:
-        return int(self.numbers.get("seed", 0))
-
-    @property
-    def void_ratio(self) -> float:
-        """Area of voids over area of grains [-], as the study's 2D void ratio; overlaps are not subtracted."""
-        return float(self.numbers.get("void_ratio", np.linalg.det(self.cell) / np.sum(np.pi * self.radius**2) - 1))
+class Packing(PackingFile):
+    """One packing with its soil by the study's names and the normal forces of its overlaps."""
 
     @property
     def soil(self) -> str:
@@ -151,20 +118,3 @@ class Packings:
         for packing in self.all:
             found.setdefault(packing.recipe or str(packing.path), []).append(packing)
         return [sorted(group, key=lambda packing: packing.seed) for group in found.values()]
-
-
-def packing_files(path: Path) -> list[Path]:
-    """The packing files that a path names: the file itself, or those in a folder of packings."""
-    if not path.is_dir():
-        return [path]
-    return sorted(path.glob("packing_*.h5")) or [path]
-
-
-def is_packing(path: Path) -> bool:
-    """True for a file in HDF5 by its name, and for a folder of packings that is no run."""
-    try:
-        if path.is_dir():
-            return not (path / "run.h5").exists() and any(path.glob("packing_*.h5"))
-        return path.suffix == ".h5" and path.exists()
-    except OSError as error:
-        raise Unreadable(f"{path} cannot be read: {error.strerror}") from error

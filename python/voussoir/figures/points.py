@@ -19,7 +19,7 @@ class Point:
 def history(result: Result, name: str, point: Point) -> np.ndarray:
     """A Gauss-point field at a point over the volume loss; (increment[, components])."""
     element, corner = divmod(point.index, 4)
-    return result.history(name)[:, element, corner]
+    return result.loss_history(name)[:, element, corner]
 
 
 def original_points(result: Result) -> np.ndarray:

@@ -1,18 +1,16 @@
 """A probe's responses and tangents (probe.csv) and its path (path.csv); columns: docs/reference/files.md."""
 
-import csv
 from pathlib import Path
 
 import numpy as np
 
-from .result import Missing, Unreadable
+from ..errors import Missing, Unreadable
+from ..files import Row, read_rows
 
 COMPONENTS = ("xx", "yy", "xy")
 STRAINED = {"xx": ("xx", 1), "yy": ("yy", 1), "xy": ("xy", 1), "-xx": ("xx", -1), "-yy": ("yy", -1)}
 
 LEAST_DIFFERENCE = 0.05  # of the normal stresses, over their sum, by which a rotation is told
-
-Row = dict[str, str]
 
 
 class Probe:
@@ -21,13 +19,15 @@ class Probe:
         self.left_out: list[Missing] = []
         stresses = [f"{what}_{c}_Pa" for what in ("stress", "change") for c in COMPONENTS]
         needed = ["seed", "replica", "probe", *stresses, "tangent_xxxx_Pa"]
-        self.rows = _read(folder / "probe.csv", needed)
+        self.rows = read_rows(folder / "probe.csv", needed)
         if not self.rows:
             raise Unreadable(f"{folder / 'probe.csv'} has no row")
         self.path: list[Row] = []
         if (folder / "path.csv").exists():
             try:
-                self.path = _read(folder / "path.csv", ["seed", "replica", "increment", "strain_yy", "stress_yy_Pa"])
+                self.path = read_rows(
+                    folder / "path.csv", ["seed", "replica", "increment", "strain_yy", "stress_yy_Pa"]
+                )
             except Missing as reason:
                 self.left_out.append(reason)
 
@@ -95,24 +95,3 @@ def carried(stress: np.ndarray, strained: str) -> np.ndarray:
     moved = sigma @ e
     change = (moved + moved.T) / 2 - np.trace(e) * sigma
     return np.array([change[0, 0], change[1, 1], change[0, 1]])
-
-
-def _read(path: Path, needed: list[str]) -> list[Row]:
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            reader = csv.DictReader(file)
-            missing = [column for column in needed if column not in (reader.fieldnames or ())]
-            if missing:
-                raise Unreadable(f"{path} cannot be read: it has no column {missing[0]}")
-            return list(reader)
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise Unreadable(f"{path} cannot be read: it is damaged ({error})") from error
-    except OSError as error:
-        raise Unreadable(f"{path} cannot be read: {error.strerror}") from error
-
-
-def is_probe(folder: Path) -> bool:
-    try:
-        return (folder / "probe.csv").exists() and not (folder / "run.h5").exists()
-    except OSError as error:
-        raise Unreadable(f"{folder} cannot be read: {error.strerror}") from error

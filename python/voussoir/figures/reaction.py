@@ -19,7 +19,7 @@ def curve(result: Result) -> tuple[np.ndarray, np.ndarray, float]:
     The stress is the mean of the element's four points, compression positive.
     """
     _ = result.start  # raises where the stress before the loss was not written
-    stress = -result.history("gauss/stress")[:, crown_elements(result)][..., 1].mean(axis=(1, 2))
+    stress = -result.loss_history("gauss/stress")[:, crown_elements(result)][..., 1].mean(axis=(1, 2))
     if not stress[0] > 0:
         raise Missing("the crown is not compressed before the volume loss")
     return result.volume_loss, stress / stress[0], stress[0]

@@ -6,12 +6,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
+from ..sweeps import Member
 from . import scene_boundaries
 from .result import Missing, Result
 from .scene import motions, stages
 from .scene_boundaries import Curve
 from .style import CYCLE, LINES, colours, save
-from .sweep import Member, Sweep
+from .sweep import Sweep
 
 MANY = len(CYCLE)  # more runs than these have the colours of a sequence
 

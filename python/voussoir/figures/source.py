@@ -6,12 +6,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ..element_results import is_probe
+from ..ensembles import is_ensemble
+from ..packing_files import is_packing, packing_files
+from ..sweeps import is_sweep
 from . import element_tests, ensemble
-from .packings import Packings, is_packing, packing_files
-from .probes import Probe, is_probe
+from .packings import Packings
+from .probes import Probe
 from .result import Missing, Result, RunIndex, Unreadable
 from .settings import Settings
-from .sweep import Sweep, is_sweep
+from .sweep import Sweep
 
 SORTS = {  # of runs, by their kind
     "scene": "a scene",
@@ -42,7 +46,7 @@ def open_source(paths: Sequence[Path], settings: Settings) -> Source:
     if is_sweep(path):
         sweep = Sweep(path, settings)
         return Source("a sweep", sweep, sweep.left_out)
-    if ensemble.is_ensemble(path):
+    if is_ensemble(path):
         return Source("an ensemble", ensemble.Ensemble(path, settings))
     if is_probe(path):
         probe = Probe(path)

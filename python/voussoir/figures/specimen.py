@@ -1,6 +1,7 @@
 """A drained biaxial test as a boundary-value problem (kind `biaxial_bvp`): load and displacement of the top platen,
 stress ratio and volume change, beside the spread of the Gauss points."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -56,7 +57,7 @@ def draw(result: Result, path: Path) -> None:
 
 def _draw_points(axis: Axes, result: Result, strain: np.ndarray, load: np.ndarray, name: str, factor: float) -> None:
     """The range of the Gauss points, where the run wrote their histories."""
-    table = result.tables.get("gauss_histories", {})
+    table: Mapping[str, np.ndarray] = result.tables.get("gauss_histories", {})
     wanted = ("p", "q") if name == "q_over_p" else (name,)
     if "load_parameter" not in table or any(column not in table for column in wanted):
         return

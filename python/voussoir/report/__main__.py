@@ -7,16 +7,15 @@ is that of the figure scripts (docs/reference/exit_status.md).
 import argparse
 import sys
 import time
-import warnings
 from pathlib import Path
 
 try:
     from voussoir.figures import guard, settings
     from voussoir.figures.output import make_folder, say, write
-    from voussoir.figures.result import Missing, Unreadable
+    from voussoir.figures.result import Missing
     from voussoir.figures.source import open_source
-    from voussoir.report import ensemble_page, run_page, sweep_page
-    from voussoir.report.parts import Builder
+    from voussoir.report import sweep_page
+    from voussoir.report.making import page_of
 except ModuleNotFoundError as missing:
     print(
         f"Python has no module {missing.name}; in a checkout .prefix/venv/bin/python has it, after tools/setup",
@@ -43,27 +42,10 @@ def options() -> argparse.ArgumentParser:
     return parser
 
 
-def built(folder: Path, arguments: argparse.Namespace) -> Builder:
-    only = arguments.only
-    try:
-        source = open_source([folder], settings.parse(arguments))
-    except Unreadable:
-        raise
-    except Missing as reason:  # as of a run whose first increment is still computed: it has a case and a provenance
-        return run_page.of_a_beginning(folder, reason)
-    if source.what == "a sweep":
-        return sweep_page.make(source.data, folder, only)
-    if source.what == "an ensemble":
-        return ensemble_page.make(source.data, folder, only)
-    return run_page.make(source, folder, only)
-
-
 def report(path: Path, output: Path, arguments: argparse.Namespace) -> int:
     """Makes one page, tells it in one line, and returns the exit status."""
     start = time.monotonic()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of NumPy, about missing values; tools/figures.py tells them
-        builder = built(path, arguments)
+    builder = page_of(path, settings.parse(arguments), arguments.only)
     page = builder.page.written()
     make_folder(output.parent)
     write(output, page)

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from voussoir.ensembles import Bands
 from voussoir.figures import reaction, settlements, troughs
-from voussoir.figures.ensemble import Bands
 from voussoir.figures.result import Increment, Missing, Result
 from voussoir.figures.study.bands import of_members
 from voussoir.figures.style import colours

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from voussoir.ensembles import INDEX
 from voussoir.figures.catalogue import Figures, figures_of
-from voussoir.figures.ensemble import INDEX, Ensemble
+from voussoir.figures.ensemble import Ensemble
 from voussoir.figures.result import Missing, Result
 from voussoir.figures.study import judging
 

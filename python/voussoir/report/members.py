@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from voussoir.figures.ensemble import INDEX, Bands, Ensemble
+from voussoir.ensembles import INDEX, Bands
+from voussoir.figures.ensemble import Ensemble
 from voussoir.figures.result import Increment, Missing, Result, plain, reading
 
 from . import ground

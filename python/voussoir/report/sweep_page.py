@@ -11,7 +11,7 @@ from voussoir.figures.result import Missing
 from voussoir.figures.study import judging
 from voussoir.figures.style import CYCLE
 from voussoir.figures.sweep import Sweep
-from voussoir.figures.sweep_table import COST, Run, SweepTable
+from voussoir.sweeps import COST, Run, SweepTable
 
 from . import facts, markup, paper_sentences, pictures, sweep_grounds
 from .fields import colour_maps

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from voussoir.ensembles import Bands
 from voussoir.figures import reaction, scene, scene_boundaries, settlements, troughs
 from voussoir.figures.element_tests import Series
-from voussoir.figures.ensemble import Bands
 from voussoir.figures.result import Missing, Result, RunIndex
 from voussoir.figures.settings import Settings
 from voussoir.figures.study.bands import number, of_members
 from voussoir.figures.study.data import Tunnel, equally_far
-from voussoir.figures.sweep_table import Run, SweepTable
+from voussoir.sweeps import Run, SweepTable
 
 from .pack import numbers
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from ..ensemble import Bands
+from ...ensembles import Bands
 
 CONFIDENCE = 0.95  # of all bands
 

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+from ...ensembles import INDEX, Bands
+from ...sweeps import kind_of
 from .. import settlements
-from ..ensemble import INDEX, Bands
 from ..resolution import percent
 from ..result import Missing, Result, Unreadable, plain, reading
 from ..settings import Settings
 from ..soils import NAMES
-from ..sweep import kind_of
 from .bands import Number, number, of_members
 
 SAME_LOSS = 1e-6  # two V_l that are nearer than this are one state [-]

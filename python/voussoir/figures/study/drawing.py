@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..ensemble import Bands
+from ...ensembles import Bands
 from ..style import CYCLE, LINES, save, set_note
 from .data import Tunnel
 

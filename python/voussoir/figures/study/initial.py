@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
+from ...ensembles import Bands
 from .. import chains, points, q8, stresses
-from ..ensemble import Bands
 from ..result import Missing
 from ..style import CYCLE, DIVERGING, SEQUENTIAL
 from .bands import of_members

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ...ensembles import Bands
 from .. import settlements, trough_fit, troughs
-from ..ensemble import Bands
 from ..resolution import percent
 from ..result import Missing, Result
 from ..style import MARKERS, colours
