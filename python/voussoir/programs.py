@@ -1,5 +1,6 @@
 """The program voussoir as a process of its own: where it is found, what it prints, how it ends."""
 
+import codecs
 import os
 import pty
 import select
@@ -81,6 +82,7 @@ class Process:
 
     def __post_init__(self) -> None:
         self._terminal, theirs = pty.openpty()
+        self._decoder = codecs.getincrementaldecoder("utf-8")("replace")
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115 - closed by `end`
         try:
             self._process = subprocess.Popen(
@@ -121,13 +123,15 @@ class Process:
         if not ready:
             return ""
         try:
-            return os.read(self._terminal, 65536).decode(errors="replace")
+            return self._decoder.decode(os.read(self._terminal, 65536))
         except OSError:  # the program has closed its end
             time.sleep(LOOK / 10)
             return ""
 
     def end(self) -> Ended:
         """Waits for the end and gives the terminal back."""
+        for _ in self.said():  # else the program may wait for its lines to be read
+            pass
         status = self._process.wait()
         os.close(self._terminal)
         with self._errors as errors:
