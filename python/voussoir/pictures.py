@@ -2,6 +2,7 @@
 
 import tempfile
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -62,18 +63,25 @@ class Picture:
 def figure(folder: Path, name: str = "", **settings: Any) -> Picture:
     """One figure of the results in a folder; see voussoir.shown.Shown.figure."""
     source = open_source([folder], Settings(**settings))
-    everything = figures_of(source.what)
-    if name and not {name, f"{name}.png", f"{name}.md"} & set(everything):
-        known = ", ".join(Path(file).stem for file in everything)
-        raise ValueError(f"there is no figure {name} of {source.what}; there are: {known}")
-    wanted = [name] if name else [stem for stem in FIRST if f"{stem}.png" in everything]
+    everything = _of(source, [name] if name else None)
+    wanted = everything if name else [file for stem in FIRST for file in everything if Path(file).stem == stem]
     reason = Missing(f"there is no picture of {source.what}")
-    for file in (file for stem in wanted for file in everything if stem in (file, Path(file).stem)):
+    for file in wanted:
         try:
             return _drawn(source, file)
         except Missing as missing:
             reason = missing
     raise reason
+
+
+def _of(source: Source, only: Sequence[str] | None) -> list[str]:
+    """The files of the figures of a source, all or only these, which are named with or without their ending."""
+    everything = list(figures_of(source.what))
+    for name in only or ():
+        if name not in everything and name not in (Path(file).stem for file in everything):
+            known = ", ".join(Path(file).stem for file in everything)
+            raise ValueError(f"there is no figure {name} of {source.what}; there are: {known}")
+    return [file for file in everything if only is None or {file, Path(file).stem} & set(only)]
 
 
 def _drawn(source: Source, file: str) -> Picture:
@@ -97,13 +105,19 @@ def _draw(source: Source, file: str, path: Path) -> None:
                 plt.close(number)
 
 
-def figures(folder: Path, output: Path | str | None = None, form: str = "png", **settings: Any) -> list[Path]:
+def figures(
+    folder: Path,
+    output: Path | str | None = None,
+    form: str = "png",
+    only: Sequence[str] | None = None,
+    **settings: Any,
+) -> list[Path]:
     """All figures of the results in a folder; see voussoir.shown.Shown.figures."""
     source = open_source([folder], Settings(**settings))
     to = Path(output) if output is not None else folder
     make_folder(to)
     written = []
-    for name in figures_of(source.what):
+    for name in _of(source, only):
         path = to / style.file_name(name, form)
         try:
             _draw(source, name, path)
@@ -116,12 +130,12 @@ def figures(folder: Path, output: Path | str | None = None, form: str = "png", *
     return written
 
 
-def report(folder: Path, file: Path | str | None = None, **settings: Any) -> Path:
+def report(folder: Path, file: Path | str | None = None, only: Sequence[str] | None = None, **settings: Any) -> Path:
     """The HTML page of the results in a folder; see voussoir.shown.Shown.report."""
     output = Path(file) if file is not None else folder / "report.html"
     before = set(plt.get_fignums())
     with matplotlib.rc_context():
-        page = page_of(folder, Settings(**settings)).page.written()
+        page = page_of(folder, Settings(**settings), only).page.written()
     for number in set(plt.get_fignums()) - before:
         plt.close(number)
     make_folder(output.parent)

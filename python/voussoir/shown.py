@@ -1,5 +1,6 @@
 """What all results have in common: one line for the terminal, a picture for a notebook, figures and the report page."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,15 +36,22 @@ class Shown:
 
         return pictures.figure(self.folder, name, **settings)
 
-    def figures(self, folder: Path | str | None = None, form: str = "png", **settings: Any) -> list[Path]:
-        """Draws all figures for which there are data, as png, pdf or svg, into a folder (the result's own), and
-        returns the files; those without data are left out."""
+    def figures(
+        self,
+        folder: Path | str | None = None,
+        form: str = "png",
+        only: Sequence[str] | None = None,
+        **settings: Any,
+    ) -> list[Path]:
+        """Draws the figures for which there are data, all or `only` these, as png, pdf or svg, into a folder (the
+        result's own), and returns the files; those without data are left out."""
         from . import pictures
 
-        return pictures.figures(self.folder, folder, form, **settings)
+        return pictures.figures(self.folder, folder, form, only, **settings)
 
-    def report(self, file: Path | str | None = None, **settings: Any) -> Path:
-        """Writes one HTML page, which needs no server and no network (report.html in the folder), and returns it."""
+    def report(self, file: Path | str | None = None, only: Sequence[str] | None = None, **settings: Any) -> Path:
+        """Writes one HTML page, which needs no server and no network (report.html in the folder), and returns it.
+        `only`: the figures on it; all of them unless it is given."""
         from . import pictures
 
-        return pictures.report(self.folder, file, **settings)
+        return pictures.report(self.folder, file, only, **settings)

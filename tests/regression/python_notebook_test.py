@@ -47,10 +47,10 @@ class Shown(unittest.TestCase):
         self.assertEqual(picture.save("one.png").read_bytes(), picture.content)
         with self.assertRaisesRegex(ValueError, "no figure weather of a biaxial specimen; there are: specimen"):
             result.figure("weather")
-        written = result.figures("drawn", form="svg")
-        self.assertIn(Path("drawn/specimen.svg"), written)
+        written = result.figures("drawn", form="svg", only=["specimen", "void_ratio.png"])
+        self.assertEqual(written, [Path("drawn/specimen.svg"), Path("drawn/void_ratio.svg")])
         self.assertTrue(all(path.stat().st_size > 1000 for path in written))
-        page = result.report("page.html")
+        page = result.report("page.html", only=["specimen"])
         self.assertIn("</html>", page.read_text())
 
     def test_drawing_leaves_the_reader_s_own_figures_alone(self):

@@ -10,6 +10,7 @@ import time
 import types
 import unittest
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
@@ -46,7 +47,7 @@ def interrupt_at(file):
 
 class Ends(unittest.TestCase):
     def test_a_run_gives_its_result(self):
-        lines = []
+        lines: list[str] = []
         result = voussoir.run("specimen.toml", "runs/good", progress=lines.append)
         run([PROGRAM, "run", "specimen.toml", "-o", "runs/by_hand"])
         check_same("runs/good", "runs/by_hand")
@@ -78,9 +79,8 @@ class Ends(unittest.TestCase):
         self.assertFalse(Path("runs/wrong").exists())
 
     def test_no_equilibrium_keeps_what_is_good(self):
-        hasty = {name: value for name, value in (setting.split("=") for setting in tiny_results.FAULT)}
         with self.assertRaisesRegex(voussoir.NoEquilibrium, "biaxial_bvp failed: .*; results up to there: ") as caught:
-            voussoir.run("specimen.toml", "runs/hasty", settings=hasty, threads=1)
+            voussoir.run("specimen.toml", "runs/hasty", settings=tiny_results.FAULT, threads=1)
         self.assertTrue(any("threads: 1 (--threads)" in line for line in caught.exception.lines))
         self.assertEqual(voussoir.open_result(caught.exception.folder).kind, "biaxial_bvp")
 
@@ -155,14 +155,14 @@ class Progress(unittest.TestCase):
         self.assertEqual(said("resume=True"), (b"", [""]))  # neither a terminal nor a notebook
 
     def test_a_bar_in_a_notebook(self):
-        shown = []
+        shown: list[str] = []
         output = types.SimpleNamespace(update=shown.append)
-        display = types.ModuleType("IPython.display")
-        display.HTML = str
-        display.display = lambda text, display_id: shown.append(text) or output
-        ipython = types.ModuleType("IPython")
+        ipython: Any = types.ModuleType("IPython")
         ipython.get_ipython = lambda: types.SimpleNamespace(kernel=1)
-        with mock.patch.dict(sys.modules, {"IPython": ipython, "IPython.display": display}):
+        ipython.display = types.ModuleType("IPython.display")
+        ipython.display.HTML = str
+        ipython.display.display = lambda text, **_: (shown.append(text), output)[1]  # type: ignore[func-returns-value]
+        with mock.patch.dict(sys.modules, {"IPython": ipython, "IPython.display": ipython.display}):
             self.assertIsInstance(progress.progress_of(None, "x"), progress.Notebook)
             voussoir.run("specimen.toml", "runs/bar")
         self.assertTrue(any('<progress value="1" max="2"></progress> biaxial_bvp' in text for text in shown), shown)
