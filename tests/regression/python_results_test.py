@@ -1,5 +1,5 @@
-"""Results in Python: every kind opens as NumPy arrays with the numbers and units of its files, as pandas and xarray have
-them, and as a notebook shows them; folders without results, damaged files and runs that go on are told."""
+"""Results in Python: every kind opens as NumPy arrays with the numbers and units of its files, and as pandas and xarray
+have them; folders without results, damaged files and runs that go on are told."""
 
 import os
 import shutil

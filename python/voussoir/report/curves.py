@@ -4,6 +4,7 @@ A chart is a dictionary for `charts.js`. Settlement and compression are positive
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -177,7 +178,7 @@ def _banded_settlements(members: Members, loads: np.ndarray) -> Chart:
     series = []
     for ratio, colour in _coloured_depths(members.all()[0]):
         _, bands = _lines(members, ratio, loads)
-        at_axis = Bands(*(part[..., 0] for part in vars(bands).values()))
+        at_axis = replace(bands, **{part: values[..., 0] for part, values in vars(bands).items() if part != "unit"})
         made = banded(depth_name(ratio), 100 * loads, at_axis, colour, MILLI)
         del made["further"]  # five pale bands would hide one another
         series.append(made)
