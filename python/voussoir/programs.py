@@ -21,8 +21,8 @@ LOOK = 0.1  # s between two looks at a process that prints nothing
 
 
 def find_program(program: Path | str | None = None) -> Path:
-    """The program: the argument, $VOUSSOIR, the one on the PATH, or the build of the checkout that this package stands
-    in. Raises voussoir.Error where there is none."""
+    """The program: the argument, $VOUSSOIR, the one on the PATH, or that of the checkout or the installation that this
+    package stands in. Raises voussoir.Error where there is none."""
     for given in (program, os.environ.get("VOUSSOIR")):
         if given:
             found = shutil.which(str(given))
@@ -32,6 +32,7 @@ def find_program(program: Path | str | None = None) -> Path:
     package = Path(__file__).resolve().parent
     built = [root / "host" / "voussoir" for root in (package.parents[1], package.parents[1] / "build" / "openmp")]
     built += sorted(package.parents[1].glob("build/*/host/voussoir"))
+    built.append(package.parents[3] / "bin" / "voussoir")  # of an installation, share/voussoir/python
     found = shutil.which("voussoir") or next((str(path) for path in built if os.access(path, os.X_OK)), None)
     if not found:
         raise Error(

@@ -24,7 +24,7 @@ LONG = {"volume_loss.increments": 1000, "volume_loss.total": "2 %"}
 
 
 def setUpModule():
-    for folder in ("runs", "out", "packings"):
+    for folder in ("runs", "out", "packings", "places"):
         fresh(folder)
     Path("tunnel.toml").write_text(tiny_results.GROUND)
     Path("specimen.toml").write_text(tiny_results.SPECIMEN)
@@ -190,12 +190,15 @@ class Words(unittest.TestCase):
         with mock.patch.object(programs, "__file__", str(Path("nowhere/deep/voussoir/programs.py").absolute())):
             with mock.patch.dict(os.environ, {"VOUSSOIR": "", "PATH": ""}):
                 self.assertRaisesRegex(voussoir.Error, "is not found: name it", programs.find_program)
-            built = Path("build/openmp/host/voussoir").absolute()
-            built.parent.mkdir(parents=True, exist_ok=True)
-            built.unlink(missing_ok=True)
-            built.symlink_to(PROGRAM)
-            for package in ("python", "build/openmp/python"):
-                there = Path(package, "voussoir", "programs.py").absolute()
+            for package, program in (
+                ("checkout/python", "checkout/build/openmp/host/voussoir"),
+                ("tree/build/openmp/python", "tree/build/openmp/host/voussoir"),
+                ("prefix/share/voussoir/python", "prefix/bin/voussoir"),
+            ):
+                built = Path("places", program).absolute()
+                built.parent.mkdir(parents=True)
+                built.symlink_to(PROGRAM)
+                there = Path("places", package, "voussoir", "programs.py").absolute()
                 with (
                     mock.patch.object(programs, "__file__", str(there)),
                     mock.patch.dict(os.environ, {"VOUSSOIR": "", "PATH": ""}),
