@@ -19,14 +19,13 @@ if(schemas)
   install(FILES ${schemas} DESTINATION "${voussoir_share}/schema" COMPONENT program)
 endif()
 
-# The figures and reports are Python. Their modules are found from the place of the command.
+# The figures and reports are modules of the Python package, which are found from the place of the command.
 set(voussoir_python_folder "${voussoir_share}/python")
-install(DIRECTORY tools/voussoir_plots tools/voussoir_report DESTINATION "${voussoir_python_folder}" COMPONENT program
+install(DIRECTORY python/voussoir DESTINATION "${voussoir_python_folder}" COMPONENT program
         PATTERN "__pycache__" EXCLUDE)
-install(FILES tools/figures.py DESTINATION "${voussoir_python_folder}" COMPONENT program)
 cmake_path(RELATIVE_PATH voussoir_python_folder BASE_DIRECTORY "${CMAKE_INSTALL_BINDIR}" OUTPUT_VARIABLE from_bin_to_python)
 set(VOUSSOIR_PYTHON "/usr/bin/env python3" CACHE STRING "Python of the commands voussoir-figures and voussoir-report")
-foreach(pair "figures;figures" "report;voussoir_report")
+foreach(pair "figures;voussoir.figures" "report;voussoir.report")
   list(POP_FRONT pair command)
   set(module ${pair})
   configure_file(cmake/voussoir_command.py.in "${PROJECT_BINARY_DIR}/voussoir-${command}" @ONLY)

@@ -14,7 +14,8 @@ import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
-from voussoir_plots import paper
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+from voussoir.figures import paper
 
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = ROOT / "build/openmp/host/voussoir"

@@ -8,15 +8,15 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
-import figures
 import numpy as np
 from figure_calls import call
 from program import PROGRAM, fresh, run
 from tiny_scene import CASE
-from voussoir_plots import openings, panels, q8, regions, scene, scene_boundaries, scene_ground, scene_lines
-from voussoir_plots.result import Missing, Result
+from voussoir.figures import __main__ as figures
+from voussoir.figures import openings, panels, q8, regions, scene, scene_boundaries, scene_ground, scene_lines
+from voussoir.figures.result import Missing, Result
 
 OF_EVERY_SCENE = {
     *("mesh", "boundary_curves", "boundary_reactions", "record_points", "record_regions", "section_lines"),

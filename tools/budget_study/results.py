@@ -6,9 +6,9 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from voussoir_plots.reaction import curve
-from voussoir_plots.result import Missing, Result
-from voussoir_plots.troughs import Trough
+from voussoir.figures.reaction import curve
+from voussoir.figures.result import Missing, Result
+from voussoir.figures.troughs import Trough
 
 # The results, with their units and the factor from SI to the unit.
 RESULTS = {

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import h5py
-from voussoir_plots.result import Missing, Unreadable
+from voussoir.figures.result import Missing, Unreadable
 
 from .definitions import Test
 from .plan import Set, Size

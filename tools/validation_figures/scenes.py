@@ -7,7 +7,7 @@ import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from voussoir_plots.style import CYCLE, save
+from voussoir.figures.style import CYCLE, save
 
 from .program import ROOT, Program
 
