@@ -142,9 +142,12 @@ int main(int argc, char** argv) {
   make_mistakes(rves, argv[1]);
 
   VoussoirRves* others = NULL;
+  VoussoirRves* rves_anew = NULL;
   check(voussoir_create(argv[1], 1, settings, NULL, NULL, &others) == voussoir_ok, "others are made");
   check(voussoir_destroy(others) == voussoir_ok, "they are freed");
-  check(voussoir_destroy(others) == voussoir_misuse && voussoir_size(others) == 0, "and not twice");
+  check(voussoir_create(argv[1], 1, settings, NULL, NULL, &rves_anew) == voussoir_ok, "and made anew");
+  check(voussoir_destroy(others) == voussoir_misuse && voussoir_size(others) == 0, "the old handle stays dead");
+  check(strstr(voussoir_last_error(), "freed by voussoir_destroy") != NULL, "and it is known what ended it");
   check(voussoir_stop() == voussoir_ok && voussoir_threads() == 0, "the threads end");
   check(voussoir_committed(rves, 2, stress, NULL) == voussoir_misuse, "the RVEs end with the threads");
   check(voussoir_start(1) == voussoir_misuse, "the threads start once in a process");

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -54,9 +55,12 @@ constexpr std::array<double, 4 * n> gradients{1e-5, 3e-5, -2e-5, -4e-5, 0, 5e-5,
 
 using Answer = std::array<double, 12 * n>;  ///< stresses, then tangents
 
-Answer answer_of(VoussoirRves* rves) {
+/// The answer to `scale` times the gradients.
+Answer answer_of(VoussoirRves* rves, double scale = 1) {
   Answer out{};
-  EXPECT_EQ(voussoir_evaluate(rves, n, gradients.data(), out.data(), out.data() + 3 * n, nullptr), voussoir_ok)
+  auto h = gradients;
+  for (double& number : h) number *= scale;
+  EXPECT_EQ(voussoir_evaluate(rves, n, h.data(), out.data(), out.data() + 3 * n, nullptr), voussoir_ok)
       << voussoir_last_error();
   return out;
 }
@@ -130,15 +134,22 @@ TEST(CInterface, AnIncrementThatBeginsAnewNeedsAnEvaluation) {
 /// Calls of other threads wait; each thread has its own sentence.
 TEST(CInterface, ThreadsMayCallAtOnce) {
   const Rves rves;
-  const Answer alone = answer_of(rves.get());
   EXPECT_EQ(voussoir_commit(nullptr), voussoir_misuse);
   std::vector<std::thread> threads;
+  std::atomic<int> ready = 0;
   std::array<int, 4> right{};
-  for (int& mine : right) {
-    threads.emplace_back([&] {
-      const bool has_no_error = std::string(voussoir_last_error()).empty();
+  std::array<Answer, 4> alone{};
+  for (std::size_t t = 0; t < alone.size(); ++t) alone[t] = answer_of(rves.get(), 0.1 * static_cast<double>(t));
+  for (std::size_t t = 0; t < alone.size(); ++t) {
+    threads.emplace_back([&, t] {
+      bool same = std::string(voussoir_last_error()).empty();
       const Rves own;
-      mine = has_no_error && answer_of(own.get()) == alone && answer_of(rves.get()) == alone;
+      for (ready += 1; ready < static_cast<int>(alone.size());) std::this_thread::yield();
+      for (int k = 0; k < 50; ++k) {
+        same = same && answer_of(own.get(), 0.1 * static_cast<double>(t)) == alone[t] &&
+               answer_of(rves.get(), 0.1 * static_cast<double>(t)) == alone[t];
+      }
+      right[t] = same ? 1 : 0;
     });
   }
   for (std::thread& thread : threads) thread.join();
