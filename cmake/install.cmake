@@ -1,5 +1,6 @@
 # The rules of `cmake --install`. No file that is installed names a folder of the build or of the sources. The component
-# `program` is what a user runs, the component `development` is what a foreign program is built with.
+# `program` is what a user runs, the component `development` is what a foreign program is built with, and the component
+# `library` what it needs when it runs.
 include(GNUInstallDirs)
 set(voussoir_share "${CMAKE_INSTALL_DATADIR}/voussoir")
 
