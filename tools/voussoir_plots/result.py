@@ -182,6 +182,7 @@ class Result(RunIndex):
             self.coordinates = mesh["coordinates"][()]
             self.connectivity = mesh["connectivity"][()]
             self.boundaries = {name: nodes[()] for name, nodes in mesh["boundaries"].items()}
+            self.points = {name: int(node) for name, node in mesh["points"].attrs.items()} if "points" in mesh else {}
             self.geometry = {name: float(value) for name, value in mesh["geometry"].attrs.items()}
             # Region of each element, and their names; None where the mesh has one region only.
             self.regions = mesh["regions"][()].ravel() if "regions" in mesh else None
