@@ -65,7 +65,7 @@ std::vector<std::string> region_lines(const Scene& scene) {
     double area = 0;
     int elements = 0;
     for (int e = 0; e < scene.mesh.n_elements(); ++e) {
-      if (!scene.mesh.region.empty() && scene.mesh.region_names[scene.mesh.region[e]] != region.name) continue;
+      if (!scene.mesh.in_region(e, region.name)) continue;
       ++elements;
       for (int p = 4 * e; p < 4 * e + 4; ++p) area += points.volumes[p];
     }

@@ -22,8 +22,8 @@ std::vector<int> dug_out_rank(const Scene& scene) {
   const auto n = static_cast<int>(scene.input.stages.size());
   for (int s = 0; s < n; ++s) {
     for (const ExcavateCase& dug : scene.input.stages[s].excavations) {
-      for (std::size_t e = 0; e < mesh.region.size(); ++e) {
-        if (mesh.region_names[mesh.region[e]] == dug.region) rank[e] = n - s;
+      for (int e = 0; e < mesh.n_elements(); ++e) {
+        if (mesh.in_region(e, dug.region)) rank[e] = n - s;
       }
     }
   }
@@ -121,10 +121,8 @@ std::vector<PlacedRecord> place_records(const Scene& scene) {
       place_line(record, *record.input.line, scene.mesh, rank, key);
       if (record.places.empty()) throw std::runtime_error(key + ".line: no point of the line lies in the ground");
     } else {
-      const auto& names = scene.mesh.region_names;
-      const auto index = static_cast<int>(std::find(names.begin(), names.end(), record.input.region) - names.begin());
       for (int e = 0; e < scene.mesh.n_elements(); ++e) {
-        if (scene.mesh.region.empty() || scene.mesh.region[e] == index) record.elements.push_back(e);
+        if (scene.mesh.in_region(e, record.input.region)) record.elements.push_back(e);
       }
     }
     records.push_back(std::move(record));

@@ -32,7 +32,8 @@ class Result(Shown):
 
     folder, kind ("tunnel", "biaxial", ...), case (the resolved case file as dictionaries), provenance (where the
     result comes from), tables (the named tables, each a Table: columns with units). Of a run on a mesh also
-    coordinates (node, 2) [m], connectivity (element, 8), boundaries (nodes by name), regions (element) or None,
+    coordinates (node, 2) [m], connectivity (element, 8), boundaries (nodes by name), points (node
+    by name), regions (element) or None,
     region_names, geometry (numbers of the ground), and the increments.
 
     Raises Unreadable where the folder has no results, or a file that is damaged. An increment that cannot be read is
@@ -67,6 +68,8 @@ class Result(Shown):
         self.coordinates: np.ndarray = mesh["coordinates"][()]
         self.connectivity: np.ndarray = mesh["connectivity"][()]
         self.boundaries: dict[str, np.ndarray] = {name: nodes[()] for name, nodes in mesh["boundaries"].items()}
+        named = mesh["points"].attrs.items() if "points" in mesh else ()
+        self.points: dict[str, int] = {name: int(node) for name, node in named}
         self.geometry = {name: float(value) for name, value in mesh["geometry"].attrs.items()}
         # Region of each element, and their names; None where the mesh has one region only.
         self.regions: np.ndarray | None = mesh["regions"][()].ravel() if "regions" in mesh else None

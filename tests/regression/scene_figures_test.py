@@ -131,6 +131,11 @@ class OfAnOpening(unittest.TestCase):
         motion = scene.Motion("hole", "x", True, ["1 m", "1 m"])
         (found,) = openings.pressure(result, motion, [increment])
         self.assertAlmostEqual(found, 200e3, delta=1)
+        result.coordinates = np.vstack([self.points, self.centre])
+        result.points = {"eye": 9}
+        fields.update({name: np.vstack([values, np.zeros(2)]) for name, values in fields.items()})
+        (found,) = openings.pressure(result, scene.Motion("hole", "x", True, "eye"), [increment])
+        self.assertAlmostEqual(found, 200e3, delta=1)
         self.assertRaises(Missing, openings.pressure, result, scene.Motion("gap", "x", True), [])
 
 

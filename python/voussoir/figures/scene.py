@@ -176,9 +176,12 @@ def mark_stages(axis: Axes, shown: Sequence[Stage], named: bool = True) -> None:
 
 
 def place_of(result: Result, written: Any) -> np.ndarray | None:
-    """The coordinates [m] of a point of the case: given as such, or a name that a built-in shape has; else None."""
+    """The coordinates [m] of a point of the case: given as such, or a name that run.h5 has; else None. A file without
+    points, as the first versions wrote them, still has those of the built-in shapes."""
     if isinstance(written, list) and len(written) == 2:
         return np.array([quantity(value) for value in written])
+    if str(written) in result.points:
+        return np.asarray(result.coordinates[result.points[str(written)]])
     low, high = result.coordinates.min(axis=0), result.coordinates.max(axis=0)
     corners = {
         "base_left": low,
