@@ -1,5 +1,5 @@
-"""The public names of the Python package voussoir with their docstrings, as Markdown; tools/reference_pages.py writes it
-into docs/reference/python.md.
+"""The public names of the Python package voussoir with their docstrings, as Markdown, which tools/reference_pages.py
+writes into docs/reference/python.md.
 
 The sources are read and not imported, so that the page needs neither the compiled module nor what single modules
 import. A name without a docstring is an error: the page is the only complete list.
@@ -30,7 +30,13 @@ class Module:
 def public_names() -> dict[str, list[str]]:
     """The public names of each module, from the table _MODULES of the package."""
     for node in Module("__init__").tree.body:
-        target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0] if isinstance(node, ast.Assign) else None
+        target = (
+            node.target
+            if isinstance(node, ast.AnnAssign)
+            else node.targets[0]
+            if isinstance(node, ast.Assign)
+            else None
+        )
         if isinstance(target, ast.Name) and target.id == "_MODULES":
             assert isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None
             return {module: list(names) for module, names in ast.literal_eval(node.value).items()}
@@ -42,7 +48,11 @@ def code(text: str) -> str:
 
 
 def decorators(node: ast.FunctionDef) -> set[str]:
-    return {d.id if isinstance(d, ast.Name) else d.attr for d in node.decorator_list if isinstance(d, ast.Name | ast.Attribute)}
+    return {
+        d.id if isinstance(d, ast.Name) else d.attr
+        for d in node.decorator_list
+        if isinstance(d, ast.Name | ast.Attribute)
+    }
 
 
 def documentation(node: ast.FunctionDef | ast.ClassDef) -> str:
@@ -99,7 +109,10 @@ def fields(module: Module, node: ast.ClassDef) -> str:
 
 def members(module: Module, node: ast.ClassDef, name: str) -> list[str]:
     """Fields, properties and methods, those of base classes in the same module too."""
-    own = [fields(module, node), *(member(part, f"{name}.{part.name}") for part in node.body if isinstance(part, ast.FunctionDef))]
+    own = [
+        fields(module, node),
+        *(member(part, f"{name}.{part.name}") for part in node.body if isinstance(part, ast.FunctionDef)),
+    ]
     for base in node.bases:
         found = module.definitions.get(base.id) if isinstance(base, ast.Name) else None
         if isinstance(found, ast.ClassDef):

@@ -1,4 +1,4 @@
-"""Packing files of the program (docs/reference/files.md) for the compiled module. The compiled module calls `read` and `write`, where
+"""Packing files of the program (docs/reference/files.md) by h5py. The compiled module calls `read` and `write`, where
 the program uses the HDF5 library."""
 
 import os
@@ -17,7 +17,7 @@ _format, _format_version = "voussoir packing", 1
 
 def _h5py() -> Any:
     try:
-        import h5py  # noqa: PLC0415 - only files need it
+        import h5py
     except ImportError as fault:
         raise ImportError("packing files need h5py: pip install h5py, or pip install 'voussoir[files]'") from fault
     return h5py
@@ -35,7 +35,9 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     if not path.is_file():
         raise FileNotFoundError(f"{path}: there is no such file")
     file = PackingFile(path)
-    packing: dict[str, Any] = {name: np.ascontiguousarray(getattr(file, name)) for name in (*_columns, "cell", "history")}
+    packing: dict[str, Any] = {
+        name: np.ascontiguousarray(getattr(file, name)) for name in (*_columns, "cell", "history")
+    }
     for name in ("thickness", "history_names", "numbers", "labels"):
         packing[name] = getattr(file, name)
     if file.content is not None and file.content != core().content_of(packing):

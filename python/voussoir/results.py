@@ -32,9 +32,8 @@ class Result(Shown):
 
     folder, kind ("tunnel", "biaxial", ...), case (the resolved case file as dictionaries), provenance (where the
     result comes from), tables (the named tables, each a Table: columns with units). Of a run on a mesh also
-    coordinates (node, 2) [m], connectivity (element, 8), boundaries (nodes by name), points (node
-    by name), regions (element) or None,
-    region_names, geometry (numbers of the ground), and the increments.
+    coordinates (node, 2) [m], connectivity (element, 8), boundaries (nodes by name), points (node by name), regions
+    (element) or None, region_names, geometry (numbers of the ground), and the increments.
 
     Raises Unreadable where the folder has no results, or a file that is damaged. An increment that cannot be read is
     left out, and `left_out` says why.
