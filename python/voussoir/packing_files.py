@@ -13,8 +13,9 @@ class PackingFile:
     """The grains of a packing file; lengths in m, grains as discs of the thickness.
 
     radius, x, y, rotation (grain), cell (2, 2; columns are the periodic vectors), contact_i, contact_j (contact),
-    history (contact, history_names; None of these in files of other programs), thickness, numbers (such as "void_ratio", "pressure" [Pa], "seed") and labels (the soil that it was made with);
-    content: the hash of the grains that the program wrote, or None.
+    history (contact, history_names; other programs write none), thickness, numbers (such as "void_ratio", "pressure"
+    [Pa], "seed") and labels (the soil that it was made with); content: the hash of the grains that the program wrote,
+    or None.
     """
 
     def __init__(self, path: Path | str) -> None:
