@@ -1,7 +1,7 @@
 """Voussoir in Python: grains as a material law, runs of the program and their results, figures and reports.
 
-Names are loaded when they are first used, so that `import voussoir` takes no time, and so that results can be read where
-the compiled module is missing. docs/tutorial/grains_in_a_notebook.md shows what the package is for.
+Names are loaded when they are first used, so that `import voussoir` takes no time, and so that results can be read
+where the compiled module is missing. docs/tutorial/grains_in_a_notebook.md shows what the package is for.
 """
 
 import importlib

@@ -15,7 +15,7 @@ from program import ROOT, check
 
 FENCE = re.compile(r"^```(\w*)\s*$")
 MARK = re.compile(r"<!-- test: (\w+)\s*(.*?)\s*-->\s*\Z", re.DOTALL)
-MARKS = {"", "checkout", "long", "instead", "add", "status", "file", "output"}
+MARKS = {"", "checkout", "skip", "long", "instead", "add", "status", "file", "output"}
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
@@ -149,6 +149,8 @@ def check_there(block):
 
 
 def do_bash(block, reader):
+    if block.mark == "skip":
+        return
     if block.mark in ("checkout", "long") and not reader.whole:
         if block.mark == "long":
             check_there(block)
