@@ -110,7 +110,7 @@ class OfTests(unittest.TestCase):
             result.table()["peak_angle"], stored("biaxial/run.h5", "tables/strength/peak_angle")
         )
         self.assertEqual(result.table().units["peak_angle"], "rad")
-        self.assertEqual(len(result.tables["seed_1_200_kPa"]["q"]), result.tables["seed_1_200_kPa"].rows)
+        self.assertEqual(len(result.tables["seed_1_400_kPa"]["q"]), result.tables["seed_1_400_kPa"].rows)
         with self.assertRaisesRegex(voussoir.Missing, "has no increments"):
             result.to_xarray()
 

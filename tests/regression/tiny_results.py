@@ -47,11 +47,11 @@ hasty = {json.dumps(FAULT)}
 PACKED = ["packing.grains=60", "packing.folder=packings_of_runs"]
 TESTS = [
     *PACKED,
-    "biaxial.inertial_number=5e-3",
-    "biaxial.strain=4 %",
-    "biaxial.samples=20",
+    "biaxial.inertial_number=1e-4",
+    "biaxial.strain=5 %",
+    "biaxial.samples=60",
     "engine.precision=float",
-    'biaxial.pressures=["200 kPa"]',
+    'biaxial.pressures=["400 kPa"]',
 ]
 SEARCH = [
     "packing.seeds=[1]",
@@ -80,9 +80,8 @@ MAKES = {
         command("pack", "runs/pack", ["packing.grains=60", "packing.folder=runs/packings", "packing.seeds=[1, 2]"])
     ),
     "probe": lambda: run(command("probe", "runs/probe", [*PACKED, "packing.seeds=[1]"])),
-    # Tests as quick as these do not hold their lateral stress, which is exit status 3.
-    "biaxial": lambda: run(command("biaxial", "runs/biaxial", [*TESTS, "packing.seeds=[1, 2]"]), code=3),
-    "calibrate": lambda: run(command("calibrate_cps_d", "runs/calibrate", [*TESTS, *SEARCH]), code=3),
+    "biaxial": lambda: run(command("biaxial", "runs/biaxial", [*TESTS, "packing.seeds=[1, 2]"])),
+    "calibrate": lambda: run(command("calibrate_cps_d", "runs/calibrate", [*TESTS, *SEARCH])),
 }
 
 
