@@ -8,8 +8,9 @@
 /// vector of stress is (xx, yy, xy); the strains that a tangent multiplies are (xx, yy, gamma_xy), gamma_xy = 2 eps_xy.
 ///
 /// Every function that can fail returns one of the codes below, which are the exit statuses of the program where the
-/// program has one. No C++ exception leaves a function, no function ends the process, and a call that is refused
-/// changes nothing. Wrong pointers cannot be found, except NULL and handles that are not, or no longer, those of RVEs.
+/// program has one. No C++ exception leaves a function, and a call that is refused changes nothing. No function ends
+/// the process, unless the memory ends within a thread of the engine. Wrong pointers cannot be found, except NULL and
+/// handles that are not, or no longer, those of RVEs.
 ///
 /// Any thread may call. Calls wait for one another, because an evaluation uses all threads of the engine by itself. The
 /// functions refuse to work in a process that was forked after voussoir_start.

@@ -54,7 +54,7 @@ def check_fortran():
     run(["gfortran", *flags, *map(str, files), "-o", "umat_host", *LINK])
     axial, off = {}, {}
     for way, increments in (("single", 20), ("batch", 20), ("batch", 40)):
-        said = run(["./umat_host", str(CASE), str(PACKINGS), "2", str(increments), "2e-3", way]).stdout
+        said = run(["./umat_host", str(CASE), f"packing.folder={PACKINGS}", "2", str(increments), "2e-3", way]).stdout
         print(said)
         axial[way, increments] = float(re.findall(r"point 2: stress \[Pa\] +\S+ +(\S+),", said)[0])
         off[way, increments] = float(re.findall(r"out of balance +(\S+),", said)[0])

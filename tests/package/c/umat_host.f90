@@ -1,7 +1,7 @@
 ! Stands in for a finite-element host with a UMAT: biaxial tests of several points, in which the vertical strain is
 ! given and the lateral stress stays. Newton's method finds the lateral strain, and calls UMAT point by point as a host
-! does. Arguments: a case file, the folder for packings, points, increments, vertical strain of the last point, and
-! `batch` or `single`. Prints what the points answer at the end.
+! does. Arguments: a case file, settings parted by commas, points, increments, vertical strain of the last point, and
+! `batch` or `single`. Prints what the first and the last point answer at the end.
 program umat_host
   use grains_umat
   implicit none
@@ -14,7 +14,9 @@ program umat_host
 
   call get_command_argument(1, case_file)
   call get_command_argument(2, settings)
-  settings = 'packing.folder=' // trim(settings)
+  do k = 1, len_trim(settings)
+    if (settings(k:k) == ',') settings(k:k) = new_line('a')
+  end do
   points = number(3)
   increments = number(4)
   call get_command_argument(5, word)
@@ -62,7 +64,7 @@ program umat_host
     end do
   end do
   call system_clock(clock(2))
-  do k = 1, points
+  do k = 1, points, max(1, points - 1)
     print '(a, i0, a, 2f14.3, a, es12.4)', 'point ', k, ': stress [Pa]', stress(1:2, k), ', lateral strain', &
       f_before(1, k) - 1
   end do
