@@ -35,6 +35,23 @@ def setUpModule():
     run([PROGRAM, "sweep", "runs/sweep.toml", "-o", "runs/sweep"])
 
 
+class Colours(unittest.TestCase):
+    def test_ground(self):
+        """Regions that are elastic on their own do not count for the colours, unless there are no others."""
+        wall = {"name": "wall", "elastic": {"modulus": "30 GPa"}}
+        result: Any = SimpleNamespace(
+            case={"region": [{"name": "sand"}, wall]},
+            region_names=["wall", "sand"],
+            regions=np.array([0, 1, 1]),
+            connectivity=np.zeros((3, 8), dtype=int),
+        )
+        self.assertEqual(regions.ground(result).tolist(), [False, True, True])
+        result.case = {"region": [{"name": "sand", "elastic": {}}, wall]}
+        self.assertEqual(regions.ground(result).tolist(), [True, True, True])
+        result.regions = None
+        self.assertEqual(regions.ground(result).tolist(), [True, True, True])
+
+
 class OfAScene(unittest.TestCase):
     def setUp(self):
         self.result = Result("runs/tiny")

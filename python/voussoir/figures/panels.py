@@ -73,9 +73,10 @@ def draw_rows(
         sharey=True,
         layout="constrained",
     )
+    ground = regions.ground(result)  # a wall bears some hundred kPa beside ground that bears some ten
     for row, (name, factor, label, colour_map, symmetric) in zip(axes, fields):
         values = [factor * since_start(result, name, i) for i in chosen]
-        range_of = limits(np.concatenate([v.ravel() for v in values]), symmetric)
+        range_of = limits(np.concatenate([v[ground].ravel() for v in values]), symmetric)
         for axis, increment, value, title in zip(row, chosen, values, titles):
             there = regions.alive(result, increment)
             moved = result.coordinates + increment.field("node/displacement")
@@ -88,7 +89,7 @@ def draw_rows(
             axis.set_aspect("equal")
             axis.grid(False)
             draw_interfaces(axis, result, moved, there)
-            axis.set_title(f"{title},  largest {largest(value):.3g}", fontsize=10)
+            axis.set_title(f"{title},  largest {largest(value[ground]):.3g}", fontsize=10)
         figure.colorbar(
             drawn, ax=list(row), label=label, shrink=0.85, extend="max" if not symmetric else "both", pad=0.01
         )

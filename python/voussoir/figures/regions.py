@@ -24,6 +24,16 @@ def alive(result: Result, increment: Increment) -> np.ndarray:
     return np.isfinite(values).any(axis=1)
 
 
+def ground(result: Result) -> np.ndarray:
+    """True for the elements outside of regions with an elastic material of their own, such as walls (element); for all
+    where each region has one."""
+    elastic = {entry.get("name") for entry in result.case.get("region", []) if "elastic" in entry}
+    if result.regions is None or not result.region_names:
+        return np.ones(len(result.connectivity), dtype=bool)
+    inside = ~np.isin(result.regions, [k for k, name in enumerate(result.region_names) if name in elastic])
+    return inside if inside.any() else ~inside
+
+
 def _sides(connectivity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """All sides of the elements as their three nodes (side, 3), and the element of each (side)."""
     nodes = connectivity[:, np.array(SIDES)].reshape(-1, 3)
