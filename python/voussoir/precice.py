@@ -96,7 +96,7 @@ class Hub:
         return self._ids
 
     def _batch_of(self, ids: np.ndarray, case: Any, settings: Any, packings: Any, options: dict[str, Any]) -> Any:
-        import voussoir  # noqa: PLC0415  (the compiled module is needed only here)
+        import voussoir
 
         if self._threads:
             voussoir.initialize(self._threads)
