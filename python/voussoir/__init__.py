@@ -1,7 +1,7 @@
 """Voussoir: soil mechanics from grains, for Python.
 
 The names of this package are loaded when they are first used, so that results can be read where the compiled module is
-missing. docs/how-to/use_from_python.md shows what the package is for.
+missing. python/README.md says what is where.
 """
 
 import importlib
