@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -68,7 +69,9 @@ Outcome GrainBatch::evaluate(std::span<const double> f_minus_i, const AnswerArra
   take_gradients(f_minus_i);
   trial_ = Trial::unfinished;
   if (std::exchange(increment_begins_, false)) batch_->begin_increment();
+  const auto begin = std::chrono::steady_clock::now();
   const fem::BatchReport report = batch_->evaluate(gradients_, stresses_, tangents_of(to.tangent));
+  engine_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   give(to, pool_->trial_reports());
   trial_ = report.usable ? Trial::usable : Trial::unusable;
   fault_ = report.message;

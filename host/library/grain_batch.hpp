@@ -72,6 +72,9 @@ class GrainBatch {
   /// @throws std::invalid_argument where a gradient is not finite; what a pause throws
   Outcome evaluate(std::span<const double> f_minus_i, const AnswerArrays& to);
 
+  /// Wall time of the last evaluation without what this class adds to the pool's own [s].
+  [[nodiscard]] double engine_seconds() const { return engine_seconds_; }
+
   /// Makes the state of the last evaluation the committed one, and begins an increment.
   /// @throws std::logic_error where there is no evaluation since the last commit, or the last one was not usable or did
   /// not end
@@ -109,6 +112,7 @@ class GrainBatch {
   bool increment_begins_ = true;
   Trial trial_ = Trial::none;
   std::string fault_;  ///< of an unusable trial
+  double engine_seconds_ = 0;
   std::vector<fem::Gradient> gradients_;
   mutable std::vector<fem::Stress> stresses_;
 };

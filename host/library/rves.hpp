@@ -54,7 +54,8 @@ class Session {
 /// `n` RVEs as a case describes them by its tables [soil], [packing] and [engine], and by `newton.tangent` where the
 /// kind has this key. Their packings are made, or found, or read from `packing.file`; `packing.variety` of them are
 /// spread over the RVEs. The RVEs begin at rest under the pressure of their packings, which is the committed stress.
-/// `packing.mirrored` is not obeyed: no RVE answers as its mirror image.
+/// `fields()` has what `output.microstructure` asks for. `packing.mirrored` is not obeyed: no RVE answers as its mirror
+/// image.
 /// @throws as make_packings
 [[nodiscard]] std::unique_ptr<fem::MaterialBatch> make_rves(const std::filesystem::path& case_file, std::size_t n,
                                                             const std::vector<std::string>& settings = {},

@@ -41,7 +41,7 @@ kernels::Work Piecewise::advance(kernels::RveBatch& batch, std::span<const kerne
   for (std::span<const int> left(order); !left.empty();) {
     double all = 0;
     for (const int rve : left) all += work_of(rve);
-    const double pieces = std::max(1.0, std::round(all * rate_ / piece_seconds));
+    const double pieces = std::max(1.0, std::round(all * rate_ / seconds_));
     double work = 0;
     std::size_t n = 0;
     while (n < left.size() && (pieces == 1 || work < all / pieces || n % widest_group != 0)) work += work_of(left[n++]);

@@ -20,6 +20,9 @@ class Piecewise {
   /// Wanted time of a piece [s]. A request to stop then waits for half of it on average.
   static constexpr double piece_seconds = 0.3;
 
+  /// @param seconds wanted time of a piece
+  explicit Piecewise(double seconds = piece_seconds) : seconds_(seconds) {}
+
   void set_pause(Pause pause) { pause_ = std::move(pause); }
 
   /// Advances as kernels::advance does, which without a pause is all.
@@ -31,6 +34,7 @@ class Piecewise {
   /// Time of a step of a grain in the last piece [s]. The first value is that of slow lanes, so that the first piece is
   /// rather too short.
   double rate_ = 2e-8;
+  double seconds_;
   Pause pause_;
 };
 

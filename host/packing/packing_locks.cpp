@@ -9,6 +9,7 @@
 
 #include "host/process/exit_code.hpp"
 #include "host/process/interrupt.hpp"
+#include "kernels/state/stop_request.hpp"
 
 namespace voussoir::host {
 
@@ -45,6 +46,7 @@ void PackingLock::wait() {
       std::fflush(stdout);
     }
     said = holder_;
+    kernels::end_where_stopped(kernels::stop_flag());
     if (interrupted())
       throw Interrupted(fmt::format("{}: the run was stopped on request while it waited for {}", name_, holder_));
     std::this_thread::sleep_for(nap);

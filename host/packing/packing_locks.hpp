@@ -24,7 +24,7 @@ class PackingLock {
   [[nodiscard]] bool take();
 
   /// Waits until the process that holds the lock gives it back or dies. Throws Interrupted where a request to stop
-  /// arrives meanwhile.
+  /// arrives meanwhile, and kernels::Stopped.
   void wait();
 
  private:

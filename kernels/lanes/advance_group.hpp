@@ -10,6 +10,7 @@
 #include "kernels/lanes/record.hpp"
 #include "kernels/lanes/restore.hpp"
 #include "kernels/lanes/sweep.hpp"
+#include "kernels/state/stop_request.hpp"
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
@@ -73,7 +74,7 @@ void park_rest(Run& run, int step, Queue& queue) {
   }
 }
 
-/// Makes one step of all lanes of a group. True where lanes may have ended.
+/// Makes one step of all lanes of a group. True where lanes may have ended. @throws Stopped
 template <class Run>
 [[nodiscard]] bool advance_step(Run& run, int step) {
   move_cells(run, step);
@@ -85,7 +86,10 @@ template <class Run>
     const Region region(run.regions, "sweep");
     measure ? sweep<Sweep::measure>(run, sums) : sweep<Sweep::advance>(run, sums);
   }
-  if (measure) judge_lanes(run, step, sums);
+  if (measure) {
+    end_where_stopped(run.stop);
+    judge_lanes(run, step, sums);
+  }
   return measure;
 }
 

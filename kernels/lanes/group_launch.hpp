@@ -12,6 +12,7 @@
 #include "kernels/course/flush_subnormals.hpp"
 #include "kernels/lanes/advance_group.hpp"
 #include "kernels/lanes/group_queue.hpp"
+#include "kernels/state/stop_request.hpp"
 
 namespace voussoir::kernels::lanes::inline VOUSSOIR_LANES {
 
@@ -23,8 +24,9 @@ class Worker {
   using Alone = GroupRun<typename LawOver<typename Run::Law, SingleLane<typename Run::real>>::type,
                          typename Run::Drive>;
 
-  Worker(RveBatch& batch, const EngineSettings& settings)
-      : batch_(&batch), settings_(settings), group_(std::make_unique<Run>()) {}
+  /// @param stop flag of the thread that has called; or null
+  Worker(RveBatch& batch, const EngineSettings& settings, const std::atomic<bool>* stop)
+      : batch_(&batch), settings_(settings), stop_(stop), group_(std::make_unique<Run>()) {}
 
   /// Runs tasks of the queue until there are none. @return the work of this worker without the RVEs' own steps
   [[nodiscard]] Work work_off(Queue& queue, std::span<const typename Run::Drive::Request> requests,
@@ -55,6 +57,7 @@ class Worker {
  private:
   RveBatch* batch_;
   EngineSettings settings_;
+  const std::atomic<bool>* stop_;
   std::unique_ptr<Run> group_;
   std::unique_ptr<Alone> alone_;
 
@@ -66,6 +69,7 @@ class Worker {
   void prepare(AnyRun& run, const typename Queue::Task& task, const RegionTeller::Turn& turn) {
     run.batch = batch_;
     run.settings = settings_;
+    run.stop = stop_;
     run.packing = &packing_of(task);
     run.regions = turn.regions();
   }
@@ -82,7 +86,7 @@ class Worker {
 };
 
 /// Advances the RVEs `rves` in groups on all cores of the host.
-/// @throws std::invalid_argument where the batch's histories are not the law's
+/// @throws std::invalid_argument where the batch's histories are not the law's; Stopped
 template <class Law, class Drive>
 Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, const EngineSettings& settings,
             std::span<RveReport> reports, std::span<const int> rves) {
@@ -96,6 +100,7 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
   const std::size_t workers = std::min(groups.size(), static_cast<std::size_t>(space.concurrency()));
   GroupQueue<Run> queue(batch, std::move(groups));
   RegionTeller teller;
+  const std::atomic<bool>* const stop = stop_flag();
   std::exception_ptr failure;
   std::atomic_flag failed;
   std::mutex adding;
@@ -106,7 +111,7 @@ Work launch(RveBatch& batch, std::span<const typename Drive::Request> requests, 
       [&](std::size_t) {
         const FlushSubnormals flush;
         try {
-          const Work done = Worker<Run>(batch, settings).work_off(queue, requests, reports, teller);
+          const Work done = Worker<Run>(batch, settings, stop).work_off(queue, requests, reports, teller);
           const std::lock_guard lock(adding);
           work += done;
         } catch (...) {  // for example no memory; an exception may leave the parallel region only in this way

@@ -3,6 +3,7 @@
 /// one such object and uses it for group after group.
 
 #include <array>
+#include <atomic>
 #include <vector>
 
 #include "kernels/contact/resting_pair.hpp"
@@ -46,7 +47,8 @@ struct GroupRun {
   std::vector<std::uint32_t> keys;       ///< scratch of a rebase
   std::vector<std::uint32_t> kept_keys;  ///< scratch of a rebase: contacts with history, and its numbers
   std::vector<double> kept_histories;
-  double tangent_seconds = 0;  ///< that the tangents of all groups so far have taken [s]
+  double tangent_seconds = 0;               ///< that the tangents of all groups so far have taken [s]
+  const std::atomic<bool>* stop = nullptr;  ///< see stop_request.hpp
   Regions regions;
 };
 

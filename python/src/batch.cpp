@@ -178,7 +178,9 @@ nb::tuple batch_of_case(const std::string& file, const std::vector<std::string>&
     const engine::Call call;
     const nb::gil_scoped_release free;
     const host::Case input = library::accepted(host::load_case(file, overrides));
-    host::PackingMix mix = library::mix_of(input, n, [&](const std::string& line) { notes.push_back(line); });
+    host::PackingMix mix;
+    engine::run_stoppable(
+        [&] { mix = library::mix_of(input, n, [&](const std::string& line) { notes.push_back(line); }); });
     std::vector<library::Grains> grains;
     for (host::PackedRve& rve : mix.packings) grains.push_back({std::move(rve), input.soil});
     batch = std::make_unique<Batch>(
@@ -206,6 +208,8 @@ void bind_batch(nb::module_& module) {
            [](Batch& batch) { return array_of(batch.run([](GrainBatch& grains) { return grains.packing_of(); })); })
       .def("device",
            [](Batch& batch) { return batch.run([](GrainBatch& grains) { return grains.device_sentence(); }); })
+      .def("engine_seconds",
+           [](Batch& batch) { return batch.run([](GrainBatch& grains) { return grains.engine_seconds(); }); })
       .def("snapshot", &snapshot, nb::arg("point"))
       .def(
           "packing",

@@ -5,14 +5,15 @@
 
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
 #include "host/library/rves.hpp"
+#include "kernels/state/stop_request.hpp"
 
 namespace nb = nanobind;
 
@@ -23,8 +24,8 @@ constexpr const char* after_fork =
     "voussoir was used in the parent process before fork(), and its threads are not in this one: start processes with "
     "the method \"spawn\" or \"forkserver\"";
 
-std::mutex guard;                         ///< of the two below
-std::optional<library::Session> session;  // NOLINT(cert-err58-cpp): the constructor of an empty optional throws nothing
+std::mutex guard;                     ///< of the two below
+library::Session* session = nullptr;  ///< left alone in a child of fork() and where the process ends without finish()
 std::set<Closable*> closables;
 std::atomic<bool> runs = false;
 std::atomic<bool> is_child = false;  ///< of fork(), after the start
@@ -34,7 +35,7 @@ std::atomic<int> calls = 0;
 void start_locked(int wanted) {
   if (ends) throw std::runtime_error("the engine has ended in this process and cannot start again");
   if (!session) {
-    session.emplace(wanted);
+    session = new library::Session(wanted);
     runs = true;
     static const int told = pthread_atfork(nullptr, nullptr, [] { is_child = true; });
     static_cast<void>(told);
@@ -72,7 +73,8 @@ void finish() {
   const std::lock_guard lock(guard);
   for (Closable* const open : closables) open->close();
   closables.clear();
-  session.reset();
+  delete session;
+  session = nullptr;
 }
 
 Call::Call() {
@@ -99,6 +101,31 @@ void look_for_signals() {
   if (ends) throw std::runtime_error("the interpreter ends");
   const nb::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
+void run_stoppable(const std::function<void()>& work) {
+  constexpr auto nap = std::chrono::milliseconds(50);
+  std::atomic<bool> stop = false;
+  std::promise<void> done;
+  std::future<void> end = done.get_future();
+  std::thread thread([&] {
+    const kernels::Stoppable stoppable(stop);
+    try {
+      work();
+      done.set_value();
+    } catch (...) {
+      done.set_exception(std::current_exception());
+    }
+  });
+  try {
+    while (end.wait_for(nap) != std::future_status::ready) look_for_signals();
+  } catch (...) {
+    stop = true;
+    thread.join();
+    throw;
+  }
+  thread.join();
+  end.get();
 }
 
 }  // namespace voussoir::python::engine

@@ -45,4 +45,8 @@ class Closable {
 /// lock. @throws nanobind::python_error of the signal's handler; std::runtime_error at the end
 void look_for_signals();
 
+/// Runs `work`, which has no pauses, in a thread of its own, and looks for signals meanwhile. To be called without the
+/// interpreter lock. @throws as `work` and look_for_signals
+void run_stoppable(const std::function<void()>& work);
+
 }  // namespace voussoir::python::engine

@@ -39,9 +39,11 @@ nb::tuple make_packings(const std::string& settings, const std::string& name, co
     const nb::gil_scoped_release free;
     const host::Case input = library::accepted(host::case_of_text(settings, name));
     const auto note = [&](const std::string& line) { notes.push_back(line); };
-    const std::vector<host::PackedRve> rves = stored ? host::obtain_packings(input.soil, input.packing, seeds, note,
-                                                                             host::Bias::left)
-                                                     : host::fresh_packings(input.soil, input.packing, seeds, note);
+    std::vector<host::PackedRve> rves;
+    engine::run_stoppable([&] {
+      rves = stored ? host::obtain_packings(input.soil, input.packing, seeds, note, host::Bias::left)
+                    : host::fresh_packings(input.soil, input.packing, seeds, note);
+    });
     for (const host::PackedRve& rve : rves) {
       files.push_back(library::file_of({rve, input.soil}, host::recipe_text(input.soil, input.packing, rve.seed)));
     }

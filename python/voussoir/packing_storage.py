@@ -60,17 +60,26 @@ def write(path: str | os.PathLike[str], packing: dict[str, Any]) -> None:
 
 
 def _fill(file: Any, packing: dict[str, Any]) -> None:
-    file.attrs["format"] = _format
+    h5py = _h5py()
+
+    def label(place: Any, name: str, text: str) -> None:  # of fixed length, which is what the program reads
+        length = max(1, len(text.encode()))
+        place.attrs.create(name, text, dtype=h5py.string_dtype("utf-8", length))
+
+    def column(name: str, unit: str) -> None:
+        file[name] = packing[name]
+        label(file[name], "unit", unit)
+
+    label(file, "format", _format)
     file.attrs["format_version"] = np.int64(_format_version)
     file.attrs["thickness"] = float(packing["thickness"])
     file.attrs["content"] = np.int64(core().content_of(packing))
-    for name in (*_columns, "cell"):
-        file[name] = packing[name]
-        file[name].attrs["unit"] = _units[name]
-    file["history"] = packing["history"]
-    file["history"].attrs["unit"] = "SI"
-    file["history"].attrs["names"] = ",".join(packing["history_names"])
-    for group in ("numbers", "labels"):
-        attributes = file.create_group(group).attrs
-        for name, value in packing[group].items():
-            attributes[name] = value
+    for name, unit in _units.items():
+        column(name, unit)
+    column("history", "SI")
+    label(file["history"], "names", ",".join(packing["history_names"]))
+    numbers, labels = file.create_group("numbers"), file.create_group("labels")
+    for name, value in packing["numbers"].items():
+        numbers.attrs[name] = float(value)
+    for name, text in packing["labels"].items():
+        label(labels, name, text)

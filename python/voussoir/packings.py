@@ -177,6 +177,7 @@ def load_packing(path: str | os.PathLike[str], *, settings: Settings | None = No
 
     Raises:
         FileNotFoundError: there is no such file
+        Unreadable: it is no packing file, or a damaged one
         ValueError: it is no packing of this program
         InputError: a setting is wrong
         ImportError: h5py is missing
