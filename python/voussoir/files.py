@@ -8,10 +8,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 
 from .errors import Missing, Unreadable
+
+try:
+    import h5py
+except ModuleNotFoundError as missing:
+    raise ModuleNotFoundError(
+        f"results are read by h5py; `pip install 'voussoir[files]'` or `pip install h5py` installs it ({missing})",
+        name=missing.name,
+    ) from missing
 
 FORMAT_VERSION = 1  # of docs/reference/files.md
 UNIT_IN_NAME = re.compile(r"_(Pa|m|rad)$")  # of a column of a csv file

@@ -35,6 +35,9 @@ class Result(Shown):
     coordinates (node, 2) [m], connectivity (element, 8), boundaries (nodes by name), points (node by name), regions
     (element) or None, region_names, geometry (numbers of the ground), and the increments.
 
+    figure, figures and report draw it (Shown). Probes have `ends` (the packings at the end of the path, by their
+    seeds), packings have `packings` (each a PackingFile).
+
     Raises Unreadable where the folder has no results, or a file that is damaged. An increment that cannot be read is
     left out, and `left_out` says why.
     """

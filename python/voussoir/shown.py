@@ -9,7 +9,8 @@ if TYPE_CHECKING:
 
 
 class Shown:
-    """A folder of results that can be drawn. Drawing needs matplotlib."""
+    """What Result, Ensemble and Sweep have in common: they can be drawn, which needs matplotlib, and a notebook shows
+    them."""
 
     folder: Path
     kind: str

@@ -1,9 +1,11 @@
 """What a notebook shows of results of each kind, of packings and tables; figures and the report page as functions."""
 
 import os
+import shutil
 import sys
 import unittest
 from pathlib import Path
+from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
@@ -30,6 +32,15 @@ class Shown(unittest.TestCase):
         self.assertIn("<td>no equilibrium</td>", voussoir.open_sweep("runs/sweep")._repr_html_())
         self.assertIn("2 increments of biaxial_bvp", repr(voussoir.open_result("runs/specimen")))
         self.assertIn("<td>rad</td>", voussoir.open_result("runs/biaxial").table()._repr_html_())
+
+    def test_what_cannot_be_drawn_is_left_out(self):
+        shutil.rmtree("begun", ignore_errors=True)
+        shutil.copytree("runs/specimen", "begun", ignore=shutil.ignore_patterns("increments"))
+        self.assertEqual(voussoir.open_result("begun")._repr_html_().count("<img"), 0)
+        with mock.patch("voussoir.pictures.figure", side_effect=ImportError("No module named 'matplotlib'")):
+            shown = voussoir.open_result("runs/specimen")._repr_html_()
+        self.assertIn("8 elements", shown)
+        self.assertNotIn("<img", shown)
 
     def test_a_packing_shows_its_grains(self):
         (file, *_) = sorted(Path("runs/packings").glob("*.h5"))

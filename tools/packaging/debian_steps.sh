@@ -46,6 +46,7 @@ report "tunnel_elastic: $((SECONDS - start)) s"
 start=$SECONDS
 voussoir run $cases/tunnel_quick/case.toml -o /tmp/quick
 report "tunnel_quick: $((SECONDS - start)) s"
+report "Python: $(PYTHONPATH=/usr/share/voussoir/python python3 -c 'import voussoir; print(voussoir.open_result("/tmp/quick"))')"
 start=$SECONDS
 voussoir-figures /tmp/quick
 voussoir-figures /tmp/elastic
