@@ -38,7 +38,8 @@ def run(
     out: folder of the results (out/TITLE of the case); of the kind pack, which has none, the packings are opened.
     settings: keys that replace those of the case, as {"packing.grains": 300, "ground.diameter": "6 m"} or as texts
     "table.key=value". resume: go on with an earlier run in the folder; replace: remove its results first. program: the
-    program (else $VOUSSOIR, the PATH, the checkout's build). threads: their number (OMP_NUM_THREADS, or all cores).
+    program (else that of the environment variable VOUSSOIR, of the PATH, of the checkout's build). threads: their
+    number (OMP_NUM_THREADS, or all cores).
     progress: None shows a bar in a notebook and a line in a terminal; False nothing; a function gets each line.
 
     Raises InputError where the input has a fault, NoEquilibrium where no equilibrium is found (`folder` of the

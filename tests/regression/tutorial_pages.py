@@ -7,6 +7,7 @@ import math
 import os
 import re
 import subprocess
+import sys
 import traceback
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -41,6 +42,10 @@ class Reader:
     said: str = ""
     smaller: bool = False  # whether a command of the page was made smaller for the test
     smaller_now: bool = False  # whether what was said last comes from such a command
+
+    def __post_init__(self):
+        """The reader's `python` is the one that runs the test."""
+        self.environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{self.environment['PATH']}"
 
 
 def blocks_of(page):
