@@ -15,6 +15,7 @@ material = "linear_elastic"
 gravity = {uniform_step = 0.5, ratio = 3}
 mesh = {file = "face.msh"}
 support = [{boundary = "base", fix = "xy"}, {boundary = ["axis", "right"], fix = "x"}]
+record = [{name = "strut", point = ["4 m", "1 m"]}, {name = "corner", point = ["4 m", "3 m"]}]
 region = [{name = "sand"}, {name = "pit"}, {name = "wall", elastic = {modulus = "1 GPa", poisson = 0.2}}]
 stage = [
   {name = "weight", gravity = 1},
@@ -80,11 +81,15 @@ check(abs(ends["yield"]["displacement_face_x"] + 1e-3) < 1e-9, "the face goes in
 check("traction_face_x" not in ends["dig"], "a curve inside the ground has no traction")
 check(np.isnan(ends["free"]["reaction_face_x"]) or ends["free"]["reaction_face_x"] == 0, "nothing holds the face")
 
-# The force of a held point, which has no column, is that of its node in the result files.
+# A recorded point has the force of what holds it as a point, and with it the reactions along y balance the weights.
+row = ends["yield"]
+weight = 20e3 * (COLUMNS * ROWS - 2) + 1e3 * (COLUMNS - 2)
+check(row["reaction_strut_y"] != 0 and row["reaction_strut_x"] == 0, "the point is held along y, and right owns its x")
+check(ends["dig"]["reaction_strut_y"] == 0, "nothing holds the point before")
+borne = row["reaction_base_y"] + row["reaction_strut_y"]
+check(abs(borne / weight - 1) < 2e-3, f"base and point bear {borne} N/m of {weight} N/m")
+check("reaction_corner_y" not in row, "a recorded point that only a boundary holds has no reaction of its own")
 with h5py.File(folder / "run.h5") as results:
     place = np.argmin(np.linalg.norm(results["mesh/coordinates"][:] - (4.0, 1.0), axis=1))
-with h5py.File(folder / f"increments/{ends['yield']['index']:04d}.h5") as increment:
-    reactions = increment["node/reaction"][:]
-base = ends["yield"]["reaction_base_y"]
-check(reactions[place, 1] != 0, "the point is held along y")
-check(abs(reactions[:, 1].sum() - reactions[place, 1] - base) < 1e-6 * base, "all reactions along y")
+with h5py.File(folder / f"increments/{row['index']:04d}.h5") as increment:
+    check(increment["node/reaction"][place, 1] == row["reaction_strut_y"], "the field has the same force")

@@ -150,7 +150,7 @@ def released_share(stage: Stage, boundary: str) -> float:
 
 
 def held_boundaries(result: Result) -> list[str]:
-    """The boundaries that have columns of reactions, by their names."""
+    """The boundaries and recorded points that have columns of reactions, by their names."""
     first, last = "reaction_", "_y"
     names = {n for i in result.increments for n in i.attributes if n.startswith(first) and n.endswith(last)}
     return sorted(name[len(first) : -len(last)] for name in names)
