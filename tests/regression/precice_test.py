@@ -1,0 +1,193 @@
+"""Voussoir's hub under the real Micro Manager, with a stand-in for preCICE (tests/precice_stand_in): it answers as its
+batch does, whatever is taken back, and it refuses what one batch cannot do, with a sentence."""
+
+import importlib.util
+import json
+import os
+import pickle
+import subprocess
+import sys
+import types
+from pathlib import Path
+
+import numpy as np
+from elastic_batch import ElasticBatch
+from launcher import on_ranks
+from program import ROOT, check
+
+NEEDED = ("voussoir", "micro_manager", "mpi4py", "psutil", "preciceadapterschema")
+WRITTEN = ("Stress-X", "Stress-Y", "Tangent-22", "Status")
+POINTS = 6
+
+
+def skip_where_something_is_missing():
+    sys.path.insert(0, str(ROOT / "tests/precice_stand_in"))
+    missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    try:
+        from mpi4py import MPI  # noqa: F401, PLC0415 - there may be no MPI on this machine
+    except (ImportError, RuntimeError) as reason:
+        missing.append(str(reason))
+    if missing:
+        print(f"skipped without {', '.join(missing)}")
+        raise SystemExit(77)
+
+
+def macro_side(windows=3, iterations=1, steps=1, total=False):
+    """Gradients of a shear and a compression that grow, each iteration nearer to the last one."""
+    one = 1e-4 * np.array([[0.5, 2.0], [1.0, -1.5]])
+    nearer = 1 + 0.3 * (iterations - 1 - np.arange(iterations))[:, None, None, None] / iterations
+    gradients = [nearer * (1 + np.arange(steps)[:, None, None] + steps * window * total) * one for window in range(windows)]
+    return {
+        "points": POINTS,
+        "windows": windows,
+        "iterations": iterations,
+        "steps": steps,
+        "gradients": [g.tolist() for g in gradients],
+    }
+
+
+def configuration(name, **parameters):
+    return {
+        "participant_name": "Micro-Manager",
+        "precice_config_file_path": "precice-config.xml",
+        "interfaces": [
+            {
+                "mesh_name": "Macro-Mesh",
+                "read_data": [{"name": name} for name in ("Gradient-X", "Gradient-Y")],
+                "write_data": [{"name": name} for name in WRITTEN],
+            }
+        ],
+        "micro_manager": {
+            "micro_file_names": [name],
+            "simulation_params": {"micro_dt": 1.0, "macro_domain_bounds": [0.0, 1.0, 0.0, 1.0], "decomposition": [1, 1], **parameters},
+        },
+    }
+
+
+def couple(name, macro, hub, flags=None, **parameters):
+    """Runs the Micro Manager once; returns what it wrote, (window, iteration, step, name, values)."""
+    import precice  # noqa: PLC0415 - only behind skip_where_something_is_missing
+    from micro_manager import MicroManagerCoupling  # noqa: PLC0415
+
+    from voussoir.precice import Point  # noqa: PLC0415
+
+    output = {"output": lambda point: point.hub.output(f"{name}_grains")} if name.startswith("output") else {}
+    module = types.ModuleType(name)
+    module.MicroSimulation = type("MicroSimulation", (Point,), {"hub": hub, **output})
+    sys.modules[name] = module
+    Path("macro.json").write_text(json.dumps(macro))
+    os.environ["VOUSSOIR_MACRO"] = str(Path("macro.json").absolute())
+    config = configuration(name, **parameters)
+    config["micro_manager"] |= flags or {}
+    Path(f"{name}.json").write_text(json.dumps(config))
+    precice.log.clear()
+    manager = MicroManagerCoupling(f"{name}.json", log_file=f"{name}.log")
+    manager.initialize()
+    manager.solve()
+    return list(precice.log)
+
+
+def expected(batch, macro, total=False):
+    """The same from the batch directly: each iteration begins at the start of its window."""
+    weights = 1 + 0.3 * np.arange(POINTS)[:, None, None] / POINTS
+    written, deformation = [], np.zeros((POINTS, 2, 2))
+    for window, iterations in enumerate(macro["gradients"]):
+        state, start = batch.state(), deformation
+        for iteration, steps in enumerate(iterations):
+            if iteration and len(steps) > 1:
+                batch.set_state(state)
+            deformation = start
+            for step, gradient in enumerate(steps):
+                asked = weights * np.array(gradient)
+                relative = (asked - deformation) @ np.linalg.inv(np.eye(2) + deformation) if total else asked
+                answer = batch.evaluate(relative)
+                values = (answer.stress[:, 0], answer.stress[:, 1], answer.tangent[:, 1, 1], answer.report["status"])
+                written += [(window, iteration, step, n, v) for n, v in zip(WRITTEN, values)]
+                deformation = asked if total else deformation
+                if step + 1 < len(steps) or iteration + 1 == len(iterations):
+                    batch.commit()
+    return written
+
+
+def check_same(name, found, wanted):
+    check(len(found) == len(wanted) > 0, f"{name}: {len(found)} data were written, not {len(wanted)}")
+    for (*place, values), (*place_wanted, values_wanted) in zip(found, wanted):
+        check(place == place_wanted and np.array_equal(values, values_wanted), f"{name}: {place} differs")
+
+
+def check_answers():
+    """Whatever is taken back, and wherever the gradients count from, the answers have the batch's own bits."""
+    from voussoir.precice import Hub  # noqa: PLC0415
+
+    for name, iterations, steps, total in (
+        ("explicit", 1, 1, False),
+        ("implicit", 3, 1, False),
+        ("substeps", 1, 2, False),
+        ("implicit_substeps", 2, 3, False),
+        ("total", 2, 2, True),
+        ("output", 2, 2, True),
+    ):
+        macro = macro_side(iterations=iterations, steps=steps, total=total)
+        hub = Hub(lambda ids: ElasticBatch(len(ids)), gradients="total" if total else "window")
+        found = couple(name, macro, hub)
+        check_same(name, found, expected(ElasticBatch(POINTS), macro, total))
+        evaluations = 3 * iterations * steps
+        check(hub.evaluations == evaluations, f"{name}: {hub.evaluations} evaluations, not {evaluations}")
+        check(list(hub.ids) == list(range(POINTS)), f"{name}: the batch has the points {hub.ids}")
+    files = sorted(Path("output_grains").glob("*.npz"))
+    check(len(files) == 3, f"there are fields of {len(files)} windows")
+    last = np.load(files[-1])
+    check(np.array_equal(last["stress"][:, 0], found[-4][-1]), "the fields of a window are those of its answers")
+
+
+def fails(name, sentence, macro, hub, flags=None, **parameters):
+    """The coupling ends with an exception that has this sentence."""
+    try:
+        couple(name, macro, hub, flags, **parameters)
+    except (Exception, SystemExit) as reason:
+        said = f"{reason}\n{Path(f'{name}.log').read_text() if Path(f'{name}.log').exists() else ''}"
+        check(sentence in said, f"{name}: '{sentence}' is not in: {said}")
+        return
+    check(False, f"{name}: nothing failed")
+
+
+def check_refusals():
+    from voussoir.precice import Hub, Point  # noqa: PLC0415
+
+    def elastic():
+        return Hub(lambda ids: ElasticBatch(len(ids)))
+
+    def breaking(ids):
+        batch = ElasticBatch(len(ids))
+        batch.fails = lambda h: h[:, 1, 1] < -3.55e-4
+        return batch
+
+    three = macro_side(windows=3, steps=2)
+    fails("broken", "2 of 6 points found no answer, global ids 4, 5", three, Hub(breaking))
+    adaptivity = {
+        "type": "local",
+        "data": ["Gradient-X"],
+        "history_param": 0.1,
+        "coarsening_constant": 0.9,
+        "refining_constant": 0.01,
+    }
+    fails("adaptive", "no adaptivity", macro_side(), elastic(), adaptivity=True, adaptivity_settings=adaptivity)
+    fails("one_for_all", "stateless", macro_side(), elastic(), {"micro_stateless_flags": [True]})
+    hub = elastic()
+    point = type("MicroSimulation", (Point,), {"hub": hub})(0)
+    answer = point.solve({"Gradient-X": [0.0, 0.0], "Gradient-Y": [0.0, 0.0]}, 1.0)
+    for name, deed, sentence in (
+        ("late", lambda: type(point)(1), "load balancing"),
+        ("state", lambda: pickle.dumps(point.get_state()), "cannot move"),
+        ("answer", lambda: pickle.dumps(answer), "cannot move"),
+        ("name", lambda: (answer["Stress-X"], answer["Stress-Z"]), "do not write Stress-Z"),
+        ("shape", lambda: point.solve({"Gradient-X": [np.nan, 0.0], "Gradient-Y": [0.0, 0.0]}, 1.0), "finite"),
+        ("number", lambda: point.set_global_id(3), "cannot become"),
+        ("grains", Hub, "come from one of"),
+    ):
+        try:
+            deed()
+        except (RuntimeError, ValueError, KeyError) as reason:
+            check(sentence in str(reason), f"{name}: {reason}")
+        else:
+            check(False, f"{name}: was not refused")
