@@ -5,10 +5,9 @@ the committed shape, stresses are Cauchy's. Units are Pa, m and N/m, and tension
 """
 
 import numpy as np
+import voussoir
 from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementQuadS2, ElementVector, FacetBasis, LinearForm, MeshQuad, MeshQuad2
-
-import voussoir
 
 ELEMENT = ElementVector(ElementQuadS2())
 
@@ -42,10 +41,10 @@ class Ground:
     def __init__(self, mesh, boundaries, make_batch):
         self.mesh = MeshQuad2.from_mesh(mesh).with_boundaries(boundaries)
         self.take_shape(self.mesh.doflocs.copy())
-        self.batch = make_batch(self.basis)
+        self.start, self.batch = self.basis, make_batch(self.basis)
         self.answer = self.batch.committed()
         self.tangent = self.first_tangent = self.answer.tangent
-        self.last, self.evaluations = self.basis.zeros(), 0
+        self.last, self.total, self.evaluations = self.basis.zeros(), self.basis.zeros(), 0
 
     def take_shape(self, x):
         nodes = self.mesh.dofs.element_dofs  # the ninth node goes where the eight shape functions have it
@@ -90,7 +89,8 @@ class Ground:
             left = norm(residual[free]) / max(norm(load), norm(residual[fixed])), norm(correction) / norm(du)
             if left[0] <= tolerance and left[1] <= 1e-2:
                 self.batch.commit()
-                self.last, self.reaction, x = du, -residual, self.mesh.doflocs.copy()
+                self.last, self.total, self.reaction = du, self.total + du, -residual
+                x = self.mesh.doflocs.copy()
                 moved = np.hstack([self.basis.nodal_dofs, self.basis.facet_dofs])  # as doflocs: corners, midsides
                 x[:, : moved.shape[1]] += du[moved]
                 return self.take_shape(x)

@@ -1,28 +1,29 @@
 """A smooth, rigid strip footing on weightless sand under a surcharge: scikit-fem's elements, Voussoir's grains.
 
-Half of the ground is computed, since it is symmetric about x = 0. It begins in isotropic stress, which is what the
-packings were consolidated at. `Ground` of scikit_fem_biaxial.py finds the equilibrium of an increment; this page adds
-steps that are cut where there is none, mirrored packings, and the picture. Lengths are in m, stresses in Pa.
+Half of the ground is computed, since it is symmetric about x = 0. It begins under the isotropic pressure at which the
+packings were made. `Ground` of scikit_fem_biaxial.py finds the equilibrium of an increment; here steps are cut where
+there is none, and half of the points answer as mirror images. Lengths are in m, stresses in Pa.
 
-    python scikit_fem_footing.py [FIGURE.png]
+    python scikit_fem_footing.py [FIGURE.png [STEPS of 1.5 mm]]
 """
 
 import sys
 
 import matplotlib.pyplot as plt
 import numpy as np
+import voussoir
 from matplotlib.collections import PolyCollection
 from scikit_fem_biaxial import Ground
 from skfem import MeshQuad
-
-import voussoir
 
 HALF_WIDTH = 0.5  # of the footing
 
 
 def graded(start, end, cells, ratio):
     """Places of a row of cells, each `ratio` times as wide as the one before."""
-    return start + (end - start) * np.append(0, np.cumsum(ratio ** np.arange(cells))) / np.sum(ratio ** np.arange(cells))
+    return start + (end - start) * np.append(0, np.cumsum(ratio ** np.arange(cells))) / np.sum(
+        ratio ** np.arange(cells)
+    )
 
 
 def grid(width=4.0, depth=2.5, cells=(4, 8, 8)):
@@ -46,12 +47,12 @@ def in_turn(basis):
 
 def footing(make_batch, settlement=0.03, steps=20, p0=100e3, smallest=1 / 64, mesh=None, **criterion):
     """Yields settlement [m], pressure under the footing [Pa], and the ground, after each increment."""
-    ground = Ground(*(mesh or grid()), make_batch)
+    mesh, boundaries = mesh or grid()
+    ground = Ground(mesh, boundaries, make_batch)
     dofs = ground.basis.get_dofs
     base, sides, under = dofs("base").all(), dofs("sides").all("u^1"), dofs("footing").all("u^2")
     fixed = np.unique(np.concatenate([base, sides, under]))
     planned = np.where(np.isin(fixed, under), -settlement / steps, 0.0)
-    ground.total = ground.basis.zeros()  # displacement since the start
     done, share, last = 0.0, 1.0, 1.0  # steps done, share of a step that is tried, share that was committed last
     while done < steps - 1e-9:
         share = min(share, steps - done)
@@ -65,13 +66,12 @@ def footing(make_batch, settlement=0.03, steps=20, p0=100e3, smallest=1 / 64, me
             print(f"step {done + 1:.3f} is cut to {share:g}: {reason}")
             continue
         done, last, share = done + share, share, min(1.0, 2 * share)
-        ground.total += ground.last
         yield done * settlement / steps, p0 - ground.reaction[under].sum() / HALF_WIDTH, ground
 
 
-def draw(ground, first, curve, file):
+def draw(ground, curve, file):
     """Deviatoric strain since the start, on the deformed mesh, and the pressure under the footing."""
-    gradient = first.interpolate(ground.total).grad
+    gradient = ground.start.interpolate(ground.total).grad
     strain = np.hypot(gradient[0, 0] - gradient[1, 1], gradient[0, 1] + gradient[1, 0]).mean(1)
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 3.6), width_ratios=(2, 1), layout="constrained")
     corners = ground.mesh.doflocs[:, ground.mesh.t].T
@@ -86,16 +86,16 @@ def draw(ground, first, curve, file):
 
 if __name__ == "__main__":
     packings = voussoir.make_packings(seeds=4, grains=200, pressure=100e3)
-    curve, first = [], []
+    file, steps = sys.argv[1] if len(sys.argv) > 1 else "footing.png", int(sys.argv[2]) if len(sys.argv) > 2 else 20
+    curve = [(0.0, 100e3)]
 
     def make_batch(basis):
-        first.append(basis)
         return voussoir.RveBatch(packings, basis.dx.size, mirrored=in_turn(basis))
 
     try:
-        for settlement, pressure, ground in footing(make_batch):
+        for settlement, pressure, ground in footing(make_batch, 1.5e-3 * steps, steps):
             curve.append((settlement, pressure))
-            print(f"{1e3 * settlement:6.2f} mm: {pressure / 1e3:7.1f} kPa after {ground.evaluations} evaluations")
+            print(f"{1e3 * settlement:5.1f} mm: {pressure / 1e3:6.1f} kPa after {ground.evaluations} evaluations")
     except voussoir.NoEquilibrium as reason:
         print(f"no further: {reason}")
-    draw(ground, first[0], np.array(curve), sys.argv[1] if len(sys.argv) > 1 else "footing.png")
+    draw(ground, np.array(curve), file)

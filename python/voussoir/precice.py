@@ -21,6 +21,8 @@ from typing import Any
 
 import numpy as np
 
+from voussoir.errors import Error
+
 try:
     from micro_manager import MicroSimulationInterface
 except ImportError:  # outside the Micro Manager: the hub can be used and tested all the same
@@ -37,17 +39,18 @@ class Hub:
     The grains come from one of
 
     - `case` and `settings`: a case file and overrides "key=value", as for `voussoir.RveBatch.from_case`;
-    - `packings` and further arguments of `voussoir.RveBatch` (`preset`, `tangent`, ...); point g, by its global id, has
+    - `packings` and further arguments of `voussoir.RveBatch` (`preset`, `tangent`, ...); the point of global id g has
       packing g modulo their number, whichever rank it is on;
     - `make_batch`, which is called with the global ids of the points of this process, in ascending order (n,).
 
-    `gradients` says from where the displacement gradients count that the macro side sends: "window" from the start of
-    the time window, as updated Lagrangian codes have them, or "total" from the start of the coupling. `tangents=False`
-    saves the cost of tangents. `threads` are those of this process (`voussoir.initialize`); 0 takes all that it may use.
+    `gradients` says from where the displacement gradients of the macro side count: "window" from the start of the time
+    window, as updated Lagrangian codes have them, or "total" from the start of the coupling. `tangents=False` saves
+    the cost of tangents. `threads` are those of this process (`voussoir.initialize`); 0 takes all that it may use.
 
-    An evaluation is accepted (committed) by the next `get_state`, `output` or `solve`, unless `set_state` takes it back.
-    A window whose steps are smaller than the window is taken back to its start, too: the state of its start is kept
-    while there is more than one step.
+    An evaluation is accepted (committed) by the next `get_state`, `output` or `solve`, unless `set_state` takes it
+    back. Where a window has several steps, the state of its start is kept to go back to.
+
+    Grains that find no answer raise `voussoir.Error` with the global ids of their points.
     """
 
     def __init__(
@@ -74,7 +77,7 @@ class Hub:
         self._threads = threads
         self._members: weakref.WeakValueDictionary[int, Point] = weakref.WeakValueDictionary()
         self._batch: Any = None
-        self._ids = np.zeros(0, int)
+        self._ids: np.ndarray = np.zeros(0, int)
         self._requests: dict[int, _Answer] = {}
         self._pending = False  # an evaluation that neither has been accepted nor taken back
         self._start: _Start | None = None  # the state at the start of the window, where it can be taken back
@@ -185,7 +188,7 @@ class Hub:
         if not answer.usable:
             failed = self._ids[np.isnan(answer.stress).any((1, 2))].tolist()
             named = ", ".join(map(str, failed[:8])) + (", ..." if len(failed) > 8 else "")
-            raise RuntimeError(
+            raise Error(
                 f"the grains of {len(failed)} of {len(self._ids)} points found no answer, global ids {named}: "
                 f"{answer.message}. A smaller time window may help"
             )
@@ -232,7 +235,7 @@ class _Answer(dict[str, Any]):
         raise RuntimeError(f"an answer of the hub cannot move to another process: {REFUSED}")
 
 
-class Point(MicroSimulationInterface):  # type: ignore[misc]  # the Micro Manager has no types of its own
+class Point(MicroSimulationInterface):
     """One micro simulation. A subclass `MicroSimulation` names the hub.
 
     The macro side sends the vectors Gradient-X = (du_x/dx, du_x/dy) and Gradient-Y = (du_y/dx, du_y/dy) [-]; `read`

@@ -1,8 +1,8 @@
 """A stand-in for pyprecice, with which the Micro Manager runs alone: the macro side is a file of numbers.
 
-VOUSSOIR_MACRO names a JSON file: `points` (how many), `iterations` (of each time window), `windows`, `steps` (of each
-window), and `gradients`, a list of [window][iteration][step] of the gradient [[xx, xy], [yx, yy]] of a point of weight 1;
-point p of n has the weight 1 + 0.3 p/n. What is written goes to `log`, in the order of writing.
+VOUSSOIR_MACRO names a JSON file: `points` (how many), `windows`, `iterations` of each time window, `steps` of each
+window, and `gradients`, a list of [window][iteration][step] of the gradient [[xx, xy], [yx, yy]] of a point of weight
+1; point p of n has the weight 1 + 0.3 p/n. What is written goes to `log`, in the order of writing.
 """
 
 import json
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-log = []
+log: list[tuple] = []
 
 
 class Participant:

@@ -5,8 +5,10 @@ import importlib.util
 import json
 import os
 import pickle
+import shutil
 import subprocess
 import sys
+import time
 import types
 from pathlib import Path
 
@@ -36,7 +38,9 @@ def macro_side(windows=3, iterations=1, steps=1, total=False):
     """Gradients of a shear and a compression that grow, each iteration nearer to the last one."""
     one = 1e-4 * np.array([[0.5, 2.0], [1.0, -1.5]])
     nearer = 1 + 0.3 * (iterations - 1 - np.arange(iterations))[:, None, None, None] / iterations
-    gradients = [nearer * (1 + np.arange(steps)[:, None, None] + steps * window * total) * one for window in range(windows)]
+    gradients = [
+        nearer * (1 + np.arange(steps)[:, None, None] + steps * window * total) * one for window in range(windows)
+    ]
     return {
         "points": POINTS,
         "windows": windows,
@@ -59,7 +63,12 @@ def configuration(name, **parameters):
         ],
         "micro_manager": {
             "micro_file_names": [name],
-            "simulation_params": {"micro_dt": 1.0, "macro_domain_bounds": [0.0, 1.0, 0.0, 1.0], "decomposition": [1, 1], **parameters},
+            "simulation_params": {
+                "micro_dt": 1.0,
+                "macro_domain_bounds": [0.0, 1.0, 0.0, 1.0],
+                "decomposition": [1, 1],
+                **parameters,
+            },
         },
     }
 
@@ -68,13 +77,11 @@ def couple(name, macro, hub, flags=None, **parameters):
     """Runs the Micro Manager once; returns what it wrote, (window, iteration, step, name, values)."""
     import precice  # noqa: PLC0415 - only behind skip_where_something_is_missing
     from micro_manager import MicroManagerCoupling  # noqa: PLC0415
-
     from voussoir.precice import Point  # noqa: PLC0415
 
     output = {"output": lambda point: point.hub.output(f"{name}_grains")} if name.startswith("output") else {}
-    module = types.ModuleType(name)
-    module.MicroSimulation = type("MicroSimulation", (Point,), {"hub": hub, **output})
-    sys.modules[name] = module
+    sys.modules[name] = types.ModuleType(name)
+    vars(sys.modules[name])["MicroSimulation"] = type("MicroSimulation", (Point,), {"hub": hub, **output})
     Path("macro.json").write_text(json.dumps(macro))
     os.environ["VOUSSOIR_MACRO"] = str(Path("macro.json").absolute())
     config = configuration(name, **parameters)
@@ -191,3 +198,71 @@ def check_refusals():
             check(sentence in str(reason), f"{name}: {reason}")
         else:
             check(False, f"{name}: was not refused")
+
+
+def check_grains(packings):
+    """A hub has the bits of its batch, and of a batch for each point, which takes longer."""
+    import voussoir  # noqa: PLC0415
+    from voussoir.precice import Hub  # noqa: PLC0415
+
+    class OneByOne:
+        """A batch for each point behind the interface of one: what a micro simulation without a hub would have."""
+
+        def __init__(self, ids):
+            self.batches = [voussoir.RveBatch(packings[g % len(packings)], 1) for g in ids]
+
+        def evaluate(self, h, tangent):
+            answers = [batch.evaluate(h[k : k + 1], tangent) for k, batch in enumerate(self.batches)]
+            parts = (np.concatenate(part) for part in zip(*(answer[:3] for answer in answers)))
+            return voussoir.Answer(*parts, True, "")
+
+        def commit(self):
+            for batch in self.batches:
+                batch.commit()
+
+    macro = macro_side(2, 2)
+    hubs = {"hub": Hub(packings=packings), "one_by_one": Hub(OneByOne)}
+    written, seconds = {}, {}
+    for name, hub in hubs.items():
+        begin = time.perf_counter()
+        written[name] = couple(name, macro, hub)
+        seconds[name] = time.perf_counter() - begin
+    check_same("grains", written["hub"], expected(voussoir.RveBatch(packings, POINTS), macro))
+    check_same("one by one", written["one_by_one"], written["hub"])
+    print(f"{POINTS} points: hub {seconds['hub']:.2f} s, a batch for each point {seconds['one_by_one']:.2f} s")
+
+
+def check_ranks(packings):
+    """Two ranks with a batch each give the bits of one."""
+    files = []
+    for k, packing in enumerate(packings):
+        files.append(f"packing_{k}.h5")
+        packing.save(files[-1])
+    script = str(ROOT / "tests/regression/precice_ranks.py")
+    environment = dict(os.environ)  # as it was before MPI of this process made mpirun take itself for a rank
+    found = {}
+    for size in (1, 2):
+        words = on_ranks(size, [sys.executable, script, *files])
+        done = subprocess.run(words, check=False, capture_output=True, text=True, timeout=100, env=environment)
+        check(done.returncode == 0, f"{size} ranks end with {done.returncode}: {done.stdout}{done.stderr}")
+        parts = [np.load(f"rank_{rank}_of_{size}.npz") for rank in range(size)]
+        check(all(part["evaluations"] == 4 for part in parts), f"{size} ranks: more than four evaluations")
+        found[size] = np.concatenate([part["stress"] for part in parts], axis=1)
+        check(list(np.concatenate([part["ids"] for part in parts])) == list(range(POINTS)), f"{size} ranks: points")
+    check(np.array_equal(found[1], found[2]), "two ranks differ from one")
+
+
+def main():
+    skip_where_something_is_missing()
+    import voussoir  # noqa: PLC0415
+
+    packings = voussoir.make_packings(seeds=2, grains=60, pressure=100e3)
+    check_answers()
+    check_refusals()
+    check_grains(packings)
+    if shutil.which("mpirun"):
+        check_ranks(packings)
+
+
+if __name__ == "__main__":
+    main()
