@@ -40,15 +40,18 @@ class Ground:
 
     def __init__(self, mesh, boundaries, make_batch):
         self.mesh = MeshQuad2.from_mesh(mesh).with_boundaries(boundaries)
-        self.take_shape(self.mesh.doflocs.copy())
+        self.move()
         self.start, self.batch = self.basis, make_batch(self.basis)
         self.answer = self.batch.committed()
         self.tangent = self.first_tangent = self.answer.tangent
         self.last, self.total, self.evaluations = self.basis.zeros(), self.basis.zeros(), 0
 
-    def take_shape(self, x):
-        nodes = self.mesh.dofs.element_dofs  # the ninth node goes where the eight shape functions have it
-        x[:, nodes[8]] = 0.5 * x[:, nodes[4:8]].sum(1) - 0.25 * x[:, nodes[:4]].sum(1)
+    def move(self, du=None):
+        x, nodes = self.mesh.doflocs.copy(), self.mesh.dofs.element_dofs
+        if du is not None:
+            moved = np.hstack([self.basis.nodal_dofs, self.basis.facet_dofs])  # as doflocs: corners, midsides
+            x[:, : moved.shape[1]] += du[moved]
+        x[:, nodes[8]] = 0.5 * x[:, nodes[4:8]].sum(1) - 0.25 * x[:, nodes[:4]].sum(1)  # as the eight shape functions
         self.mesh = MeshQuad2(x, self.mesh.t, _boundaries=self.mesh.boundaries)
         self.basis = Basis(self.mesh, ELEMENT, intorder=3)
 
@@ -90,10 +93,7 @@ class Ground:
             if left[0] <= tolerance and left[1] <= 1e-2:
                 self.batch.commit()
                 self.last, self.total, self.reaction = du, self.total + du, -residual
-                x = self.mesh.doflocs.copy()
-                moved = np.hstack([self.basis.nodal_dofs, self.basis.facet_dofs])  # as doflocs: corners, midsides
-                x[:, : moved.shape[1]] += du[moved]
-                return self.take_shape(x)
+                return self.move(du)
             history.append((du[free], correction))
             du[free] = accelerated(history)
         raise voussoir.NoEquilibrium("residual and correction are still {:.1e} and {:.1e}".format(*left))

@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 from elastic_batch import ElasticBatch
 from launcher import on_ranks
-from program import ROOT, check
+from program import ROOT, check, fresh
+from tutorial_pages import Reader, follow
 
 NEEDED = ("voussoir", "micro_manager", "mpi4py", "psutil", "preciceadapterschema")
 WRITTEN = ("Stress-X", "Stress-Y", "Tangent-22", "Status")
@@ -252,6 +253,17 @@ def check_ranks(packings):
     check(np.array_equal(found[1], found[2]), "two ranks differ from one")
 
 
+def follow_page():
+    """The files of the page run, in two threads that the stand-in couples."""
+    environment = {name: value for name, value in os.environ.items() if name != "VOUSSOIR_MACRO"}
+    stand_in = ROOT / "tests/precice_stand_in"
+    environment["STAND_IN"] = str(stand_in)
+    environment["PYTHONPATH"] = f"{stand_in}:{ROOT / 'python/examples'}:{environment.get('PYTHONPATH', '')}"
+    folder = fresh("page").absolute()
+    folder.mkdir()
+    follow(ROOT / "docs/how-to/couple_with_precice.md", Reader(folder, whole=False, environment=environment))
+
+
 def main():
     skip_where_something_is_missing()
     import voussoir  # noqa: PLC0415
@@ -260,6 +272,7 @@ def main():
     check_answers()
     check_refusals()
     check_grains(packings)
+    follow_page()
     if shutil.which("mpirun"):
         check_ranks(packings)
 
