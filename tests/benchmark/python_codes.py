@@ -22,9 +22,47 @@ sys.path[:0] = [str(ROOT / folder) for folder in ("python/examples", "tests/regr
 import voussoir  # noqa: E402 - its path and those below are set above
 from program import command, fresh, run, table  # noqa: E402
 from scikit_fem_biaxial import biaxial  # noqa: E402
-from scikit_fem_footing import footing, in_turn  # noqa: E402
+from scikit_fem_footing import HALF_WIDTH, footing, in_turn  # noqa: E402
 
 P0 = 100e3
+FOOTING = """kind = "scene"
+newton.tolerance = 2e-4
+newton.relax_substeps = 0
+
+[packing]
+grains = 200
+pressure = "100 kPa"
+folder = "packings"
+
+[mesh]
+shape = "grid"
+x = ["0 m", "0.5 m", "4 m"]
+columns = [4, 8]
+x_ratio = [1, 1.3]
+y = ["0 m", "2.5 m"]
+rows = [8]
+y_ratio = [0.8]
+top = ["footing", "surface"]
+left = ["axis"]
+
+[[region]]
+name = "ground"
+unit_weight = "0 kN/m3"
+
+[[support]]
+boundary = "base"
+fix = "xy"
+[[support]]
+boundary = ["axis", "right"]
+fix = "x"
+
+[[stage]]
+name = "load"
+steps = 20
+[[stage.move]]
+boundary = "footing"
+y = "-3 cm"
+"""
 
 
 def best(deed, repeats=5):
@@ -77,10 +115,28 @@ def compare_biaxial():
             evaluations = ground.evaluations
         total = time.process_time() - begin
         print(
-            f"biaxial, mirrored={mirrored}: difference {max(errors):.1e} at most; scikit-fem {evaluations} evaluations, "
+            f"biaxial, mirrored={mirrored}: differs by {max(errors):.1e}; scikit-fem {evaluations} evaluations, "
             f"{total:.2f} s, {spent[0]:.2f} s of them in the grains; program {sum(r['evaluations'] for r in rows)} "
             f"evaluations, {after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime:.2f} s"
         )
+
+
+def compare_footing():
+    """The footing by both, on one packing of 200 grains, at a tolerance of 2e-4 without relaxation."""
+    packing = voussoir.make_packings(grains=200, pressure=P0, folder="packings")
+    Path("footing.toml").write_text(FOOTING)
+    run([os.environ["VOUSSOIR"], "run", "footing.toml", "-o", str(fresh("footing"))])
+    rows = table("footing")[1:]
+    errors = []
+
+    def make_batch(basis):
+        return voussoir.RveBatch(packing, basis.dx.size, mirrored=in_turn(basis))
+
+    for row, (_, pressure, _) in zip(rows, footing(make_batch, tolerance=2e-4)):
+        errors.append(abs(pressure * HALF_WIDTH / -row["reaction_footing_y"] - 1))
+    print(
+        f"footing: the force differs by {max(errors):.1e} at most, cuts of the program {sum(r['cuts'] for r in rows)}"
+    )
 
 
 def measure_footing():
@@ -117,6 +173,7 @@ def main():
     Path("out/python_codes").mkdir(parents=True, exist_ok=True)
     os.chdir("out/python_codes")
     compare_biaxial()
+    compare_footing()
     measure_footing()
     cost_of_calls()
     if importlib.util.find_spec("micro_manager") and importlib.util.find_spec("mpi4py"):
