@@ -2,7 +2,7 @@
 batch for each point cost, and the hub for preCICE's Micro Manager (where it is installed). Times are of the processor.
 
     PYTHONPATH=build/openmp/python VOUSSOIR=build/openmp/host/voussoir VOUSSOIR_ROOT=. \\
-        .prefix/venv/bin/python tests/benchmark/python_codes.py   # from the checkout; writes into out/python_codes
+        .prefix/venv/bin/python python/benchmarks/other_codes.py   # from the checkout; writes into out/python_codes
 """
 
 import importlib.util
