@@ -40,17 +40,17 @@ class Ground:
 
     def __init__(self, mesh, boundaries, make_batch):
         self.mesh = MeshQuad2.from_mesh(mesh).with_boundaries(boundaries)
-        self.move()
+        self.basis = Basis(self.mesh, ELEMENT, intorder=3)
+        self.move(self.basis.zeros())
         self.start, self.batch = self.basis, make_batch(self.basis)
         self.answer = self.batch.committed()
         self.tangent = self.first_tangent = self.answer.tangent
         self.last, self.total, self.evaluations = self.basis.zeros(), self.basis.zeros(), 0
 
-    def move(self, du=None):
+    def move(self, du):
         x, nodes = self.mesh.doflocs.copy(), self.mesh.dofs.element_dofs
-        if du is not None:
-            moved = np.hstack([self.basis.nodal_dofs, self.basis.facet_dofs])  # as doflocs: corners, midsides
-            x[:, : moved.shape[1]] += du[moved]
+        moved = np.hstack([self.basis.nodal_dofs, self.basis.facet_dofs])  # as doflocs: corners, midsides
+        x[:, : moved.shape[1]] += du[moved]
         x[:, nodes[8]] = 0.5 * x[:, nodes[4:8]].sum(1) - 0.25 * x[:, nodes[:4]].sum(1)  # as the eight shape functions
         self.mesh = MeshQuad2(x, self.mesh.t, _boundaries=self.mesh.boundaries)
         self.basis = Basis(self.mesh, ELEMENT, intorder=3)

@@ -56,7 +56,7 @@ def footing(make_batch, settlement=0.03, steps=20, p0=100e3, smallest=1 / 64, me
     done, share, last = 0.0, 1.0, 1.0  # steps done, share of a step that is tried, share that was committed last
     while done < steps - 1e-9:
         share = min(share, steps - done)
-        load = ground.pressure("surface", p0)
+        load, above = ground.pressure("surface", p0), ground.pressure("footing", p0)[under].sum()
         try:
             ground.increment(load, fixed, share * planned, share / last, **criterion)
         except voussoir.NoEquilibrium as reason:  # ground and grains are as they were: try half of it
@@ -66,7 +66,7 @@ def footing(make_batch, settlement=0.03, steps=20, p0=100e3, smallest=1 / 64, me
             print(f"step {done + 1:.3f} is cut to {share:g}: {reason}")
             continue
         done, last, share = done + share, share, min(1.0, 2 * share)
-        yield done * settlement / steps, p0 - ground.reaction[under].sum() / HALF_WIDTH, ground
+        yield done * settlement / steps, -(above + ground.reaction[under].sum()) / HALF_WIDTH, ground
 
 
 def draw(ground, curve, file):

@@ -45,7 +45,7 @@ class Hub:
 
     `gradients` says from where the displacement gradients of the macro side count: "window" from the start of the time
     window, as updated Lagrangian codes have them, or "total" from the start of the coupling. `tangents=False` saves
-    the cost of tangents. `threads` are those of this process (`voussoir.initialize`); 0 takes all that it may use.
+    the cost of tangents.
 
     An evaluation is accepted (committed) by the next `get_state`, `output` or `solve`, unless `set_state` takes it
     back. Where a window has several steps, the state of its start is kept to go back to.
@@ -62,7 +62,6 @@ class Hub:
         packings: Any = None,
         gradients: str = "window",
         tangents: bool = True,
-        threads: int = 0,
         **options: Any,
     ) -> None:
         if sum(given is not None for given in (make_batch, case, packings)) != 1:
@@ -74,7 +73,6 @@ class Hub:
         self._make_batch = make_batch or (lambda ids: self._batch_of(ids, case, settings, packings, options))
         self._total = gradients == "total"
         self._tangents = tangents
-        self._threads = threads
         self._members: weakref.WeakValueDictionary[int, Point] = weakref.WeakValueDictionary()
         self._batch: Any = None
         self._ids: np.ndarray = np.zeros(0, int)
@@ -96,10 +94,8 @@ class Hub:
         return self._ids
 
     def _batch_of(self, ids: np.ndarray, case: Any, settings: Any, packings: Any, options: dict[str, Any]) -> Any:
-        import voussoir
+        import voussoir  # noqa: PLC0415  (the compiled module is needed only here)
 
-        if self._threads:
-            voussoir.initialize(self._threads)
         if case is not None:
             return voussoir.RveBatch.from_case(case, len(ids), settings)
         packings = packings if isinstance(packings, list | tuple) else [packings]

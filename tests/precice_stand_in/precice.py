@@ -12,7 +12,7 @@ of the configuration says (couple.py).
 import json
 import os
 import queue
-import xml.etree.ElementTree
+import re
 from pathlib import Path
 from typing import ClassVar
 
@@ -29,6 +29,8 @@ def Participant(name, configuration, rank, size):  # noqa: N802 - pyprecice's na
 
 class Common:
     """What neither participant needs a coupling for."""
+
+    begins, repeats, complete = True, False, False
 
     def get_mesh_dimensions(self, mesh):
         return 2
@@ -58,7 +60,6 @@ class Alone(Common):
         n = self.macro["points"]
         self.ids = np.arange(n * rank // size, n * (rank + 1) // size)
         self.window = self.iteration = self.step = 0
-        self.begins, self.repeats, self.complete = True, False, False
 
     def initialize(self):
         pass
@@ -104,18 +105,16 @@ class Coupled(Common):
     patience = 100  # seconds
 
     def __init__(self, name, configuration):
-        scheme = xml.etree.ElementTree.fromstring(Path(configuration).read_text().replace(":", "_"))
-        scheme = scheme.find("coupling-scheme_serial-implicit")
-        self.sides = [scheme.find("participants").get(key) for key in ("first", "second")]
+        text = Path(configuration).read_text()
+        self.sides = re.findall(r'<participants first="(.*?)" second="(.*?)"', text)[0]
         self.first = name == self.sides[0]
         self.other = self.sides[self.first]
         self.mine = self.queues.setdefault(name, queue.Queue())
-        self.windows = int(scheme.find("max-time-windows").get("value"))
-        self.most = int(scheme.find("max-iterations").get("value"))
-        measures = scheme.findall("relative-convergence-measure")
-        self.limits = {measure.get("data"): float(measure.get("limit")) for measure in measures}
+        self.windows = int(re.findall(r'<max-time-windows value="(\d+)"', text)[0])
+        self.most = int(re.findall(r'<max-iterations value="(\d+)"', text)[0])
+        measures = re.findall(r'<relative-convergence-measure limit="(.*?)" data="(.*?)"', text)
+        self.limits = {data: float(limit) for limit, data in measures}
         self.window, self.iteration, self.written, self.before = 0, 0, {}, None
-        self.begins, self.repeats, self.complete = True, False, False
 
     def send(self, what):
         self.queues.setdefault(self.other, queue.Queue()).put(what)

@@ -16,9 +16,10 @@ import numpy as np
 from elastic_batch import ElasticBatch
 from launcher import on_ranks
 from program import ROOT, check, fresh
+from python_package import voussoir
 from tutorial_pages import Reader, follow
 
-NEEDED = ("voussoir", "micro_manager", "mpi4py", "psutil", "preciceadapterschema")
+NEEDED = ("micro_manager", "mpi4py", "psutil", "preciceadapterschema")
 WRITTEN = ("Stress-X", "Stress-Y", "Tangent-22", "Status")
 POINTS = 6
 
@@ -181,17 +182,31 @@ def check_refusals():
     }
     fails("adaptive", "no adaptivity", macro_side(), elastic(), adaptivity=True, adaptivity_settings=adaptivity)
     fails("one_for_all", "stateless", macro_side(), elastic(), {"micro_stateless_flags": [True]})
-    hub = elastic()
-    point = type("MicroSimulation", (Point,), {"hub": hub})(0)
-    answer = point.solve({"Gradient-X": [0.0, 0.0], "Gradient-Y": [0.0, 0.0]}, 1.0)
+
+    def ask(point, compression=0.0):
+        return point.solve({"Gradient-X": [0.0, 0.0], "Gradient-Y": [0.0, -compression]}, 1.0)
+
+    def broken_pair():
+        of_pair = type("MicroSimulation", (Point,), {"hub": Hub(breaking)})
+        points = of_pair(3), of_pair(8)
+        first, _ = [ask(point, compression) for point, compression in zip(points, (1e-4, 1e-3))]
+        return first["Stress-X"]
+
+    kind = type("MicroSimulation", (Point,), {"hub": elastic()})
+    point = kind(0)
+    answer = ask(point)
+    lonely_kind = type("MicroSimulation", (Point,), {"hub": elastic()})
+    lonely, silent = lonely_kind(3), lonely_kind(8)
     for name, deed, sentence in (
-        ("late", lambda: type(point)(1), "load balancing"),
+        ("late", lambda: kind(1), "load balancing"),
         ("state", lambda: pickle.dumps(point.get_state()), "cannot move"),
         ("answer", lambda: pickle.dumps(answer), "cannot move"),
         ("name", lambda: (answer["Stress-X"], answer["Stress-Z"]), "do not write Stress-Z"),
         ("shape", lambda: point.solve({"Gradient-X": [np.nan, 0.0], "Gradient-Y": [0.0, 0.0]}, 1.0), "finite"),
         ("number", lambda: point.set_global_id(3), "cannot become"),
         ("grains", Hub, "come from one of"),
+        ("silent", lambda: ask(lonely)["Stress-X"], f"point {silent.global_id} was not asked (1 of 2)"),
+        ("pair", broken_pair, "1 of 2 points found no answer, global ids 8:"),
     ):
         try:
             deed()
@@ -203,7 +218,6 @@ def check_refusals():
 
 def check_grains(packings):
     """A hub has the bits of its batch, and of a batch for each point, which takes longer."""
-    import voussoir  # noqa: PLC0415
     from voussoir.precice import Hub  # noqa: PLC0415
 
     class OneByOne:
@@ -266,8 +280,6 @@ def follow_page():
 
 def main():
     skip_where_something_is_missing()
-    import voussoir  # noqa: PLC0415
-
     packings = voussoir.make_packings(seeds=2, grains=60, pressure=100e3)
     check_answers()
     check_refusals()

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from elastic_batch import ElasticBatch, plane_strain_stiffness
 from program import ROOT, check, command, fresh, run, table
+from python_package import voussoir
 from skfem import MeshQuad
 from tutorial_pages import Reader, follow
 
@@ -64,7 +65,6 @@ def check_elastic_footing():
 def check_grains_biaxial():
     """The program's `biaxial_bvp` with the same packing and the same criterion, without relaxation. Every second point
     is a mirror image, so that the specimen deforms unevenly. 1e-4 is what was measured for 10 increments."""
-    import voussoir  # noqa: PLC0415
     from scikit_fem_biaxial import biaxial  # noqa: PLC0415
     from scikit_fem_footing import in_turn  # noqa: PLC0415
 
