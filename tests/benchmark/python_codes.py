@@ -77,7 +77,8 @@ def compare_biaxial():
             evaluations = ground.evaluations
         total = time.process_time() - begin
         print(
-            f"biaxial, mirrored={mirrored}: difference {max(errors):.1e} at most; scikit-fem {evaluations} evaluations, "
+            f"biaxial, mirrored={mirrored}: difference {max(errors):.1e} at most; "
+            f"scikit-fem {evaluations} evaluations, "
             f"{total:.2f} s, {spent[0]:.2f} s of them in the grains; program {sum(r['evaluations'] for r in rows)} "
             f"evaluations, {after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime:.2f} s"
         )
