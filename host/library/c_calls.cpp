@@ -100,7 +100,10 @@ void stop_threads() {
   ours.session.reset();
 }
 
-int running_threads() { return process().session ? process().session->threads() : 0; }
+int running_threads() {
+  const std::optional<Session>& session = process().session;
+  return session ? session->threads() : 0;
+}
 
 void require_threads() {
   if (!process().session) throw Misuse("the threads do not run: call voussoir_start first");
@@ -126,14 +129,9 @@ void remember(const std::string& sentence) noexcept {
   sentence_of_error[length] = '\0';
 }
 
-int remember(const char* function, const std::exception_ptr& exception) noexcept {
-  try {
-    std::rethrow_exception(exception);
-  } catch (const Misuse& fault) {
-    std::snprintf(sentence_of_error, sizeof sentence_of_error, "%s: %s", function, fault.what());
-    return voussoir_misuse;
-  } catch (...) {
-  }
+namespace {
+
+int remember_failure(const std::exception_ptr& exception) noexcept {
   try {
     const host::Failure failure = host::failure_of(exception);
     remember(failure.sentence);
@@ -141,6 +139,19 @@ int remember(const char* function, const std::exception_ptr& exception) noexcept
   } catch (...) {
     std::snprintf(sentence_of_error, sizeof sentence_of_error, "out of memory");
     return voussoir_machine_failure;
+  }
+}
+
+}  // namespace
+
+int remember(const char* function, const std::exception_ptr& exception) noexcept {
+  try {
+    std::rethrow_exception(exception);
+  } catch (const Misuse& fault) {
+    std::snprintf(sentence_of_error, sizeof sentence_of_error, "%s: %s", function, fault.what());
+    return voussoir_misuse;
+  } catch (...) {
+    return remember_failure(exception);
   }
 }
 

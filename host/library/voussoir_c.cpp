@@ -29,7 +29,8 @@ static_assert(voussoir_ok == host::exit_code(host::Outcome::done) &&
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-void require(const void* pointer, const char* name) {
+template <class T>
+void require(const T* pointer, const char* name) {
   if (pointer == nullptr) throw Misuse(std::string(name) + " is NULL");
 }
 
