@@ -1,5 +1,6 @@
 # The rules of `cmake --install`. No file that is installed names a folder of the build or of the sources. The component
-# `program` is what a user runs, the component `development` is what a foreign program is built with.
+# `program` is what a user runs, the component `development` is what a foreign program is built with, and the component
+# `library` what it needs when it runs.
 include(GNUInstallDirs)
 set(voussoir_share "${CMAKE_INSTALL_DATADIR}/voussoir")
 
@@ -19,14 +20,13 @@ if(schemas)
   install(FILES ${schemas} DESTINATION "${voussoir_share}/schema" COMPONENT program)
 endif()
 
-# The figures and reports are Python. Their modules are found from the place of the command.
+# The figures and reports are modules of the Python package, which are found from the place of the command.
 set(voussoir_python_folder "${voussoir_share}/python")
-install(DIRECTORY tools/voussoir_plots tools/voussoir_report DESTINATION "${voussoir_python_folder}" COMPONENT program
+install(DIRECTORY python/voussoir DESTINATION "${voussoir_python_folder}" COMPONENT program
         PATTERN "__pycache__" EXCLUDE)
-install(FILES tools/figures.py DESTINATION "${voussoir_python_folder}" COMPONENT program)
 cmake_path(RELATIVE_PATH voussoir_python_folder BASE_DIRECTORY "${CMAKE_INSTALL_BINDIR}" OUTPUT_VARIABLE from_bin_to_python)
 set(VOUSSOIR_PYTHON "/usr/bin/env python3" CACHE STRING "Python of the commands voussoir-figures and voussoir-report")
-foreach(pair "figures;figures" "report;voussoir_report")
+foreach(pair "figures;voussoir.figures" "report;voussoir.report")
   list(POP_FRONT pair command)
   set(module ${pair})
   configure_file(cmake/voussoir_command.py.in "${PROJECT_BINARY_DIR}/voussoir-${command}" @ONLY)

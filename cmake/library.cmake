@@ -1,5 +1,6 @@
 # libvoussoir.a: the rooms that a foreign program needs, in one static library, with the headers of the public interface
-# (docs/reference/public_interface.md) and the CMake package Voussoir. A Kokkos for GPUs is the program's own affair.
+# (docs/reference/public_interface.md) and the CMake package Voussoir. libvoussoir.so: the same rooms behind the C
+# interface (c_library.cmake). A Kokkos for GPUs is the program's own affair.
 if(Kokkos_ENABLE_CUDA)
   return()
 endif()
@@ -19,7 +20,8 @@ set_target_properties(voussoir_library PROPERTIES OUTPUT_NAME voussoir EXPORT_NA
 target_compile_features(voussoir_library INTERFACE cxx_std_20)
 # Eigen's types cross the interface, and their alignment must be that of the library (fem/CMakeLists.txt).
 target_compile_definitions(voussoir_library INTERFACE EIGEN_DONT_VECTORIZE)
-target_include_directories(voussoir_library INTERFACE "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/voussoir>")
+target_include_directories(voussoir_library INTERFACE "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/voussoir>"
+                                                      "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
 # A foreign program sees the headers of Eigen alone and only links the others.
 set(linked fmt::fmt hdf5::hdf5 voussoir::kokkos OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})
 list(TRANSFORM linked REPLACE "(.+)" "$<LINK_ONLY:\\1>")
@@ -27,6 +29,8 @@ list(TRANSFORM linked REPLACE "(.+)" "$<INSTALL_INTERFACE:\\1>")
 target_link_libraries(voussoir_library INTERFACE "$<INSTALL_INTERFACE:Eigen3::Eigen>" ${linked})
 
 set(package_folder "${CMAKE_INSTALL_LIBDIR}/cmake/Voussoir")
+include(cmake/c_library.cmake)
+
 install(TARGETS voussoir_library EXPORT voussoir_targets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 install(EXPORT voussoir_targets NAMESPACE voussoir:: FILE VoussoirTargets.cmake DESTINATION "${package_folder}"
         COMPONENT development)
@@ -46,7 +50,8 @@ if(kokkos_is_ours)
 endif()
 
 configure_package_config_file(cmake/VoussoirConfig.cmake.in "${PROJECT_BINARY_DIR}/VoussoirConfig.cmake"
-  INSTALL_DESTINATION "${package_folder}" PATH_VARS CMAKE_INSTALL_LIBDIR NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+  INSTALL_DESTINATION "${package_folder}" PATH_VARS CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_INCLUDEDIR
+  NO_CHECK_REQUIRED_COMPONENTS_MACRO)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/VoussoirConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/VoussoirConfig.cmake" "${PROJECT_BINARY_DIR}/VoussoirConfigVersion.cmake"
         DESTINATION "${package_folder}" COMPONENT development)

@@ -50,6 +50,12 @@ struct Mesh {
 
   [[nodiscard]] bool is_dug_out(int element) const { return !dug_out.empty() && dug_out[element] != 0; }
 
+  /// True where the element is of the region with this name. Without names all elements are of one region, which then
+  /// answers to any name.
+  [[nodiscard]] bool in_region(int element, const std::string& name) const {
+    return region_names.empty() || region_names[region[element]] == name;
+  }
+
   /// The named boundary; throws std::out_of_range, whose message lists the names that exist.
   [[nodiscard]] const std::vector<Edge>& edge_set(const std::string& name) const;
   [[nodiscard]] const std::vector<int>& node_set(const std::string& name) const;

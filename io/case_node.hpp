@@ -46,7 +46,8 @@ struct CaseState {
 /// The key `extends`, which is used up while the file is read.
 inline constexpr Key extends_key{"extends",
                                  "Another file of the same sort, or an array of such files, whose keys this file takes "
-                                 "over. Where several of these files have one key, the value of the file that is named "
+                                 "over. A path that does not begin with / counts from the folder of this file. Where "
+                                 "several of these files have one key, the value of the file that is named "
                                  "last holds; a value that stands in this file overrides them all. An array is taken "
                                  "over or replaced as a whole."};
 

@@ -17,8 +17,9 @@ struct MeshData {
   std::vector<double> coordinates = {};                                            ///< (node, 2) [m]
   std::vector<std::int64_t> connectivity = {};                                     ///< (element, 8), counted from 0
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> boundaries = {};  ///< name, nodes in order along it
-  std::map<std::string, double> geometry = {};  ///< further numbers: axis_depth, diameter [m], ...
-  std::vector<std::int64_t> regions = {};       ///< (element) index into region_names; empty: there is one region
+  std::map<std::string, std::int64_t> points = {};  ///< nodes with names, such as "crown" of a tunnel
+  std::map<std::string, double> geometry = {};      ///< further numbers: axis_depth, diameter [m], ...
+  std::vector<std::int64_t> regions = {};           ///< (element) index into region_names; empty: there is one region
   std::vector<std::string> region_names = {};
 
   [[nodiscard]] std::size_t nodes() const { return coordinates.size() / 2; }

@@ -214,6 +214,11 @@ MeshData read_mesh(const std::filesystem::path& run_file) {
   for (const auto& name : file.members("/mesh/boundaries")) {
     mesh.boundaries.emplace_back(name, file.read_integers("/mesh/boundaries/" + name).values);
   }
+  if (file.has("/mesh/points")) {
+    for (const auto& name : file.attributes("/mesh/points")) {
+      mesh.points[name] = file.integer_attribute("/mesh/points", name);
+    }
+  }
   for (const auto& name : file.attributes("/mesh/geometry")) {
     mesh.geometry[name] = file.number_attribute("/mesh/geometry", name);
   }

@@ -50,6 +50,10 @@ void write_mesh(Hdf5File& file, const MeshData& mesh) {
   for (const auto& [name, nodes] : mesh.boundaries) {
     file.write("/mesh/boundaries/" + name, nodes, {nodes.size()}, "-");
   }
+  if (!mesh.points.empty()) file.make_group("/mesh/points");
+  for (const auto& [name, node] : mesh.points) {
+    file.set_attribute("/mesh/points", name, node);
+  }
   file.make_group("/mesh/geometry");
   for (const auto& [name, value] : mesh.geometry) {
     file.set_attribute("/mesh/geometry", name, value);

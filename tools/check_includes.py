@@ -25,7 +25,10 @@ FOLDERS = {
     "fem": ({"fem"}, {"Eigen", "SuiteSparse", "Gmsh", "OpenMP", "fmt", "POSIX"}),
     "io": ({"io"}, {"HDF5", "toml++", "JSON", "fmt", "POSIX"}),
     # host joins the others, so it holds their types (Kokkos views, Eigen matrices) and starts Kokkos.
-    "host": ({"kernels", "fem", "io", "host"}, {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX", "MPI", "OpenMP"}),
+    "host": (
+        {"kernels", "fem", "io", "host"},
+        {"Kokkos", "Eigen", "CLI11", "spdlog", "fmt", "POSIX", "MPI", "OpenMP", "C"},
+    ),
     # The Python module translates host/library; it stands beside host/main.cpp at the top.
     "python": ({"kernels", "fem", "io", "host", "python"}, {"nanobind", "POSIX"}),
     "tests": (set(OURS), None),  # None: all libraries
@@ -58,6 +61,9 @@ CONFINED = {
     # fem needs OpenMP to restore the number of threads, which Gmsh changes; host chooses their number
     "OpenMP": re.compile(r"fem/mesh\w*\.cpp|host/process/(cores|threads)\.cpp|tests/.*"),
     "MPI": re.compile(r"host/ranks/channel\.cpp"),
+    # elsewhere the header of C++ is meant, such as <cmath>
+    "C": re.compile(r"host/library/voussoir\.h|tests/package/.*\.c"),
+    "Voussoir": re.compile(r"tests/package/.*"),
     # fem reads mesh files in a child process, because Gmsh crashes or hangs where they are damaged
     "POSIX": re.compile(r"fem/mesh_gmsh_child\.cpp|(kernels|io|host|python|tests)/.*"),
 }
@@ -81,6 +87,8 @@ LIBRARIES = {
     "CUDA": r"cuda\w*\.h",
     "intrinsics": r"(immintrin|cpuid)\.h",
     "POSIX": r"(sys/\w+|unistd|fcntl|dlfcn|fnmatch|poll|signal|spawn|termios|malloc|pthread)\.h",
+    "C": r"(math|stdint|stdio|stdlib|string|time)\.h",
+    "Voussoir": r"voussoir\.h",  # as it is installed
     "standard": r"[a-z_0-9]+",
 }
 

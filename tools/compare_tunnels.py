@@ -11,13 +11,14 @@ import sys
 from functools import partial
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "python"))
 try:
-    from voussoir_plots import comparison, guard, settings
-    from voussoir_plots.output import make_folder, say
-    from voussoir_plots.result import Unreadable
-    from voussoir_plots.study.catalogue import STUDY_FIGURES, write
-    from voussoir_plots.study.data import open_study
-    from voussoir_plots.style import add_option, file_name, use_style
+    from voussoir.figures import comparison, guard, settings
+    from voussoir.figures.output import make_folder, say
+    from voussoir.figures.result import Unreadable
+    from voussoir.figures.study.catalogue import STUDY_FIGURES, write
+    from voussoir.figures.study.data import open_study
+    from voussoir.figures.style import add_option, file_name, use_style
 except ModuleNotFoundError as missing:
     print(f"Python has no module {missing.name}; .prefix/venv/bin/python has it, after tools/setup", file=sys.stderr)
     sys.exit(2)

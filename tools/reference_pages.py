@@ -14,7 +14,9 @@ import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
-from voussoir_plots import paper
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+import python_reference
+from voussoir.figures import paper
 
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = ROOT / "build/openmp/host/voussoir"
@@ -76,6 +78,7 @@ def paper_figures(_program: Path) -> str:
 PARTS: dict[str, tuple[str, Callable[[Path], str]]] = {
     "command_line": ("docs/reference/command_line.md", command_line),
     "exit_status": ("docs/reference/exit_status.md", exit_status),
+    "python": ("docs/reference/python.md", lambda _program: python_reference.page()),
     "paper_figures": ("docs/reference/figures.md", paper_figures),
 }
 

@@ -141,10 +141,7 @@ void declare(const io::Table& owner, const IdleRule& rule) {
 
 /// The tables of a region of grains follow the rules of those at the top of the case.
 void declare_in_region(const io::Table& entry, const RegionCase& region, const Case& input) {
-  if (region.elastic) {
-    if (is_elastic(input)) entry.declare_idle("elastic", "material is \"linear_elastic\", which is that of [elastic]");
-    return;
-  }
+  if (region.elastic) return;
   Case alone = input;
   alone.soil = region.soil;
   alone.packing = region.packing;

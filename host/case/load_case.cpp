@@ -69,7 +69,8 @@ void read_grain_tables(const io::Table& root, Case& input) {
 void read_mesh_tables(const io::Table& root, Case& input) {
   const std::string material = root.choice({"material",
                                             "What the points of the mesh are made of: representative volume elements "
-                                            "of grains, or the linear elastic material of `[elastic]`."},
+                                            "of grains, or the linear elastic material of `[elastic]`. A region "
+                                            "with its own `[region.elastic]` keeps it in both."},
                                            {"grains", "linear_elastic"}, "grains");
   input.material = material == "grains" ? MaterialKind::grains : MaterialKind::linear_elastic;
   input.elastic = read_elastic(root.table(tables::elastic));

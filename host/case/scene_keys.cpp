@@ -21,7 +21,8 @@ SupportCase read_support(const io::Table& entry) {
   support.boundaries = entry.texts({"boundary", "Boundary that is held, or an array of boundaries, unless a point is."},
                                    std::vector<std::string>{}, column_name_rule, {.or_one = true});
   const auto point = read_place(
-      entry, {"point", "Point that is held: its name in the mesh, or coordinates, where a node must lie."});
+      entry, {"point",
+              "Point that is held: its name in the mesh, or coordinates, where a node of the mesh as drawn must lie."});
   if (support.boundaries.empty() == !point)
     throw entry.error(point ? "point" : "", "must have one of boundary and point");
   if (point) support.point = *point;

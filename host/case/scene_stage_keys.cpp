@@ -20,7 +20,9 @@ void read_target(const io::Table& entry, MoveCase& move) {
   move.boundary = entry.optional_text({"boundary", "Boundary that is moved, unless a point is."}, column_name_rule)
                       .value_or("");
   const auto point = read_place(
-      entry, {"point", "Point that is moved: its name in the mesh, or coordinates, where a node must lie."});
+      entry,
+      {"point",
+       "Point that is moved: its name in the mesh, or coordinates, where a node of the mesh as drawn must lie."});
   if (move.boundary.empty() == !point) throw entry.error(point ? "point" : "", "must have one of boundary and point");
   if (point) move.point = *point;
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// The modified Gauss curve of settlement troughs (Vorster et al.), eqs. (20), (21) of the paper, and its fit: the same
-/// curve, range and search as tools/voussoir_plots/trough_fit.py, which a test compares.
+/// curve, range and search as python/voussoir/figures/trough_fit.py, which a test compares.
 
 #include <span>
 

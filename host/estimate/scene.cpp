@@ -24,11 +24,9 @@ std::vector<RegionSize> regions_of(const Case& input, const fem::Mesh& mesh) {
     size.variety = region.packing.variety;
     size.grains = region.packing.grains;
   }
-  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
-    const std::string name = mesh.region_names.empty() ? ""
-                                                       : mesh.region_names[static_cast<std::size_t>(mesh.region[e])];
+  for (int e = 0; e < mesh.n_elements(); ++e) {
     for (RegionSize& size : all) {
-      if (size.name == name || (name.empty() && all.size() == 1)) size.points += 4;
+      if (mesh.in_region(e, size.name)) size.points += 4;
     }
   }
   return all;

@@ -1,6 +1,6 @@
 #pragma once
 /// How the program ends: one table of outcomes and exit codes, which docs/reference/exit_status.md and `voussoir
-/// --help` repeat, and the one function that makes a code of an outcome. host/program/failure.hpp makes an outcome of
+/// --help` repeat, and the one function that makes a code of an outcome. host/case/failure.hpp makes an outcome of
 /// an exception.
 
 #include <array>

@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "host/case/failure.hpp"
 #include "host/process/build_info.hpp"
 #include "host/process/exit_code.hpp"
 #include "host/process/standard_streams.hpp"
 #include "host/process/threads.hpp"
 #include "host/program/commands.hpp"
-#include "host/program/failure.hpp"
 #include "host/program/sweep_outcome.hpp"
 #include "host/ranks/session.hpp"
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "host/case/failure.hpp"
 #include "host/element_tests/biaxial_run.hpp"
 #include "host/element_tests/calibrate_run.hpp"
 #include "host/element_tests/pack.hpp"
@@ -15,7 +16,6 @@
 #include "host/kinds/biaxial_bvp.hpp"
 #include "host/kinds/column.hpp"
 #include "host/kinds/tunnel.hpp"
-#include "host/program/failure.hpp"
 #include "host/record/log.hpp"
 #include "host/scene/run_scene.hpp"
 #include "io/result_file.hpp"

@@ -145,7 +145,7 @@ std::vector<std::string> column_names(const WatchedBoundaries& boundaries, const
     for (const char* axis : axis_names) {
       names.push_back(fmt::format("reaction_{}_{}", name, axis));
       names.push_back(fmt::format("displacement_{}_{}", name, axis));
-      if (!mesh.edge_set(name).empty()) names.push_back(fmt::format("traction_{}_{}", name, axis));
+      if (!outer_edges(mesh, name).empty()) names.push_back(fmt::format("traction_{}_{}", name, axis));
     }
     if (boundaries.with_area.contains(name)) names.push_back("area_" + name);
   }

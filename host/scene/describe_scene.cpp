@@ -42,9 +42,10 @@ std::string mesh_line(const fem::Mesh& mesh) {
 
 std::string boundaries_line(const fem::Mesh& mesh) {
   std::vector<std::string> parts;
-  for (const auto& [name, edges] : mesh.edges) {
+  for (const auto& [name, nodes] : mesh.nodes) {
+    const std::vector<fem::Edge>& edges = outer_edges(mesh, name);
     if (edges.empty()) {
-      parts.push_back(fmt::format("{} inside the ground ({} nodes)", name, mesh.node_set(name).size()));
+      parts.push_back(fmt::format("{} inside the ground ({} nodes)", name, nodes.size()));
       continue;
     }
     const Chain chain = measure(mesh, edges);
@@ -64,7 +65,7 @@ std::vector<std::string> region_lines(const Scene& scene) {
     double area = 0;
     int elements = 0;
     for (int e = 0; e < scene.mesh.n_elements(); ++e) {
-      if (!scene.mesh.region.empty() && scene.mesh.region_names[scene.mesh.region[e]] != region.name) continue;
+      if (!scene.mesh.in_region(e, region.name)) continue;
       ++elements;
       for (int p = 4 * e; p < 4 * e + 4; ++p) area += points.volumes[p];
     }
@@ -98,29 +99,38 @@ std::string pressure_line(const PlannedScene& planned) {
   return line + fmt::format(": as much as {:.3g} m of ground, {:.2g} % of the height", depth, 100 * depth / height);
 }
 
-std::string motion_of(const Holder& holder, double end) {
+/// A boundary or a named point by its name, another point by its place.
+std::string name_of(const Scene& scene, const Holder& holder) {
+  if (!holder.name.empty()) return holder.name;
+  const fem::Point x = scene.mesh.coordinates.col(holder.nodes.front());
+  return fmt::format("the point ({:.4g}, {:.4g}) m", x.x(), x.y());
+}
+
+std::string motion_of(const Scene& scene, const Holder& holder, double end) {
   const MoveCase& move = holder.move;
   std::vector<std::string> parts;
   if (move.x || move.y)
     parts.push_back(fmt::format("by ({:.4g}, {:.4g}) m", move.x.value_or(0) * end, move.y.value_or(0) * end));
   if (move.rotation) parts.push_back(fmt::format("by {:.4g} deg", *move.rotation * end / degree));
   if (move.area) parts.push_back(fmt::format("its area changes by {:.4g} %", 100 * *move.area * end));
-  return fmt::format("{} moves: {}", holder.name, fmt::join(parts, ", "));
+  return fmt::format("{} moves: {}", name_of(scene, holder), fmt::join(parts, ", "));
 }
 
-std::string name_of(const Holder& holder) { return holder.name.empty() ? std::string("a point") : holder.name; }
-
-std::string held_by(const StagePlan& plan) {
+/// What holds, each once, even where a stage names again what is held.
+std::string held_by(const Scene& scene, const StagePlan& plan) {
   std::vector<std::string> parts;
-  for (const Holder& holder : plan.holders)
-    parts.push_back(fmt::format("{} {}{}", name_of(holder), holder.axes[0] ? "x" : "", holder.axes[1] ? "y" : ""));
+  for (const Holder& holder : plan.holders) {
+    std::string part = fmt::format("{} {}{}", name_of(scene, holder), holder.axes[0] ? "x" : "",
+                                   holder.axes[1] ? "y" : "");
+    if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(std::move(part));
+  }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::string stage_line(const Scene& scene, const StagePlan& plan, std::size_t number) {
   std::string line = fmt::format("stage {} {}: {} steps, {}; held: {}", number, plan.input.name, plan.targets.size(),
                                  plan.input.geometry == LossGeometry::fixed_mesh ? "fixed_mesh" : "updated_lagrangian",
-                                 held_by(plan));
+                                 held_by(scene, plan));
   if (plan.gravity_from != plan.gravity_to)
     line += fmt::format("; the weights go from {:.4g} to {:.4g} of their full value", plan.gravity_from,
                         plan.gravity_to);
@@ -139,7 +149,7 @@ std::string stage_line(const Scene& scene, const StagePlan& plan, std::size_t nu
   for (const Holder& holder : plan.holders) {
     const double share = step_over_edge(scene, plan, holder);
     if (share > 0)
-      line += fmt::format("; {}, {:.2g} of an element's edge a step{}", motion_of(holder, plan.input.end), share,
+      line += fmt::format("; {}, {:.2g} of an element's edge a step{}", motion_of(scene, holder, plan.input.end), share,
                           share > wide_step ? ", which is much: more steps are safer" : "");
   }
   return line;
@@ -172,8 +182,8 @@ std::vector<std::string> owner_lines(const Scene& scene, const StagePlan& plan) 
   for (const auto& [pair, entry] : shared) {
     const fem::Point x = scene.mesh.coordinates.col(entry.nodes.front());
     lines.push_back(fmt::format("stage {}: {} (moved) owns {} before {} at {} node{}, the first at ({:.4g}, {:.4g}) m",
-                                plan.input.name, name_of(plan.holders[pair.second]), entry.axes,
-                                name_of(plan.holders[pair.first]), entry.nodes.size(),
+                                plan.input.name, name_of(scene, plan.holders[pair.second]), entry.axes,
+                                name_of(scene, plan.holders[pair.first]), entry.nodes.size(),
                                 entry.nodes.size() == 1 ? "" : "s", x.x(), x.y()));
   }
   return lines;

@@ -22,8 +22,8 @@ std::vector<int> dug_out_rank(const Scene& scene) {
   const auto n = static_cast<int>(scene.input.stages.size());
   for (int s = 0; s < n; ++s) {
     for (const ExcavateCase& dug : scene.input.stages[s].excavations) {
-      for (std::size_t e = 0; e < mesh.region.size(); ++e) {
-        if (mesh.region_names[mesh.region[e]] == dug.region) rank[e] = n - s;
+      for (int e = 0; e < mesh.n_elements(); ++e) {
+        if (mesh.in_region(e, dug.region)) rank[e] = n - s;
       }
     }
   }
@@ -37,6 +37,15 @@ void add_place(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<in
   record.places.push_back(*found);
   record.coordinates.push_back(x);
   record.along.push_back(along);
+}
+
+/// The node where a plan holds it as a point, else -1.
+int held_node(int node, const std::vector<StagePlan>& plans) {
+  for (const StagePlan& plan : plans) {
+    for (const Holder& holder : plan.holders)
+      if (!holder.is_boundary && holder.nodes.front() == node) return node;
+  }
+  return -1;
 }
 
 void place_line(PlacedRecord& record, const std::array<PlaceCase, 2>& line, const fem::Mesh& mesh,
@@ -77,6 +86,18 @@ void add_point(const PlacedRecord& record, const Ground& ground, const std::vect
   to["stress_" + name + "_xy"] = {s[2], "Pa"};
 }
 
+/// The force of what holds the point as a point.
+void add_reaction(const PlacedRecord& record, const StagePlan& plan, const Eigen::VectorXd& reactions,
+                  io::Quantities& to) {
+  if (record.held_node < 0) return;
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto owner = plan.owners.find(2 * record.held_node + axis);
+    const bool holds = owner != plan.owners.end() && !plan.holders[owner->second].is_boundary;
+    to[fmt::format("reaction_{}_{}", record.input.name, axis == 0 ? "x" : "y")] = {
+        holds ? reactions[2 * record.held_node + axis] : 0.0, "N/m"};
+  }
+}
+
 void add_region(const PlacedRecord& record, const Ground& ground, const std::vector<fem::Stress>& stress,
                 const std::vector<fem::PlaneTensor>& strain, const std::vector<double>& void_ratio,
                 io::Quantities& to) {
@@ -105,7 +126,7 @@ void add_region(const PlacedRecord& record, const Ground& ground, const std::vec
 
 }  // namespace
 
-std::vector<PlacedRecord> place_records(const Scene& scene) {
+std::vector<PlacedRecord> place_records(const Scene& scene, const std::vector<StagePlan>& plans) {
   std::vector<PlacedRecord> records;
   const std::vector<int> rank = dug_out_rank(scene);
   for (std::size_t k = 0; k < scene.input.records.size(); ++k) {
@@ -117,14 +138,13 @@ std::vector<PlacedRecord> place_records(const Scene& scene) {
       if (record.places.empty())
         throw std::runtime_error(
             fmt::format("{}.point: ({:.6g}, {:.6g}) m lies outside the ground", key, x.x(), x.y()));
+      record.held_node = held_node(node_at(scene.mesh, *record.input.point), plans);
     } else if (record.input.line) {
       place_line(record, *record.input.line, scene.mesh, rank, key);
       if (record.places.empty()) throw std::runtime_error(key + ".line: no point of the line lies in the ground");
     } else {
-      const auto& names = scene.mesh.region_names;
-      const auto index = static_cast<int>(std::find(names.begin(), names.end(), record.input.region) - names.begin());
       for (int e = 0; e < scene.mesh.n_elements(); ++e) {
-        if (scene.mesh.region.empty() || scene.mesh.region[e] == index) record.elements.push_back(e);
+        if (scene.mesh.in_region(e, record.input.region)) record.elements.push_back(e);
       }
     }
     records.push_back(std::move(record));
@@ -132,7 +152,8 @@ std::vector<PlacedRecord> place_records(const Scene& scene) {
   return records;
 }
 
-void add_record_columns(const std::vector<PlacedRecord>& records, const Ground& ground, io::Quantities& to) {
+void add_record_columns(const std::vector<PlacedRecord>& records, const StagePlan& plan,
+                        const Eigen::VectorXd& reactions, const Ground& ground, io::Quantities& to) {
   const bool some = std::any_of(records.begin(), records.end(), [](const auto& one) { return !one.input.line; });
   if (!some) return;
   std::vector<fem::Stress> stress(static_cast<std::size_t>(ground.mesh.n_points()));
@@ -143,7 +164,10 @@ void add_record_columns(const std::vector<PlacedRecord>& records, const Ground& 
   const std::vector<fem::PointField> fields = regions ? ground.material.fields() : std::vector<fem::PointField>{};
   const fem::PointField* void_ratio = find_field(fields, "void_ratio");
   for (const PlacedRecord& record : records) {
-    if (record.input.point) add_point(record, ground, stress, to);
+    if (record.input.point) {
+      add_point(record, ground, stress, to);
+      add_reaction(record, plan, reactions, to);
+    }
     if (!record.input.region.empty())
       add_region(record, ground, stress, strain, void_ratio == nullptr ? std::vector<double>{} : void_ratio->values,
                  to);
@@ -159,6 +183,8 @@ std::vector<std::string> column_names(const std::vector<PlacedRecord>& records) 
            {"displacement_{}_x", "displacement_{}_y", "stress_{}_xx", "stress_{}_yy", "stress_{}_xy"})
         names.push_back(fmt::format(fmt::runtime(column), name));
     }
+    if (record.held_node >= 0)
+      for (const char* axis : {"x", "y"}) names.push_back(fmt::format("reaction_{}_{}", name, axis));
     if (record.input.region.empty()) continue;
     for (const char* column : {"p", "q", "q_over_p", "volumetric_strain", "void_ratio"})
       names.push_back(fmt::format("{}_{}", column, name));

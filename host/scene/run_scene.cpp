@@ -45,7 +45,7 @@ class SceneColumns {
                                   const fem::Coordinates& coordinates) const {
     io::Quantities columns;
     add_boundary_columns(boundaries_, plan, ground_, reactions, coordinates, columns);
-    add_record_columns(records_, ground_, columns);
+    add_record_columns(records_, plan, reactions, ground_, columns);
     return columns;
   }
 

@@ -5,10 +5,8 @@
 namespace voussoir::host {
 
 double Scene::unit_weight(int element) const {
-  if (mesh.region.empty()) return input.regions.front().unit_weight;
-  const std::string& name = mesh.region_names[mesh.region[element]];
   const auto found = std::find_if(input.regions.begin(), input.regions.end(),
-                                  [&](const RegionCase& region) { return region.name == name; });
+                                  [&](const RegionCase& region) { return mesh.in_region(element, region.name); });
   return found == input.regions.end() ? 0.0 : found->unit_weight;
 }
 

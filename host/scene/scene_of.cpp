@@ -63,7 +63,7 @@ PlannedScene make(const Case& input) {
   check_scene_names(input, {names_of(mesh.nodes), mesh.region_names, names_of(mesh.points)});
   planned.plans = plan_stages(planned.scene);
   for (std::size_t k = 0; k < planned.plans.size(); ++k) check_steps(planned.scene, planned.plans[k], k);
-  planned.records = place_records(planned.scene);
+  planned.records = place_records(planned.scene, planned.plans);
   check_columns(planned);
   planned.layers = layers_at_rest(planned.scene);
   return planned;

@@ -179,11 +179,9 @@ void press(StagePlan& plan, const PressCase& press, double own_pressure, bool no
 
 void excavate(const Scene& scene, StagePlan& plan, const ExcavateCase& excavation) {
   const fem::Mesh& mesh = scene.mesh;
-  const auto region = std::find(mesh.region_names.begin(), mesh.region_names.end(), excavation.region);
-  const auto index = static_cast<int>(region - mesh.region_names.begin());
   plan.dug_out.resize(static_cast<std::size_t>(mesh.n_elements()), 0);
   for (int e = 0; e < mesh.n_elements(); ++e) {
-    if (mesh.region[e] == index) plan.dug_out[e] = 1;  // check_places: the mesh has the region
+    if (mesh.in_region(e, excavation.region)) plan.dug_out[e] = 1;
   }
 }
 

@@ -114,6 +114,7 @@ io::MeshData mesh_data(const fem::Mesh& mesh, BoundaryNames names) {
     const std::vector<int>& nodes = mesh.nodes.at(ours);
     data.boundaries.emplace_back(theirs, std::vector<std::int64_t>(nodes.begin(), nodes.end()));
   }
+  data.points.insert(mesh.points.begin(), mesh.points.end());
   if (mesh.region_names.size() > 1) {
     data.regions.assign(mesh.region.begin(), mesh.region.end());
     data.region_names = mesh.region_names;

@@ -28,18 +28,12 @@ struct RegionPoints {
 std::vector<RegionPoints> regions_of(const std::vector<RegionCase>& cases, const fem::Mesh& mesh) {
   std::vector<RegionPoints> all;
   for (const RegionCase& region : cases) all.push_back({&region, {}});
-  const auto index_of = [&](std::size_t element) -> std::size_t {
-    if (mesh.region_names.empty() && all.size() == 1) return 0;
-    const std::string name = mesh.region_names.empty()
-                                 ? ""
-                                 : mesh.region_names[static_cast<std::size_t>(mesh.region[element])];
-    for (std::size_t k = 0; k < cases.size(); ++k)
-      if (cases[k].name == name) return k;
-    throw std::invalid_argument("region '" + name + "' of the mesh has no [[region]]");
-  };
-  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
-    Points& points = all[index_of(e)].points;
-    for (std::size_t p = 0; p < 4; ++p) points.push_back(4 * e + p);
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const RegionPoints& r) { return mesh.in_region(e, r.region->name); });
+    if (found == all.end())
+      throw std::invalid_argument("region '" + mesh.region_names[mesh.region[e]] + "' of the mesh has no [[region]]");
+    for (int p = 4 * e; p < 4 * e + 4; ++p) found->points.push_back(static_cast<std::size_t>(p));
   }
   std::erase_if(all, [](const RegionPoints& r) { return r.points.empty(); });
   return all;

@@ -12,13 +12,24 @@ namespace {
 
 constexpr const char* file_name = "libvoussoir_gpu.so";
 
+/// The file that holds this code: the program, or a module in the program of an interpreter.
+std::filesystem::path own_file() {
+  Dl_info info{};
+  if (::dladdr(static_cast<const void*>(&file_name), &info) != 0 && info.dli_fname != nullptr) {
+    const std::filesystem::path file = info.dli_fname;
+    if (file.extension() == ".so") return file;
+  }
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error);
+}
+
 std::vector<std::filesystem::path> places() {
   if (const char* const given = std::getenv("VOUSSOIR_GPU_LIBRARY"); given != nullptr) return {given};
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const std::filesystem::path folder = program.parent_path();
-  return {folder / file_name, folder / ".." / "lib" / file_name, folder / ".." / ".." / "cuda" / file_name};
+  const std::filesystem::path file = own_file();
+  if (file.empty()) return {};
+  const std::filesystem::path folder = file.parent_path(), above = folder / ".." / "..";
+  return {folder / file_name, folder / ".." / "lib" / file_name, above / "cuda" / file_name,
+          above / ".." / "cuda" / file_name};  // the last one: build/openmp/python/voussoir
 }
 
 /// An opened library. It stays open, because its devices need its code.

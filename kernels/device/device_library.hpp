@@ -18,7 +18,8 @@ struct DeviceSearch {
 };
 
 /// Looks for the library and its devices: the file that the environment variable VOUSSOIR_GPU_LIBRARY names, or
-/// libvoussoir_gpu.so beside the program, in its folder ../lib, or in ../../cuda, where the preset `cuda` builds it.
+/// libvoussoir_gpu.so beside the program (or the Python module), in its folder ../lib, or in ../../cuda, where the
+/// preset `cuda` builds it (for the module: ../../../cuda).
 [[nodiscard]] DeviceSearch find_devices();
 
 /// The number of devices. Where it is 0, `why` says the reason.

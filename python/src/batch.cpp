@@ -36,19 +36,24 @@ class Batch final : public engine::Closable {
   }
   void close() override {
     const std::lock_guard lock(busy_);
+    is_open_ = false;
     batch_.reset();
+  }
+  void close_by_user() {
+    if (engine::forked()) return;
+    refuse_handler();
+    const nb::gil_scoped_release free;
+    close();
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] bool is_open() const { return batch_ != nullptr; }
+  [[nodiscard]] bool is_open() const { return is_open_; }
 
   /// Runs `work` without the interpreter lock, while no other thread uses the batch.
   template <class Work>
   auto run(const Work& work) {
     const engine::Call call;
-    // A signal's handler runs within a pause of this thread, which has the batch.
-    if (user_ == std::this_thread::get_id())
-      throw std::runtime_error("a signal's handler cannot use a batch that is at work in its own thread");
+    refuse_handler();
     const nb::gil_scoped_release free;
     const std::lock_guard lock(busy_);
     const User user(user_);
@@ -68,10 +73,17 @@ class Batch final : public engine::Closable {
     std::atomic<std::thread::id>* user_;
   };
 
+  /// A signal's handler runs within a pause of its thread, which has the batch and would wait for itself.
+  void refuse_handler() const {
+    if (user_ == std::this_thread::get_id())
+      throw std::runtime_error("a signal's handler cannot use a batch that is at work in its own thread");
+  }
+
   std::mutex busy_;
   std::atomic<std::thread::id> user_;  ///< the thread that has `busy_`
   std::unique_ptr<GrainBatch> batch_;
   std::size_t size_;
+  std::atomic<bool> is_open_ = true;
 };
 
 /// Arrays of an answer, before they are NumPy's.
@@ -217,11 +229,7 @@ void bind_batch(nb::module_& module) {
             return dict_of(batch.run([&](GrainBatch& grains) { return grains.packing(point); }));
           },
           nb::arg("point"))
-      .def("close", [](Batch& batch) {
-        if (engine::forked()) return;
-        const nb::gil_scoped_release free;
-        batch.close();
-      });
+      .def("close", &Batch::close_by_user);
   module.def("new_batch", &new_batch, nb::arg("packings"), nb::arg("packing_of"), nb::arg("settings"), nb::arg("name"),
              nb::arg("mirrored"), nb::rv_policy::take_ownership);
   module.def("batch_of_case", &batch_of_case, nb::arg("file"), nb::arg("overrides"), nb::arg("n"), nb::arg("mirrored"));

@@ -24,7 +24,7 @@ template <class Work>
 auto in_python(const Work& work) {
   const nb::gil_scoped_acquire lock;
   try {
-    return work(nb::module_::import_("voussoir.packing_files"));
+    return work(nb::module_::import_("voussoir.packing_storage"));
   } catch (nb::python_error& error) {
     if (!error.matches(PyExc_Exception)) throw;  // KeyboardInterrupt
     throw std::runtime_error(nb::str(error.value()).c_str());

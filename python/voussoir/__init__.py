@@ -1,7 +1,7 @@
-"""Voussoir: soil mechanics from grains, for Python.
+"""Voussoir in Python: grains as a material law, runs of the program and their results, figures and reports.
 
-The names of this package are loaded when they are first used, so that results can be read where the compiled module is
-missing. python/README.md says what is where.
+Names are loaded when they are first used, so that `import voussoir` takes no time, and so that results can be read
+where the compiled module is missing. docs/tutorial/grains_in_a_notebook.md shows what the package is for.
 """
 
 import importlib
@@ -9,35 +9,46 @@ from typing import Any
 
 __version__ = "0.2.0"
 
-# name -> module of this package that has it
-_places = {
-    "Answer": "batch",
-    "Error": "errors",
-    "InputError": "errors",
-    "NoEquilibrium": "errors",
-    "Packing": "packings",
-    "PackingWarning": "errors",
-    "RveBatch": "batch",
-    "Snapshot": "batch",
-    "initialize": "engine",
-    "load_packing": "packings",
-    "make_packings": "packings",
-    "report_dtype": "batch",
-    "status_names": "batch",
-    "threads": "engine",
+_MODULES = {
+    "engine": ("initialize", "threads"),
+    "packings": ("Packing", "load_packing", "make_packings"),
+    "batch": ("Answer", "RveBatch", "Snapshot", "report_dtype", "status_names"),
+    "runs": ("ensemble", "run", "sweep"),
+    "opening": ("open_ensemble", "open_result", "open_sweep"),
+    "results": ("Result",),
+    "increments": ("Increment",),
+    "ensembles": ("Bands", "Ensemble"),
+    "sweeps": ("Run", "Sweep"),
+    "files": ("Table",),
+    "packing_files": ("PackingFile",),
+    "shown": ("Shown",),
+    "pictures": ("Picture",),
+    "errors": (
+        "Error",
+        "InputError",
+        "Interrupted",
+        "MachineFailure",
+        "Missing",
+        "NoEquilibrium",
+        "PackingWarning",
+        "Unreadable",
+    ),
 }
+_SUBMODULES = ("figures", "paths", "precice", "report")
+_PLACES = {name: module for module, names in _MODULES.items() for name in names}
 
-__all__ = ["__version__", *sorted(_places)]  # noqa: PLE0604 - the names are texts
+__all__ = ["__version__", *sorted(_PLACES)]  # noqa: PLE0604 - the names are texts
 
 
 def __getattr__(name: str) -> Any:
-    place = _places.get(name)
-    if place is None:
+    if name in _SUBMODULES:
+        return importlib.import_module(f"{__name__}.{name}")
+    if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"{__name__}.{place}"), name)
+    value = getattr(importlib.import_module(f"{__name__}.{_PLACES[name]}"), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_places})
+    return sorted({*globals(), *_PLACES, *_SUBMODULES})

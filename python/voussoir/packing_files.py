@@ -1,97 +1,102 @@
-"""Packing files of the program (docs/reference/files.md) by h5py. The compiled module calls `read` and `write`, where
-the program uses the HDF5 library."""
+"""Packing files as arrays (docs/reference/files.md, "Packings"). No compiled module is needed to read them."""
 
-import os
+import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from voussoir.engine import core
-
-_columns = ("radius", "x", "y", "rotation", "contact_i", "contact_j")
-_units = {"radius": "m", "x": "m", "y": "m", "rotation": "rad", "cell": "m", "contact_i": "-", "contact_j": "-"}
-_format, _format_version = "voussoir packing", 1
+from .errors import Unreadable
+from .files import Table, check_format, plain, reading
 
 
-def _h5py() -> Any:
-    try:
-        import h5py  # noqa: PLC0415 - only files need it
-    except ImportError as fault:
-        raise ImportError("packing files need h5py: pip install h5py, or pip install 'voussoir[files]'") from fault
-    return h5py
+class PackingFile:
+    """The grains of a packing file; lengths in m, grains as discs of the thickness.
 
-
-def _text(value: Any) -> str:
-    return value.decode() if isinstance(value, bytes) else str(value)
-
-
-def read(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """A packing as the compiled module takes it.
-
-    Raises:
-        FileNotFoundError: there is no such file
-        ValueError: the file is no packing file, or its grains were changed after it was written
+    radius, x, y, rotation (grain), cell (2, 2; columns are the periodic vectors), contact_i, contact_j (contact),
+    history (contact, history_names; other programs write none), thickness, numbers (such as "void_ratio", "pressure"
+    [Pa], "seed") and labels (the soil that it was made with); content: the hash of the grains that the program wrote,
+    or None.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise FileNotFoundError(f"{path}: there is no such file")
-    try:
-        opened = _h5py().File(path, "r")
-    except OSError as fault:
-        raise ValueError(f"{path}: is no HDF5 file, or a damaged one ({fault})") from fault
-    with opened as file:
-        found = _text(file.attrs.get("format", "")), int(file.attrs.get("format_version", 0))
-        if found != (_format, _format_version):
-            raise ValueError(f"{path}: is no packing of format version {_format_version}")
-        packing: dict[str, Any] = {name: np.ascontiguousarray(file[name]) for name in _columns}
-        packing["cell"] = np.ascontiguousarray(file["cell"]).reshape(2, 2)
-        packing["thickness"] = float(file.attrs["thickness"])
-        packing["history"] = np.ascontiguousarray(file["history"])
-        packing["history_names"] = _text(file["history"].attrs["names"]).split(",")
-        packing["numbers"] = {name: float(value) for name, value in file["numbers"].attrs.items()}
-        packing["labels"] = {name: _text(value) for name, value in file["labels"].attrs.items()}
-        content = file.attrs.get("content")  # older files do not have it
-    if content is not None and int(content) != core().content_of(packing):
-        raise ValueError(
-            f"{path}: its grains were changed after this program had written them; a packing of your own has no "
-            "attribute content"
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = path = Path(path)
+        with reading(path) as file:
+            check_format(file, path, "voussoir packing")
+            self.radius, self.x, self.y = (file[name][()] for name in ("radius", "x", "y"))
+            self.rotation = file["rotation"][()] if "rotation" in file else np.zeros(len(self.radius))
+            self.cell = file["cell"][()]
+            self.contact_i, self.contact_j = file["contact_i"][()], file["contact_j"][()]
+            self.history = file["history"][()] if "history" in file else np.zeros((len(self.contact_i), 0))
+            names = str(plain(file["history"].attrs["names"])) if "history" in file else ""
+            self.history_names = names.split(",") if names else []
+            self.thickness = float(file.attrs["thickness"])
+            self.content = int(file.attrs["content"]) if "content" in file.attrs else None
+            self.numbers = {name: float(value) for name, value in file["numbers"].attrs.items()}
+            self.labels = {name: str(plain(value)) for name, value in file["labels"].attrs.items()}
+        grains = len(self.radius)
+        whole = (
+            grains and len(self.x) == len(self.y) == grains and np.all(self.radius > 0) and self.cell.shape == (2, 2)
         )
-    return packing
+        if not whole or not np.linalg.det(self.cell) > 0:
+            raise Unreadable(f"{path} cannot be read: its grains or its cell are impossible")
+        contacts = np.concatenate([self.contact_i, self.contact_j])
+        if len(contacts) and (contacts.min() < 0 or contacts.max() >= grains):
+            raise Unreadable(f"{path} cannot be read: a contact has a grain that does not exist")
+
+    def __repr__(self) -> str:
+        return f"<PackingFile {self.path.name}: {len(self.radius)} grains, void ratio {self.void_ratio:.3f}>"
+
+    @property
+    def position(self) -> np.ndarray:
+        """Centres of the grains (grain, 2) [m]."""
+        return np.column_stack([self.x, self.y])
+
+    @property
+    def recipe(self) -> str:
+        """What packings that differ by their seed alone have in common."""
+        return re.sub(r"\bseed \d+ ?", "", self.labels.get("recipe", ""))
+
+    @property
+    def seed(self) -> int:
+        return int(self.numbers.get("seed", 0))
+
+    @property
+    def void_ratio(self) -> float:
+        """Area of voids over area of grains [-], as the study's 2D void ratio; overlaps are not subtracted."""
+        return float(self.numbers.get("void_ratio", np.linalg.det(self.cell) / np.sum(np.pi * self.radius**2) - 1))
+
+    def _repr_png_(self) -> bytes:
+        from .notebook import packing_png
+
+        return packing_png(self.radius, self.position, self.cell, np.column_stack([self.contact_i, self.contact_j]))
 
 
-def write(path: str | os.PathLike[str], packing: dict[str, Any]) -> None:
-    """Writes a packing file, completely or not at all. Folders on the way are made."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with _h5py().File(path.name, "w", driver="core", backing_store=False, libver=("v108", "v108")) as file:
-        _fill(file, packing)
-        file.flush()
-        image = file.id.get_file_image()
-    core().publish(str(path), image)
+def packing_files(path: Path) -> list[Path]:
+    """The packing files that a path names: the file itself, or those in a folder of packings."""
+    if not path.is_dir():
+        return [path]
+    return sorted(path.glob("packing_*.h5")) or [path]
 
 
-def _fill(file: Any, packing: dict[str, Any]) -> None:
-    h5py = _h5py()
+def is_packing(path: Path) -> bool:
+    """True for a file in HDF5 by its name, and for a folder of packings that is no run."""
+    try:
+        if path.is_dir():
+            return not (path / "run.h5").exists() and any(path.glob("packing_*.h5"))
+        return path.suffix == ".h5" and path.exists()
+    except OSError as error:
+        raise Unreadable(f"{path} cannot be read: {error.strerror}") from error
 
-    def label(place: Any, name: str, text: str) -> None:  # of fixed length, which is what the program reads
-        length = max(1, len(text.encode()))
-        place.attrs.create(name, text, dtype=h5py.string_dtype("utf-8", length))
 
-    def column(name: str, unit: str) -> None:
-        file[name] = packing[name]
-        label(file[name], "unit", unit)
-
-    label(file, "format", _format)
-    file.attrs["format_version"] = np.int64(_format_version)
-    file.attrs["thickness"] = float(packing["thickness"])
-    file.attrs["content"] = np.int64(core().content_of(packing))
-    for name, unit in _units.items():
-        column(name, unit)
-    column("history", "SI")
-    label(file["history"], "names", ",".join(packing["history_names"]))
-    numbers, labels = file.create_group("numbers"), file.create_group("labels")
-    for name, value in packing["numbers"].items():
-        numbers.attrs[name] = float(value)
-    for name, text in packing["labels"].items():
-        label(labels, name, text)
+def table_of_packings(packings: list[PackingFile]) -> Table:
+    """One row a packing: file, seed, grains, contacts, void_ratio and the further numbers of the files."""
+    columns: dict[str, np.ndarray] = {
+        "file": np.array([packing.path.name for packing in packings]),
+        "seed": np.array([packing.seed for packing in packings]),
+        "grains": np.array([len(packing.radius) for packing in packings]),
+        "contacts": np.array([len(packing.contact_i) for packing in packings]),
+        "void_ratio": np.array([packing.void_ratio for packing in packings]),
+    }
+    for name in dict.fromkeys(name for packing in packings for name in packing.numbers):
+        columns.setdefault(name, np.array([packing.numbers.get(name, np.nan) for packing in packings]))
+    return Table(columns, {"pressure": "Pa"})

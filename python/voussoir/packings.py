@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from voussoir import packing_files
+from voussoir import packing_storage
 from voussoir.engine import core, running
 from voussoir.errors import PackingWarning
 from voussoir.settings import Settings, name, text_of
@@ -85,7 +85,7 @@ class Packing:
             ImportError: h5py is missing
             RuntimeError, OSError: the file cannot be written
         """
-        packing_files.write(path, as_dict(self))
+        packing_storage.write(path, as_dict(self))
 
 
 def as_dict(packing: Packing) -> dict[str, Any]:
@@ -177,11 +177,12 @@ def load_packing(path: str | os.PathLike[str], *, settings: Settings | None = No
 
     Raises:
         FileNotFoundError: there is no such file
+        Unreadable: it is no packing file, or a damaged one
         ValueError: it is no packing of this program
         InputError: a setting is wrong
         ImportError: h5py is missing
     """
-    packing = packing_files.read(path)
+    packing = packing_storage.read(path)
     if settings is not None:
         labels = {key: text for key, text in packing["labels"].items() if not key.startswith("soil.")}
         packing["labels"] = labels | core().soil_labels(text_of("pack", settings, ("soil",)), name)

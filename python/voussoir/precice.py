@@ -94,7 +94,7 @@ class Hub:
         return self._ids
 
     def _batch_of(self, ids: np.ndarray, case: Any, settings: Any, packings: Any, options: dict[str, Any]) -> Any:
-        import voussoir  # noqa: PLC0415  (the compiled module is needed only here)
+        import voussoir
 
         if case is not None:
             return voussoir.RveBatch.from_case(case, len(ids), settings)

@@ -1,4 +1,4 @@
-"""The package as a stranger installs it: a source distribution, the wheel that is built of it outside the checkout, and a
+"""The package as a stranger installs it: a source distribution, the wheel that is built of it outside the checkout, a
 fresh environment; what the wheel holds, links and shows; and the same bits on emulated older processors.
 
 Needs a Kokkos (Kokkos_ROOT, or that of tools/setup) and the packages build, nanobind and scikit-build-core of the
@@ -48,7 +48,7 @@ def source_distribution(folder):
     print(f"source distribution: {archive.stat().st_size / 1e6:.2f} MB in {time.monotonic() - start:.1f} s")
     with tarfile.open(archive) as opened:
         names = {name.split("/", 1)[1] for name in opened.getnames() if "/" in name}
-        opened.extractall(folder, filter="data")
+        opened.extractall(folder)
     for wanted in ("LICENSE", "python/voussoir/_core.pyi", "host/library/grain_batch.cpp", "tools/setup", "PKG-INFO"):
         check(wanted in names, f"{wanted} is not in the source distribution")
     foreign = [name for name in names if name.startswith((".prefix", "build", "docs", "tests", "cases"))]

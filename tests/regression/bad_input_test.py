@@ -5,7 +5,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from bad_settings import LINES, SETTINGS, SWEEPS
+from bad_settings import LINES, SCENES, SETTINGS, SWEEPS
 from program import PROGRAM, ROOT, check, command, fresh, run, table
 
 CASE = ROOT / "cases" / "tunnel_elastic" / "case.toml"
@@ -34,8 +34,8 @@ def fresh_file(name):
     return name
 
 
-def run_with(*settings):
-    return ["run", CASE, "-o", OUT, *(word for setting in settings for word in ("--set", setting))]
+def run_with(*settings, case=CASE):
+    return ["run", case, "-o", OUT, *(word for setting in settings for word in ("--set", setting))]
 
 
 place = f"bad.toml:{CASE.read_text().count(chr(10)) + 3}"
@@ -45,6 +45,8 @@ for text, fragments, _ in LINES:
 expect_complaint(["check", with_line("[soil]\nfrictoin = '30 deg'")], place)
 for settings, fragments, _ in SETTINGS:
     expect_complaint(run_with(*settings), *fragments)
+for settings, fragments, _ in SCENES:
+    expect_complaint(run_with(*settings, case=ROOT / "cases" / "trapdoor" / "case.toml"), *fragments)
 expect_complaint(["run", "no_such_case.toml", "-o", OUT], "no_such_case.toml")
 expect_complaint(["check", CASE, "--set", "output.rves=[1000000]"], "output.rves", "1000000")
 os.mkfifo(fresh_file("pipe.h5"))

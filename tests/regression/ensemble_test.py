@@ -16,9 +16,9 @@ import h5py
 import numpy as np
 from program import PROGRAM, ROOT, SMALL_TUNNEL, check, content, fresh, run, start_and_signal, table
 
-sys.path.insert(0, str(ROOT / "tools"))
-from voussoir_plots import reaction, troughs
-from voussoir_plots.result import Result, plain
+sys.path.insert(0, str(ROOT / "python"))
+from voussoir.figures import reaction, troughs
+from voussoir.figures.result import Result, plain
 
 CASE = ROOT / "cases/tunnel_quick/case.toml"
 SETTINGS = [

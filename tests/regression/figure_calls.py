@@ -8,7 +8,7 @@ from pathlib import Path
 from unittest import mock
 
 import matplotlib.pyplot as plt
-from voussoir_plots import guard, style
+from voussoir.figures import guard, style
 
 
 def call(script, *words):

@@ -8,19 +8,19 @@ import sys
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
-import figures
 import h5py
 import numpy as np
 from figure_calls import call, copy
 from program import command, run
-from voussoir_plots import calibration, element_tests, grading, probes, rve_size, small_samples, table_two
-from voussoir_plots.packings import Packing
-from voussoir_plots.result import Missing, RunIndex, Unreadable
-from voussoir_plots.sweep import Sweep
-from voussoir_plots.sweep_table import SweepTable
-from voussoir_plots.units import quantity
+from voussoir.figures import __main__ as figures
+from voussoir.figures import calibration, element_tests, grading, probes, rve_size, small_samples, table_two
+from voussoir.figures.packings import Packing
+from voussoir.figures.result import Missing, RunIndex, Unreadable
+from voussoir.figures.sweep import Sweep
+from voussoir.figures.units import quantity
+from voussoir.sweeps import SweepTable
 
 TESTS = ["packing.grains=100", "packing.seeds=[1, 2]", "packing.folder=packings"]
 
@@ -322,7 +322,7 @@ class BadInput(unittest.TestCase):
     def test_sweeps(self):
         shutil.rmtree("nothing", ignore_errors=True)
         Path("nothing/a/b").mkdir(parents=True)
-        self.assert_one_line("nothing has no run.h5: figures are drawn from", "nothing")
+        self.assert_one_line("nothing has no run.h5: results are", "nothing")
         Path("nothing/summary.csv").write_text("name,status\n")
         self.assert_one_line("nothing has no run with a run.h5", "nothing")
         Path("nothing/a/run.h5").write_bytes(b"half")

@@ -15,16 +15,17 @@ from pathlib import Path
 from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 import compare_runs
 import compare_tunnels
-import figures
 import h5py
 import numpy as np
 from figure_calls import call, copy
 from program import PROGRAM, check, run, start_and_signal
-from voussoir_plots import source, trend_table
-from voussoir_plots.catalogue import FIGURES
+from voussoir.figures import __main__ as figures
+from voussoir.figures import source, trend_table
+from voussoir.figures.catalogue import FIGURES
 
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 GROUND = """
@@ -95,7 +96,7 @@ class Runs(unittest.TestCase):
         bare = Path("runs/bare")
         shutil.rmtree(bare, ignore_errors=True)
         bare.mkdir()
-        self.assert_one_line(bare, "has no run.h5: figures are drawn from runs of the kinds")
+        self.assert_one_line(bare, "has no run.h5: results are runs of the kinds")
         shutil.copy("runs/coarse/run.h5", bare)
         self.assert_one_line(bare, "has no increments that can be drawn")
         self.assert_one_line("runs/none", "does not exist")

@@ -9,7 +9,7 @@ import re
 import tomllib
 from collections import Counter
 
-from bad_settings import LINES, SETTINGS, SWEEPS, UNIT
+from bad_settings import LINES, SCENES, SETTINGS, SWEEPS, UNIT
 from key_limits import KINDS, keys_of_kind, limits_of, lines_of, wrong_forms
 from program import PROGRAM, ROOT, check, run
 
@@ -165,7 +165,11 @@ def with_settings(data, settings):
         *tables, name = key.split(".")
         table = data
         for one in tables:
-            table = table.setdefault(one, {})
+            array, _, place = one.partition("[")
+            table = table.setdefault(array, [{}] if place else {})
+            if place and int(place[:-1]) >= len(table):
+                return None
+            table = table[int(place[:-1])] if place else table
         given = parsed(f"value = {value}")
         if given is None and re.match(r"[\[{]", value):
             return None
@@ -189,6 +193,9 @@ for text, _, reason in LINES:
     judge(of_case, parsed(f"{elastic}\n{text}\n"), reason, text, counts)
 for settings, _, reason in SETTINGS:
     judge(of_case, with_settings(tomllib.loads(elastic), settings), reason, str(settings)[:100], counts)
+trapdoor = (ROOT / "cases/trapdoor/case.toml").read_text()
+for settings, _, reason in SCENES:
+    judge(of_case, with_settings(tomllib.loads(trapdoor), settings), reason, str(settings)[:100], counts)
 for text, _, reason in SWEEPS:
     judge(of_sweep, parsed(f"base = 'case.toml'\n{text}"), reason, text, counts)
 print(f"wrong input of bad_input_test.py: {dict(counts)}")

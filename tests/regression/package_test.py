@@ -1,7 +1,9 @@
 """`cmake --install` gives a tree that knows nothing of the build: the tree is moved before it is tried. The headers
-compile one by one, and a program outside of the sources (tests/package) finds the CMake package, is built and runs."""
+compile one by one, and programs outside of the sources (tests/package) find the CMake package, are built and run: in
+C++, and in C with the shared library."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -81,9 +83,40 @@ def check_library(tree):
     options = [f"-D{name}={known[name]}" for name in ("CMAKE_CXX_COMPILER", "Kokkos_DIR") if name in known]
     run(["cmake", "-S", str(project), "-B", str(project / "build"), f"-DCMAKE_PREFIX_PATH={tree}", *options])
     run(["cmake", "--build", str(project / "build"), "-j", "2"])
-    said = run([str(project / "build/consumer/consumer"), str(CONSUMER / "grains.toml"), str(project / "packings")])
-    check("100 grains" in said.stdout and "packing.grain" in said.stdout, f"the consumer said {said.stdout}")
-    print(said.stdout)
+    said = run_consumer(project / "build/consumer/consumer", project)
+    check("100 grains" in said and "packing.grain" in said, f"the consumer said {said}")
+    print(said)
+    static = run_consumer(project / "build/consumer/static_consumer", project)
+    check(stresses(static) == stresses(said), f"the static library answers C with {static}")
+    return said
+
+
+def run_consumer(program, project):
+    return run([str(program), str(CONSUMER / "grains.toml"), str(project / "packings")]).stdout
+
+
+def stresses(said):
+    return re.findall(r"^stress .*", said, re.MULTILINE)
+
+
+def check_c(tree, said):
+    """The CMake package for C, which needs neither C++ nor another package, and pkg-config. Answers as in C++."""
+    build = fresh("project_c").resolve()
+    run(["cmake", "-S", str(CONSUMER / "c"), "-B", str(build), f"-DCMAKE_PREFIX_PATH={tree}"])
+    run(["cmake", "--build", str(build), "-j", "2"])
+    shared = run_consumer(build / "consumer_c", build)
+    check(len(stresses(said)) == 2 and stresses(shared) == stresses(said), f"the shared library answers {shared}")
+    pc = next(tree.glob("lib*/**/voussoir.pc"))
+    words = {**os.environ, "PKG_CONFIG_PATH": str(pc.parent)}
+    if shutil.which("pkg-config") is None:
+        print("there is no pkg-config")
+        return
+    flags = subprocess.run(
+        ["pkg-config", "--cflags", "--libs", "voussoir"], env=words, check=True, capture_output=True, text=True
+    ).stdout.split()
+    program = build / "by_pkg_config"
+    run(["cc", str(CONSUMER / "c/consumer.c"), "-o", str(program), *flags, "-lm", f"-Wl,-rpath,{pc.parents[1]}"])
+    check(stresses(run_consumer(program, build)) == stresses(said), "the program of pkg-config answers otherwise")
 
 
 def main():
@@ -93,7 +126,7 @@ def main():
     tree = installed()
     check_relocatable(tree)
     check_programs(tree)
-    check_library(tree)
+    check_c(tree, check_library(tree))
     size = subprocess.run(["du", "-sk", str(tree)], check=True, capture_output=True, text=True).stdout.split()[0]
     print(f"the installation has {int(size) / 1024:.1f} MiB")
     shutil.rmtree(tree)

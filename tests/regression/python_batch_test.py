@@ -1,6 +1,10 @@
 """Batches of RVEs in Python: the same bits as the program, mirrored points, states, increments, failures, errors."""
 
+import os
 import pickle
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 from program import PROGRAM, check, fresh, run
@@ -224,7 +228,7 @@ def check_errors(packings):
     raises(ValueError, lambda: batch(mirrored=[True]), "2 of them")
     raises(ValueError, lambda: voussoir.RveBatch([]), "at least one")
     raises(FileNotFoundError, lambda: voussoir.RveBatch(FOLDER / "none.h5"), "none.h5")
-    raises(ValueError, lambda: voussoir.load_packing(FOLDER / "first" / "path.csv"))
+    raises(voussoir.Unreadable, lambda: voussoir.load_packing(FOLDER / "first" / "path.csv"))
     with batch() as open_one:
         raises(ValueError, lambda: open_one.evaluate(np.zeros((3, 2, 2))), "(2, 2, 2)")
         raises(ValueError, lambda: open_one.evaluate(np.full((2, 2, 2), np.nan)), "point 0 is not finite")
@@ -239,6 +243,30 @@ def check_errors(packings):
     )
 
 
+def check_device(packings):
+    """RVEs on a device, here on the one that the host emulates: its library is found by an environment variable."""
+    code = (
+        "import sys, numpy as np, voussoir\n"
+        "packing = voussoir.load_packing(sys.argv[1])\n"
+        "for backend in ('gpu', 'lanes'):\n"
+        "    with voussoir.RveBatch(packing, 4, backend=backend, tangent='contact') as batch:\n"
+        "        print(batch._core.device())\n"
+        "        f = np.broadcast_to(np.diag([0, -1e-4]), (4, 2, 2))\n"
+        "        for _ in range(2): answer = batch.evaluate(f); batch.commit()\n"
+        "        state = batch.state([2]); batch.set_state(state, [1])\n"
+        "        print(answer.usable, answer.stress[:, 1, 1].round(-2), batch.packing(2).void_ratio)\n"
+    )
+    place = FOLDER / "of_device.h5"
+    packings[0].save(place)
+    environment = {**os.environ, "VOUSSOIR_GPU_LIBRARY": os.environ["VOUSSOIR_EMULATED_GPU"]}
+    words = [sys.executable, "-c", code, str(place)]
+    done = subprocess.run(words, check=False, capture_output=True, text=True, env=environment, timeout=120)
+    check(done.returncode == 0, done.stderr)
+    said, on_device, _, on_lanes = done.stdout.splitlines()
+    check("device" in said and "emulated" in said, said)
+    check(on_device == on_lanes, f"the device answers {on_device}, the lanes {on_lanes}")
+
+
 made = check_packing_files()
 check_same_bits(made)
 check_tangents()
@@ -246,5 +274,7 @@ check_mirrored(made)
 check_states(made)
 check_increments(made)
 check_errors(made)
+if Path(os.environ["VOUSSOIR_EMULATED_GPU"]).exists():
+    check_device(made)
 check(voussoir.status_names == tuple(voussoir.engine.core().status_names()), "names of the statuses")
 check(f"voussoir {voussoir.__version__}" in run([PROGRAM, "--version"]).stdout, "the version is the program's")

@@ -6,8 +6,8 @@ import sys
 
 from program import PROGRAM, ROOT, check, run
 
-sys.path.insert(0, str(ROOT / "tools"))
-from voussoir_plots import catalogue
+sys.path.insert(0, str(ROOT / "python"))
+from voussoir.figures import catalogue
 
 REFERENCE = ROOT / "docs/reference"
 

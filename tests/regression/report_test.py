@@ -15,8 +15,8 @@ import numpy as np
 import tiny_scene
 from program import PROGRAM, ROOT, SMALL_TUNNEL, check, fresh, run
 
-sys.path.insert(0, str(ROOT / "tools"))
-from voussoir_report import pack
+sys.path.insert(0, str(ROOT / "python"))
+from voussoir.report import pack
 
 CHROMIUM = shutil.which("chromium")
 if CHROMIUM is None or importlib.util.find_spec("playwright") is None:

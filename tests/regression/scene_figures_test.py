@@ -8,15 +8,15 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
-import figures
 import numpy as np
 from figure_calls import call
 from program import PROGRAM, fresh, run
 from tiny_scene import CASE
-from voussoir_plots import openings, panels, q8, regions, scene, scene_boundaries, scene_ground, scene_lines
-from voussoir_plots.result import Missing, Result
+from voussoir.figures import __main__ as figures
+from voussoir.figures import openings, panels, q8, regions, scene, scene_boundaries, scene_ground, scene_lines
+from voussoir.figures.result import Missing, Result
 
 OF_EVERY_SCENE = {
     *("mesh", "boundary_curves", "boundary_reactions", "record_points", "record_regions", "section_lines"),
@@ -33,6 +33,23 @@ def setUpModule():
         'base = "tiny.toml"\n[grid]\nname = "doors"\n[grid.modulus]\nsoft = ["elastic.modulus=30 MPa"]\nhard = []\n'
     )
     run([PROGRAM, "sweep", "runs/sweep.toml", "-o", "runs/sweep"])
+
+
+class Colours(unittest.TestCase):
+    def test_ground(self):
+        """Regions that are elastic on their own do not count for the colours, unless there are no others."""
+        wall = {"name": "wall", "elastic": {"modulus": "30 GPa"}}
+        result: Any = SimpleNamespace(
+            case={"region": [{"name": "sand"}, wall]},
+            region_names=["wall", "sand"],
+            regions=np.array([0, 1, 1]),
+            connectivity=np.zeros((3, 8), dtype=int),
+        )
+        self.assertEqual(regions.ground(result).tolist(), [False, True, True])
+        result.case = {"region": [{"name": "sand", "elastic": {}}, wall]}
+        self.assertEqual(regions.ground(result).tolist(), [True, True, True])
+        result.regions = None
+        self.assertEqual(regions.ground(result).tolist(), [True, True, True])
 
 
 class OfAScene(unittest.TestCase):
@@ -130,6 +147,11 @@ class OfAnOpening(unittest.TestCase):
         increment: Any = SimpleNamespace(field=lambda name: fields[name])
         motion = scene.Motion("hole", "x", True, ["1 m", "1 m"])
         (found,) = openings.pressure(result, motion, [increment])
+        self.assertAlmostEqual(found, 200e3, delta=1)
+        result.coordinates = np.vstack([self.points, self.centre])
+        result.points = {"eye": 9}
+        fields.update({name: np.vstack([values, np.zeros(2)]) for name, values in fields.items()})
+        (found,) = openings.pressure(result, scene.Motion("hole", "x", True, "eye"), [increment])
         self.assertAlmostEqual(found, 200e3, delta=1)
         self.assertRaises(Missing, openings.pressure, result, scene.Motion("gap", "x", True), [])
 

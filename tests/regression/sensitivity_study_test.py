@@ -10,12 +10,13 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 import numpy as np
 from sensitivity_study import fits, measures, places, runs, strength, tables
-from voussoir_plots import q8, trough_fit
-from voussoir_plots.result import Result
-from voussoir_plots.settings import Settings
+from voussoir.figures import q8, trough_fit
+from voussoir.figures.result import Result
+from voussoir.figures.settings import Settings
 
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 SWEEP = ROOT / "cases/study/sensitivity.toml"

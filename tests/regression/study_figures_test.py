@@ -8,14 +8,14 @@ import sys
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 import numpy as np
 from program import ROOT, SMALL_TUNNEL, command, run
-from voussoir_plots import paper, trends
-from voussoir_plots.result import Missing
-from voussoir_plots.study import bands, data, judging, merging, microstructure, sentences, stresses
-from voussoir_plots.study.catalogue import STUDY_FIGURES
+from voussoir.figures import paper, trends
+from voussoir.figures.result import Missing
+from voussoir.figures.study import bands, data, judging, merging, microstructure, sentences, stresses
+from voussoir.figures.study.catalogue import STUDY_FIGURES
 
 DRAWN = ("study_reaction", "study_fabric", "study_strong", "study_stress_changes")
 

@@ -8,12 +8,13 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 import numpy as np
-from voussoir_plots import chains, points, q8, settlements, tensors, trends
-from voussoir_plots.packings import Packing
-from voussoir_plots.result import Result
+from voussoir.figures import chains, points, q8, settlements, tensors, trends
+from voussoir.figures.packings import Packing
+from voussoir.figures.result import Result
+from voussoir.files import Table
 
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
 LOSS = np.linspace(0, 0.2, 81)
@@ -204,7 +205,8 @@ class Paths(unittest.TestCase):
 
     def test_the_foot_says_of_which_soil_the_scatter_is(self):
         result = Result.__new__(Result)
-        result.tables = {"draw_scatter": {name: np.array([0.1]) for name in ("settlement", "reaction", "k0")}}
+        scatter = {name: np.array([0.1]) for name in ("settlement", "reaction", "k0")}
+        result.tables = {"draw_scatter": Table(scatter)}
         result.case = {}
         self.assertIn("K0 by 10 % (standard deviations, docs", result.draw_note())
         result.case = {"packing": {"void_ratio": 0.234}}

@@ -6,10 +6,10 @@ import sys
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 import numpy as np
-from voussoir_plots import q8, trough_fit
+from voussoir.figures import q8, trough_fit
 
 
 class ModifiedGauss(unittest.TestCase):

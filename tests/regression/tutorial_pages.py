@@ -7,6 +7,7 @@ import math
 import os
 import re
 import subprocess
+import sys
 import traceback
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +16,7 @@ from program import ROOT, check
 
 FENCE = re.compile(r"^```(\w*)\s*$")
 MARK = re.compile(r"<!-- test: (\w+)\s*(.*?)\s*-->\s*\Z", re.DOTALL)
-MARKS = {"", "checkout", "long", "instead", "add", "status", "file", "output"}
+MARKS = {"", "checkout", "skip", "long", "instead", "add", "status", "file", "output"}
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?")
 
 
@@ -41,6 +42,10 @@ class Reader:
     said: str = ""
     smaller: bool = False  # whether a command of the page was made smaller for the test
     smaller_now: bool = False  # whether what was said last comes from such a command
+
+    def __post_init__(self):
+        """The reader's `python` is the one that runs the test."""
+        self.environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{self.environment['PATH']}"
 
 
 def blocks_of(page):
@@ -149,6 +154,8 @@ def check_there(block):
 
 
 def do_bash(block, reader):
+    if block.mark == "skip":
+        return
     if block.mark in ("checkout", "long") and not reader.whole:
         if block.mark == "long":
             check_there(block)

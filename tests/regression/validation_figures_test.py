@@ -8,6 +8,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
+sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 from validation_figures import budget, lattice
 from validation_figures.program import Program

@@ -4,11 +4,10 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-import h5py
 import numpy as np
-from voussoir_plots.reaction import curve
-from voussoir_plots.result import Missing, Result
-from voussoir_plots.troughs import Trough
+from voussoir.figures.reaction import curve
+from voussoir.figures.result import Missing, Result
+from voussoir.figures.troughs import Trough
 
 # The results, with their units and the factor from SI to the unit.
 RESULTS = {
@@ -58,13 +57,10 @@ def measured(folder: Path) -> Measured | None:
         reaction = float(np.min(ratio[loss <= 0.1 * (1 + 1e-9)]))
     except Missing:
         return None
-    with h5py.File(index) as file:
-        table = {name: file["table"][name][()] for name in ("volume_loss", "surface_settlement")}
-        steps = float(np.nansum(file["table/particle_steps"][()]))
-        # Runs of earlier versions count the tangents with the grains and have no column of their own for them.
-        times = [name for name in ("time_grains", "time_tangents") if name in file["table"]]
-        seconds = sum(float(np.nansum(file["table"][name][()])) for name in times)
-        stress, ratio = (file["tables/k0"][name][()] for name in ("vertical_stress", "ratio"))
+    table, k0 = result.table("increments"), result.table("k0")
+    steps = float(np.nansum(table["particle_steps"]))
+    # Runs of earlier versions count the tangents with the grains and have no column of their own for them.
+    seconds = sum(float(np.nansum(table[name])) for name in ("time_grains", "time_tangents") if name in table)
     (axis_depth, unit_weight, surcharge) = result.need("axis_depth", "unit_weight", "surcharge")
     in_loss = np.isfinite(table["volume_loss"]) & (table["volume_loss"] > 0)
     settlement = {
@@ -77,7 +73,7 @@ def measured(folder: Path) -> Measured | None:
         **settlement,
         "width": float(trough.width),
         "reaction": reaction,
-        "k0": float(np.interp(surcharge + unit_weight * axis_depth, stress, ratio)),
+        "k0": float(np.interp(surcharge + unit_weight * axis_depth, k0["vertical_stress"], k0["ratio"])),
     }
     numbers = Measured(values, bool(trough.fit.good), steps, seconds, _lanes_share(folder))
     cache.write_text(json.dumps(numbers.__dict__))

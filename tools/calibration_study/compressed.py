@@ -6,8 +6,8 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-import h5py
-from voussoir_plots.result import Missing, Unreadable
+from voussoir.errors import Missing, Unreadable
+from voussoir.packing_files import PackingFile
 
 from .definitions import Test
 from .plan import Set, Size
@@ -18,19 +18,13 @@ from .runs import Programme, packing_text, run_one, soil_text, tests_text
 def _write_packing(source: Path, target: Path) -> None:
     """A packing file as a table of grains, the form in which packings of other codes are read: the program brings such
     a packing to rest at each test's pressure with the soil's own contact law."""
-    with h5py.File(source) as file:
-        columns = [file[name][()] for name in ("x", "y", "radius", "rotation")]
-        (xx, xy), (yx, yy) = file["cell"][()].tolist()
-        thickness = float(file.attrs["thickness"])
+    packing = PackingFile(source)
+    columns = [packing.x, packing.y, packing.radius, packing.rotation]
+    ((xx, xy), (yx, yy)), thickness = packing.cell.tolist(), packing.thickness
     rows = [",".join([str(k), *(repr(float(v)) for v in row)]) for k, row in enumerate(zip(*columns, strict=True))]
     target.write_text("\n".join(["id,x_m,y_m,r_m,theta_z_rad", *rows]) + "\n")
     meta = {"N": len(rows), "hSize": [[xx, xy, 0], [yx, yy, 0], [0, 0, thickness]], "Lz": thickness}
     target.with_name(target.name.replace("_particles.csv", "_meta.json")).write_text(json.dumps(meta))
-
-
-def _seed_of(packing: Path) -> int:
-    with h5py.File(packing) as file:
-        return int(file["numbers"].attrs["seed"])
 
 
 def run(how: Programme, one: Set, size: Size) -> None:
@@ -42,7 +36,7 @@ def run(how: Programme, one: Set, size: Size) -> None:
         text = 'kind = "pack"\n' + soil_text(soil, values) + packing_text(soil, size, packings) + 'pressure = "1 kPa"\n'
         run_one(how, folder / f"{soil}_pack", text)
         for source in sorted(packings.glob("packing_*.h5")):
-            seed = _seed_of(source)
+            seed = PackingFile(source).seed
             grains = packings / f"seed{seed}_particles.csv"
             _write_packing(source, grains)
             text = f'kind = "biaxial"\n{soil_text(soil, values)}[packing]\nfile = "{grains}"\n{tests_text(soil, size)}'

@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from voussoir_plots.element_tests import common_angle
-from voussoir_plots.small_samples import jackknife_error
+from voussoir.figures.element_tests import common_angle
+from voussoir.figures.small_samples import jackknife_error
 
 from .plan import PRESSURES
 

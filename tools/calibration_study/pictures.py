@@ -6,7 +6,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
-from voussoir_plots.style import CYCLE, save, use_style
+from voussoir.figures.style import CYCLE, save, use_style
 
 from .fit import Measured
 from .plan import ANGLES, BOX, SOILS, TARGETS, from_unit

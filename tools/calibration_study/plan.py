@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from voussoir_plots.soils import NAMES
-from voussoir_plots.table_two import STUDY
+from voussoir.figures.soils import NAMES
+from voussoir.figures.table_two import STUDY
 
 SOILS = tuple(name.lower() for name in NAMES.values())  # cps_d, cps_md, cpg_d, as in cases/soils
 ANGLES = ("peak", "critical", "dilatancy")

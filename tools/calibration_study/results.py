@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
 
-from voussoir_plots.result import Missing, Unreadable, check_format, reading
-from voussoir_plots.rve_size import MOST_SCATTER
+from voussoir.figures.result import Missing, Unreadable, check_format, reading
+from voussoir.figures.rve_size import MOST_SCATTER
 
 from .definitions import DEFINITIONS, VERSION, Test, Value, with_error
 from .plan import SOILS, Set

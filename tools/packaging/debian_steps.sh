@@ -46,6 +46,7 @@ report "tunnel_elastic: $((SECONDS - start)) s"
 start=$SECONDS
 voussoir run $cases/tunnel_quick/case.toml -o /tmp/quick
 report "tunnel_quick: $((SECONDS - start)) s"
+report "Python: $(PYTHONPATH=/usr/share/voussoir/python python3 -c 'import voussoir; print(voussoir.open_result("/tmp/quick"))')"
 start=$SECONDS
 voussoir-figures /tmp/quick
 voussoir-figures /tmp/elastic
@@ -65,14 +66,17 @@ for isa in scalar v3 v4; do
   fi
 done
 
-install /packages/voussoir-dev_*.deb cmake make
-cmake -S /packages/consumer -B /tmp/consumer && cmake --build /tmp/consumer
+install /packages/libvoussoir*.deb /packages/voussoir-dev_*.deb cmake make
+for part in consumer consumer/c; do
+  cmake -S "/packages/$part" -B "/tmp/$part" && cmake --build "/tmp/$part"
+done
 /tmp/consumer/consumer /packages/consumer/grains.toml /tmp/consumer_packings
-report "a program was built against voussoir-dev and passed its checks"
+/tmp/consumer/c/consumer_c /packages/consumer/grains.toml /tmp/consumer_packings
+report "programs in C++ and C were built against voussoir-dev and passed their checks"
 
-apt-get -q -y purge voussoir voussoir-dev cmake make
+apt-get -q -y purge voussoir voussoir-dev 'libvoussoir*' cmake make
 apt-get -q -y autoremove --purge
-[[ -z "$(dpkg-query -W -f '${Package}\n' 'voussoir*' 2>/dev/null)" ]] || fail "dpkg still knows the packages"
+[[ -z "$(dpkg-query -W -f '${Package}\n' 'voussoir*' 'libvoussoir*' 2>/dev/null)" ]] || fail "dpkg still knows the packages"
 files >/tmp/files_after
 left=$(comm -13 /tmp/files_before /tmp/files_after)
 [[ -z "$(grep -i voussoir <<<"$left")" ]] || fail "the packages left files: $(grep -i voussoir <<<"$left")"

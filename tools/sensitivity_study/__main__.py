@@ -5,10 +5,11 @@ import argparse
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import matplotlib.pyplot as plt
-from voussoir_plots import output, style
-from voussoir_plots.result import Missing
+from voussoir.figures import output, style
+from voussoir.figures.result import Missing
 
 from sensitivity_study import figures, place_figure, runs, strength, tables
 

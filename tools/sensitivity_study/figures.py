@@ -6,8 +6,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from voussoir_plots.resolution import running_means
-from voussoir_plots.style import CYCLE, save
+from voussoir.figures.resolution import running_means
+from voussoir.figures.style import CYCLE, save
 
 from . import fits, places
 from .runs import LATE, Measured, Variation

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from voussoir_plots import trough_fit, troughs
-from voussoir_plots.result import Result, remembered
+from voussoir.figures import trough_fit, troughs
+from voussoir.figures.result import Result, remembered
 
 WHOLE = float("inf")
 RANGES = (WHOLE, 4.0, 3.0, 2.0, 1.0)  # of the distance from the axis, in D

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from voussoir_plots.resolution import running_means
+from voussoir.figures.resolution import running_means
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from voussoir_plots.style import colours, save
+from voussoir.figures.style import colours, save
 
 from . import fits, places
 from .figures import BLUE, GREEN, GREY, ORANGE

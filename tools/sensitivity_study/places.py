@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from voussoir_plots import points, reaction
-from voussoir_plots.result import Missing, Result
+from voussoir.figures import points, reaction
+from voussoir.figures.result import Missing, Result
 
 from .measures import Contraction, contraction
 
@@ -47,7 +47,7 @@ def mean_over(result: Result, field: str, inside: np.ndarray) -> np.ndarray:
     """Mean of a scalar field (or of the vertical stress, compression positive) over points, at each V_l."""
     if not inside.any():
         raise Missing("the mesh has no Gauss point at this place")
-    values = result.history(field)
+    values = result.loss_history(field)
     if field == "gauss/stress":
         values = -values[..., 1]
     return values.reshape(len(values), -1)[:, inside].mean(axis=1)

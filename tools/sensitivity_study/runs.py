@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from voussoir_plots import points, reaction
-from voussoir_plots.result import Missing, Result
+from voussoir.figures import points, reaction
+from voussoir.figures.result import Missing, Result
 
 from . import fits, measures, places
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from voussoir_plots.result import RunIndex
-from voussoir_plots.small_samples import standard_error
+from voussoir.figures.result import RunIndex
+from voussoir.figures.small_samples import standard_error
 
 GRID = "strength"  # of the sweep
 COLUMNS = ("pressure", "valid", "peak_angle", "critical_angle", "peak_strain", "contraction")

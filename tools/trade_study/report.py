@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import LogLocator, NullFormatter
-from voussoir_plots.style import save, use_style
+from voussoir.figures.style import save, use_style
 
 from .errors import STRAINS, evaluation_error, noise_share, path, path_error, path_scatter, probes
 from .plan import INCREMENTS, PRESSURES, Setting, settings

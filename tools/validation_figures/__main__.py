@@ -5,13 +5,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 import matplotlib.pyplot as plt
-from voussoir_plots import output, style
-from voussoir_plots.result import Missing
+from voussoir.errors import Error
+from voussoir.figures import output, style
 
 from validation_figures import budget, elastic_ground, lattice, scenes, yade_test
-from validation_figures.program import ROOT, Program, ProgramFailed
+from validation_figures.program import ROOT, Program
 
 FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
     "closed_forms_ground": elastic_ground.draw,
@@ -41,7 +42,7 @@ def main(words: list[str] | None = None) -> int:
         for name in given.figure or FIGURES:
             for line in FIGURES[name](program, given.output / f"{name}.png"):
                 output.say(f"{name}: {line}")
-    except (ProgramFailed, Missing) as reason:
+    except Error as reason:
         output.say(f"tools/validation: {reason}", error=True)
         return 2
     except output.CannotWrite as reason:

@@ -4,7 +4,7 @@ import csv
 from pathlib import Path
 
 import matplotlib.pyplot as plt
-from voussoir_plots.style import CYCLE, save
+from voussoir.figures.style import CYCLE, save
 
 from .program import Program
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from voussoir_plots import q8, stresses
-from voussoir_plots.result import Result
-from voussoir_plots.style import CYCLE, save
+from voussoir.figures import q8, stresses
+from voussoir.figures.result import Result
+from voussoir.figures.style import CYCLE, save
 
 from .program import ROOT, Program
 

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from voussoir_plots.style import CYCLE, save
+from voussoir.figures.style import CYCLE, save
 
 from .program import Program
 

@@ -1,13 +1,10 @@
 """Runs of the program whose output is drawn."""
 
-import subprocess
 from pathlib import Path
 
+import voussoir
+
 ROOT = Path(__file__).resolve().parent.parent.parent
-
-
-class ProgramFailed(Exception):
-    """The program is missing or ended with an error; the message names the run."""
 
 
 class Program:
@@ -17,20 +14,11 @@ class Program:
         self.path, self.folder = path.resolve(), folder.resolve()
 
     def run(self, name: str, case: Path, *settings: str) -> Path:
-        """The folder of a run of this case; the program is not called again where the run has finished."""
-        folder, log = self.folder / name, self.folder / f"{name}.log"
-        done = self.folder / f"{name}.done"
-        if done.exists():
-            return folder
-        self.folder.mkdir(parents=True, exist_ok=True)
-        words = [str(self.path), "run", str(case), "-o", str(folder), "--replace"]
-        words += [word for setting in settings for word in ("--set", setting)]
-        try:
-            with log.open("w") as lines:
-                status = subprocess.run(words, stdout=lines, stderr=lines, check=False).returncode
-        except OSError as error:
-            raise ProgramFailed(f"{self.path} cannot be started: {error.strerror}") from error
-        if status != 0:
-            raise ProgramFailed(f"{' '.join(words)} ended with exit status {status}; see {log}")
-        done.touch()
+        """The folder of a run of this case; the program is not called again where the run has finished. Raises
+        voussoir.Error where it does not end well."""
+        folder, done = self.folder / name, self.folder / f"{name}.done"
+        if not done.exists():
+            self.folder.mkdir(parents=True, exist_ok=True)
+            voussoir.run(case, folder, settings=settings, replace=True, program=self.path)
+            done.touch()
         return folder

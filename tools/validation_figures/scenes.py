@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from pathlib import Path
 
-import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from voussoir_plots.style import CYCLE, save
+from voussoir.figures.style import CYCLE, save
+from voussoir.results import Result, numbers_of
 
 from .program import ROOT, Program
 
@@ -22,10 +22,8 @@ PSI = np.radians(20.0)  # dilatancy angle of the packing in these tests, 18 to 2
 
 
 def stage(folder: Path, name: str) -> dict[str, Array]:
-    """Columns of run.h5:/table in one stage."""
-    with h5py.File(folder / "run.h5") as run:
-        chosen = run["table/stage"][()] == name.encode()
-        return {column: values[()][chosen] for column, values in run["table"].items()}
+    """The numbers of a stage's increments, as columns."""
+    return numbers_of(Result(folder).stage(name))
 
 
 def peak_frictions(program: Program) -> Array:

@@ -5,9 +5,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from voussoir_plots.element_tests import Series, Test
-from voussoir_plots.result import RunIndex
-from voussoir_plots.style import CYCLE, save
+from voussoir.figures.element_tests import Series, Test
+from voussoir.figures.result import RunIndex
+from voussoir.figures.style import CYCLE, save
 
 from .program import ROOT, Program
 

@@ -44,6 +44,17 @@ void check_tunnel(const HalfTunnelOptions& o) {
               1e-4 * o.diameter * o.diameter);
 }
 
+TEST(Mesh, InRegionAsksForTheNameAndWithoutNamesAnswersToAny) {
+  Mesh mesh = make_rectangle(1, 2, 1, 2);
+  EXPECT_TRUE(mesh.in_region(0, "sand"));
+  mesh.region_names = {"sand", "rock"};
+  mesh.region = {1, 0};
+  EXPECT_TRUE(mesh.in_region(0, "rock"));
+  EXPECT_TRUE(mesh.in_region(1, "sand"));
+  EXPECT_FALSE(mesh.in_region(1, "rock"));
+  EXPECT_FALSE(mesh.in_region(0, "gravel"));
+}
+
 TEST(TunnelMesh, IsSoundForAnyCoverAndFineness) {
   for (const double ratio : {0.5, 1.0, 2.0, 3.0, 4.0, 5.5})
     for (const double size : {0.25, 0.5, 1.1, 2.2})

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "host/case/failure.hpp"
 #include "host/program/failure.hpp"
 #include "host/program/sweep_outcome.hpp"
 #include "io/input_error.hpp"

@@ -39,6 +39,12 @@ TEST(MeshData, RegionsStandThereWhereThereAreSeveral) {
   EXPECT_EQ(mesh_data(mesh).region_names, mesh.region_names);
 }
 
+TEST(MeshData, PointsKeepTheirNamesAndNodes) {
+  fem::Mesh mesh = fem::make_rectangle(1, 2, 1, 2);
+  mesh.points = {{"shoulder", 3}, {"mark", 7}};
+  EXPECT_EQ(mesh_data(mesh).points, (std::map<std::string, std::int64_t>{{"mark", 7}, {"shoulder", 3}}));
+}
+
 TEST(ResultFields, AreMissingWhereElementsHaveBeenDugOut) {
   fem::Mesh mesh = fem::make_rectangle(1, 2, 1, 2);
   mesh.dug_out = {0, 1};

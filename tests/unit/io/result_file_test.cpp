@@ -111,6 +111,16 @@ TEST_F(ResultFileTest, RegionsReadBackAndAreACellField) {
   EXPECT_EQ(xdmf().find("region"), std::string::npos);
 }
 
+TEST_F(ResultFileTest, PointsReadBack) {
+  MeshData points = mesh();
+  points.points = {{"crown", 4}, {"mark of the shoulder", 12}};
+  ResultWriter::create(folder_, provenance_, points).write(info(1), fields());
+  EXPECT_EQ(read_mesh(folder_ / "run.h5").points, points.points);
+  ResultWriter::create(folder_, provenance_, mesh()).write(info(1), fields());
+  EXPECT_FALSE(Hdf5File::open(folder_ / "run.h5").has("/mesh/points")) << "a mesh without points has no group of them";
+  EXPECT_TRUE(read_mesh(folder_ / "run.h5").points.empty());
+}
+
 TEST_F(ResultFileTest, EverythingReadsBack) {
   ResultWriter writer = ResultWriter::create(folder_, provenance_, mesh());
   const RveSnapshot snapshot{.name = "crown",

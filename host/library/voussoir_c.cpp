@@ -1,0 +1,353 @@
+#include "host/library/voussoir.h"
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <span>
+#include <sstream>
+
+#include "host/library/c_calls.hpp"
+#include "host/material/rve_pool.hpp"
+#include "host/process/build_info.hpp"
+#include "host/process/exit_code.hpp"
+
+namespace voussoir::library {
+namespace {
+
+using kernels::RveStatus;
+static_assert(voussoir_converged == static_cast<int>(RveStatus::converged) &&
+              voussoir_step_limit == static_cast<int>(RveStatus::step_limit) &&
+              voussoir_open == static_cast<int>(RveStatus::open) &&
+              voussoir_neighbour_overflow == static_cast<int>(RveStatus::neighbour_overflow) &&
+              voussoir_overlap_limit == static_cast<int>(RveStatus::overlap_limit) &&
+              voussoir_not_finite == static_cast<int>(RveStatus::not_finite));
+static_assert(voussoir_ok == host::exit_code(host::Outcome::done) &&
+              voussoir_wrong_input == host::exit_code(host::Outcome::wrong_input) &&
+              voussoir_no_equilibrium == host::exit_code(host::Outcome::no_equilibrium) &&
+              voussoir_machine_failure == host::exit_code(host::Outcome::machine_failure) &&
+              voussoir_interrupted == host::exit_code(host::Outcome::interrupted));
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+void require(const void* pointer, const char* name) {
+  if (pointer == nullptr) throw Misuse(std::string(name) + " is NULL");
+}
+
+void require_equal(std::int64_t given, std::size_t right, const char* name) {
+  if (given == static_cast<std::int64_t>(right)) return;
+  throw Misuse(std::string(name) + " is " + std::to_string(given) + ", and " + std::to_string(right) + " is right");
+}
+
+std::vector<std::string> lines_of(const char* text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text == nullptr ? "" : text);
+  for (std::string line; std::getline(stream, line);) {
+    if (!line.empty()) lines.push_back(line);
+  }
+  return lines;
+}
+
+/// The arrays of a caller, in which an evaluation writes its answers.
+struct Answers {
+  std::span<double> stress, tangent;    ///< (n, 3), and (n, 3, 3) or empty
+  std::span<std::int32_t> status = {};  ///< (n) or empty
+};
+
+Answers answers_in(std::size_t n, double* stress, double* tangent, std::int32_t* status) {
+  Answers out{{stress, 3 * n}, {}};
+  if (tangent != nullptr) out.tangent = {tangent, 9 * n};
+  if (status != nullptr) out.status = {status, n};
+  return out;
+}
+
+void clear(const Answers& out) {
+  std::fill(out.stress.begin(), out.stress.end(), nan);
+  std::fill(out.tangent.begin(), out.tangent.end(), nan);
+  std::fill(out.status.begin(), out.status.end(), -1);
+}
+
+/// The tangents are symmetric, so that the order of Eigen's numbers is no question.
+void copy_point(const CRves& rves, std::size_t k, const Answers& out) {
+  std::copy_n(rves.stress[k].data(), 3, &out.stress[3 * k]);
+  if (!out.tangent.empty()) std::copy_n(rves.tangent[k].data(), 9, &out.tangent[9 * k]);
+}
+
+/// Takes the gradients (n, 2, 2) of a caller.
+void take_gradients(const double* gradients, CRves& rves) {
+  for (std::size_t k = 0; k < rves.gradients.size(); ++k) {
+    const double* h = gradients + 4 * k;
+    fem::Gradient& ours = rves.gradients[k];
+    ours << h[0], h[1], h[2], h[3];
+    const char* fault = nullptr;
+    if (!ours.allFinite()) fault = " is not finite";
+    if (!fault && (1 + h[0]) * (1 + h[3]) - h[1] * h[2] <= 0) fault = " turns the cell inside out (det F <= 0)";
+    if (fault) throw Misuse("the gradient of RVE " + std::to_string(k) + fault);
+  }
+}
+
+VoussoirReport report_of(const fem::BatchReport& from, std::int64_t failed) {
+  const auto number = [](std::size_t n) { return static_cast<std::int64_t>(n); };
+  VoussoirReport out{};
+  out.stress_noise = from.stress_noise;
+  out.unsettled_stress = from.unsettled_stress;
+  out.mean_overlap = from.mean_overlap.value_or(0);
+  out.deferral_error = from.deferral_error;
+  out.work = number(from.work);
+  out.failed = failed;
+  out.step_limit = number(from.step_limit);
+  out.open = number(from.open);
+  out.out_of_range = number(from.out_of_range);
+  out.deferred = number(from.deferred);
+  return out;
+}
+
+int evaluate(CRves& rves, const double* gradients, const Answers& out) {
+  rves.may_commit = false;
+  clear(out);
+  take_gradients(gradients, rves);
+  const std::span<fem::Tangent> tangents(rves.tangent.data(), out.tangent.empty() ? 0 : rves.tangent.size());
+  const fem::BatchReport report = rves.batch->evaluate(rves.gradients, rves.stress, tangents);
+  // make_rves makes a pool, which alone knows how each of its RVEs ended.
+  const auto& ended = dynamic_cast<const host::RvePool&>(*rves.batch).trial_reports();
+  std::int64_t failed = 0;
+  for (std::size_t k = 0; k < ended.size(); ++k) {
+    if (!out.status.empty()) out.status[k] = static_cast<std::int32_t>(ended[k].status);
+    if (kernels::is_failure(ended[k].status)) {
+      ++failed;
+    } else {
+      copy_point(rves, k, out);
+    }
+  }
+  rves.report = report_of(report, failed);
+  rves.may_commit = report.usable;
+  if (report.usable) return voussoir_ok;
+  remember(report.message);
+  return voussoir_no_equilibrium;
+}
+
+void set_state(CRves& rves, std::span<const std::byte> bytes) {
+  rves.may_commit = false;
+  rves.fields.clear();
+  const std::vector<std::byte> before = rves.batch->state();
+  try {
+    rves.batch->set_state(bytes);
+  } catch (...) {
+    rves.batch->set_state(before);  // a fault may be found after some of the RVEs have been set
+    throw;
+  }
+}
+
+const std::vector<fem::PointField>& fields_of(CRves& rves) {
+  if (rves.fields.empty()) rves.fields = rves.batch->fields();
+  return rves.fields;
+}
+
+/// A text that lives as long as the process. There are as many of them as there are fields.
+const char* kept(const std::string& text) {
+  static auto* const texts = new std::set<std::string>;
+  return texts->insert(text).first->c_str();
+}
+
+}  // namespace
+}  // namespace voussoir::library
+
+using namespace voussoir;  // NOLINT(google-build-using-namespace): the functions below stand outside of every namespace
+using library::Misuse;
+
+const char* voussoir_version(void) { return host::build_version; }
+
+const char* voussoir_last_error(void) { return library::last_error(); }
+
+const char* voussoir_status_name(int32_t status) {
+  if (status < voussoir_converged || status > voussoir_not_finite) return "";
+  return kernels::name_of(static_cast<kernels::RveStatus>(status));
+}
+
+int voussoir_start(int32_t threads) {
+  return library::guarded(__func__, [&] {
+    library::start_threads(threads);
+    return voussoir_ok;
+  });
+}
+
+int voussoir_stop(void) {
+  return library::guarded(__func__, [] {
+    library::stop_threads();
+    return voussoir_ok;
+  });
+}
+
+int32_t voussoir_threads(void) {
+  std::int32_t threads = 0;
+  library::guarded(__func__, [&] {
+    threads = library::running_threads();
+    return voussoir_ok;
+  });
+  return threads;
+}
+
+int voussoir_create(const char* case_file, int64_t n, const char* settings, VoussoirNote note, void* context,
+                    VoussoirRves** rves) {
+  return library::guarded(__func__, [&] {
+    library::require(rves, "rves");
+    *rves = nullptr;
+    library::require(case_file, "case_file");
+    if (n < 1) throw Misuse("n is " + std::to_string(n) + ", and at least 1 is right");
+    library::require_threads();
+    library::Note lines;
+    if (note != nullptr) lines = [&](const std::string& line) { note(line.c_str(), context); };
+    const auto size = static_cast<std::size_t>(n);
+    auto ours = std::make_unique<library::CRves>();
+    ours->batch = library::make_rves(case_file, size, library::lines_of(settings), lines);
+    ours->gradients.resize(size);
+    ours->stress.resize(size);
+    ours->tangent.resize(size);
+    *rves = library::new_handle(std::move(ours));
+    return voussoir_ok;
+  });
+}
+
+int voussoir_destroy(VoussoirRves* rves) {
+  return library::guarded(__func__, [&] {
+    if (rves != nullptr) library::free_rves(rves);
+    return voussoir_ok;
+  });
+}
+
+int64_t voussoir_size(const VoussoirRves* rves) {
+  std::int64_t size = 0;
+  library::guarded(__func__, [&] {
+    if (const library::CRves* ours = library::find_rves(rves)) size = static_cast<std::int64_t>(ours->batch->size());
+    return voussoir_ok;
+  });
+  return size;
+}
+
+int voussoir_begin_increment(VoussoirRves* rves) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    ours.may_commit = false;
+    ours.batch->begin_increment();
+    return voussoir_ok;
+  });
+}
+
+int voussoir_evaluate(VoussoirRves* rves, int64_t n, const double* gradients, double* stress, double* tangent,
+                      int32_t* status) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    library::require_equal(n, ours.batch->size(), "n");
+    library::require(gradients, "gradients");
+    library::require(stress, "stress");
+    return library::evaluate(ours, gradients, library::answers_in(ours.batch->size(), stress, tangent, status));
+  });
+}
+
+int voussoir_commit(VoussoirRves* rves) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    if (!ours.may_commit) throw Misuse("there is no evaluation since the last commit of which all RVEs have answers");
+    ours.may_commit = false;
+    ours.fields.clear();
+    ours.batch->commit();
+    ours.batch->begin_increment();
+    return voussoir_ok;
+  });
+}
+
+int voussoir_committed(VoussoirRves* rves, int64_t n, double* stress, double* tangent) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    library::require_equal(n, ours.batch->size(), "n");
+    library::require(stress, "stress");
+    const library::Answers out = library::answers_in(ours.batch->size(), stress, tangent, nullptr);
+    const std::span<fem::Tangent> tangents(ours.tangent.data(), out.tangent.empty() ? 0 : ours.tangent.size());
+    ours.batch->committed(ours.stress, tangents);
+    for (std::size_t k = 0; k < ours.stress.size(); ++k) library::copy_point(ours, k, out);
+    return voussoir_ok;
+  });
+}
+
+int voussoir_report(VoussoirRves* rves, VoussoirReport* report) {
+  return library::guarded(__func__, [&] {
+    const library::CRves& ours = library::rves_of(rves);
+    library::require(report, "report");
+    if (!ours.report) throw Misuse("there is no evaluation yet");
+    *report = *ours.report;
+    return voussoir_ok;
+  });
+}
+
+int voussoir_state_size(VoussoirRves* rves, int64_t* size) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    library::require(size, "size");
+    *size = static_cast<std::int64_t>(ours.batch->hold()->size());
+    return voussoir_ok;
+  });
+}
+
+int voussoir_get_state(VoussoirRves* rves, void* bytes, int64_t size) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    library::require(bytes, "bytes");
+    const auto held = ours.batch->hold();
+    library::require_equal(size, held->size(), "size");
+    auto* to = static_cast<std::byte*>(bytes);
+    held->write([&](std::span<const std::byte> piece) { to = std::copy(piece.begin(), piece.end(), to); });
+    return voussoir_ok;
+  });
+}
+
+int voussoir_set_state(VoussoirRves* rves, const void* bytes, int64_t size) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    library::require(bytes, "bytes");
+    if (size < 0) throw Misuse("size is negative");
+    try {
+      library::set_state(ours, {static_cast<const std::byte*>(bytes), static_cast<std::size_t>(size)});
+    } catch (const std::runtime_error& fault) {
+      library::remember(std::string("the state cannot be set: ") + fault.what());
+      return static_cast<int>(voussoir_wrong_input);
+    }
+    return static_cast<int>(voussoir_ok);
+  });
+}
+
+int voussoir_field_count(VoussoirRves* rves, int64_t* count) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    library::require(count, "count");
+    *count = static_cast<std::int64_t>(library::fields_of(ours).size());
+    return voussoir_ok;
+  });
+}
+
+int voussoir_field(VoussoirRves* rves, int64_t index, const char** name, const char** unit, int32_t* components) {
+  return library::guarded(__func__, [&] {
+    const auto& fields = library::fields_of(library::rves_of(rves));
+    if (index < 0 || index >= static_cast<std::int64_t>(fields.size())) {
+      throw Misuse("there is no field " + std::to_string(index) + " of " + std::to_string(fields.size()));
+    }
+    const fem::PointField& field = fields[static_cast<std::size_t>(index)];
+    if (name != nullptr) *name = library::kept(field.name);
+    if (unit != nullptr) *unit = library::kept(field.unit);
+    if (components != nullptr) *components = field.components;
+    return voussoir_ok;
+  });
+}
+
+int voussoir_field_values(VoussoirRves* rves, const char* name, double* values, int64_t size) {
+  return library::guarded(__func__, [&] {
+    library::CRves& ours = library::rves_of(rves);
+    library::require(name, "name");
+    library::require(values, "values");
+    for (const fem::PointField& field : library::fields_of(ours)) {
+      if (field.name != name) continue;
+      library::require_equal(size, field.values.size(), "size");
+      std::copy(field.values.begin(), field.values.end(), values);
+      return voussoir_ok;
+    }
+    throw Misuse("there is no field " + std::string(name));
+  });
+}

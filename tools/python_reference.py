@@ -1,0 +1,163 @@
+"""The public names of the Python package voussoir with their docstrings, as Markdown, which tools/reference_pages.py
+writes into docs/reference/python.md.
+
+The sources are read and not imported, so that the page needs neither the compiled module nor what single modules
+import. A name without a docstring is an error: the page is the only complete list.
+"""
+
+import ast
+import inspect
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parent.parent / "python" / "voussoir"
+LINE = 100  # the longest signature in one line
+
+
+class Module:
+    """The source of a module of the package."""
+
+    def __init__(self, name: str) -> None:
+        place = PACKAGE.joinpath(*name.split("."))
+        self.name = name
+        self.text = (place / "__init__.py" if place.is_dir() else place.with_suffix(".py")).read_text(encoding="utf-8")
+        self.lines = self.text.splitlines()
+        self.tree = ast.parse(self.text)
+        self.definitions = {
+            node.name: node for node in self.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)
+        }
+
+
+def public_names() -> dict[str, list[str]]:
+    """The public names of each module, from the table _MODULES of the package."""
+    for node in Module("__init__").tree.body:
+        target = (
+            node.target
+            if isinstance(node, ast.AnnAssign)
+            else node.targets[0]
+            if isinstance(node, ast.Assign)
+            else None
+        )
+        if isinstance(target, ast.Name) and target.id == "_MODULES":
+            assert isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None
+            return {module: list(names) for module, names in ast.literal_eval(node.value).items()}
+    raise LookupError("python/voussoir/__init__.py has no table _MODULES")
+
+
+def code(text: str) -> str:
+    return f"```python\n{text}\n```"
+
+
+def decorators(node: ast.FunctionDef) -> set[str]:
+    return {
+        d.id if isinstance(d, ast.Name) else d.attr
+        for d in node.decorator_list
+        if isinstance(d, ast.Name | ast.Attribute)
+    }
+
+
+def documentation(node: ast.FunctionDef | ast.ClassDef) -> str:
+    return inspect.cleandoc(ast.get_docstring(node, clean=False) or "")
+
+
+def split_arguments(text: str) -> list[str]:
+    """What stands between the commas outside of all brackets."""
+    parts, depth = [""], 0
+    for letter in text:
+        depth += (letter in "([{") - (letter in ")]}")
+        if letter == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return [part.strip() for part in parts]
+
+
+def signature(node: ast.FunctionDef, name: str, bound: bool) -> str:
+    """`name(a, b=1) -> what`; each argument has a line of its own where one line would be too long.
+
+    bound: the first argument is the object, and the caller does not give it."""
+    arguments = split_arguments(ast.unparse(node.args))[int(bound) :]
+    returns = f" -> {ast.unparse(node.returns)}" if node.returns and node.name != "__init__" else ""
+    whole = f"{name}({', '.join(arguments)}){returns}"
+    if len(whole) <= LINE:
+        return whole
+    return "\n".join([f"{name}(", *(f"    {argument}," for argument in arguments), f"){returns}"])
+
+
+def member(node: ast.FunctionDef, name: str) -> str:
+    """A method or a property; nothing where it is not public or repeats what another one says."""
+    kinds = decorators(node)
+    if node.name.startswith("_") or "setter" in kinds or not documentation(node):
+        return ""
+    if kinds & {"property", "cached_property"}:
+        head = f"{name}: {ast.unparse(node.returns)}" if node.returns else name
+    else:
+        head = signature(node, name, bound="staticmethod" not in kinds)
+    return f"{code(head)}\n\n{documentation(node)}"
+
+
+def fields(module: Module, node: ast.ClassDef) -> str:
+    """The fields of a dataclass or a named tuple, each with the comment `#:` behind it."""
+    lines = []
+    for field in node.body:
+        if not isinstance(field, ast.AnnAssign) or not isinstance(field.target, ast.Name):
+            continue
+        comment = module.lines[field.lineno - 1].partition("#:")[2].strip()
+        if comment:
+            lines.append(f"- `{field.target.id}`: {comment}")
+    return "\n".join(lines)
+
+
+def members(module: Module, node: ast.ClassDef, name: str) -> list[str]:
+    """Fields, properties and methods, those of base classes in the same module too."""
+    own = [
+        fields(module, node),
+        *(member(part, f"{name}.{part.name}") for part in node.body if isinstance(part, ast.FunctionDef)),
+    ]
+    for base in node.bases:
+        found = module.definitions.get(base.id) if isinstance(base, ast.Name) else None
+        if isinstance(found, ast.ClassDef):
+            own += members(module, found, name)
+    return [part for part in own if part]
+
+
+def class_section(module: Module, node: ast.ClassDef) -> list[str]:
+    start = next((part for part in node.body if isinstance(part, ast.FunctionDef) and part.name == "__init__"), None)
+    parts = []
+    if start is not None and "Exception" not in node.name:
+        parts = [code(signature(start, node.name, bound=True)), documentation(start)]
+    return [*parts[:1], documentation(node), *parts[1:], *members(module, node, node.name)]
+
+
+def comment_above(module: Module, name: str) -> str:
+    """The comment `#:` above a constant."""
+    row = next(k for k, line in enumerate(module.lines) if line.startswith((f"{name} =", f"{name}:")))
+    first = row
+    while first > 0 and module.lines[first - 1].startswith("#:"):
+        first -= 1
+    return "\n".join(line.removeprefix("#:").removeprefix(" ") for line in module.lines[first:row])
+
+
+def section(module: Module, name: str) -> str:
+    """All that the page says of one public name."""
+    node = module.definitions.get(name)
+    if isinstance(node, ast.ClassDef):
+        parts = class_section(module, node)
+    elif isinstance(node, ast.FunctionDef):
+        parts = [code(signature(node, name, bound=False)), documentation(node)]
+    else:
+        parts = [comment_above(module, name)]
+    text = "\n\n".join(part for part in parts if part)
+    if not text:
+        raise LookupError(f"voussoir.{name} has no docstring")
+    return f"### {name}\n\n{text}"
+
+
+def page() -> str:
+    """The sections of all public names, module by module in the order of the table."""
+    parts = []
+    for module_name, names in public_names().items():
+        module = Module(module_name)
+        head = (ast.get_docstring(module.tree) or "").split("\n\n")[0].replace("\n", " ")
+        parts.append(f"## voussoir.{module_name}\n\n{head}")
+        parts.extend(section(module, name) for name in names)
+    return "\n\n".join(parts)
