@@ -84,8 +84,9 @@ def couple(name, macro, hub, flags=None, **parameters):
     output = {"output": lambda point: point.hub.output(f"{name}_grains")} if name.startswith("output") else {}
     sys.modules[name] = types.ModuleType(name)
     vars(sys.modules[name])["MicroSimulation"] = type("MicroSimulation", (Point,), {"hub": hub, **output})
-    Path("macro.json").write_text(json.dumps(macro))
-    os.environ["VOUSSOIR_MACRO"] = str(Path("macro.json").absolute())
+    file = Path(f"{name}_macro.json").absolute()
+    file.write_text(json.dumps(macro))
+    os.environ["VOUSSOIR_MACRO"] = str(file)
     config = configuration(name, **parameters)
     config["micro_manager"] |= flags or {}
     Path(f"{name}.json").write_text(json.dumps(config))
@@ -257,7 +258,7 @@ def check_ranks(packings):
     environment = dict(os.environ)  # as it was before MPI of this process made mpirun take itself for a rank
     found = {}
     for size in (1, 2):
-        words = on_ranks(size, [sys.executable, script, *files])
+        words = on_ranks(size, [sys.executable, "-m", "mpi4py", script, *files])  # a rank that fails ends all
         done = subprocess.run(words, check=False, capture_output=True, text=True, timeout=100, env=environment)
         check(done.returncode == 0, f"{size} ranks end with {done.returncode}: {done.stdout}{done.stderr}")
         parts = [np.load(f"rank_{rank}_of_{size}.npz") for rank in range(size)]
