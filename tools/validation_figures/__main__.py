@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 from voussoir_plots import output, style
 from voussoir_plots.result import Missing
 
-from validation_figures import budget, elastic_ground, lattice, scenes, yade_test
+from validation_figures import both_halves, budget, elastic_ground, ground_reaction, lattice, scenes, yade_test
 from validation_figures.program import ROOT, Program, ProgramFailed
 
 FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
@@ -19,6 +19,8 @@ FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
     "yade_biaxial": yade_test.draw,
     "error_budget": budget.draw,
     "scenes": scenes.draw,
+    "scenes_trapdoor": ground_reaction.draw,
+    "scenes_full_tunnel": both_halves.draw,
 }
 
 
