@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 from voussoir.errors import Error
 from voussoir.figures import output, style
 
-from validation_figures import budget, elastic_ground, lattice, scenes, yade_test
+from validation_figures import both_halves, budget, elastic_ground, ground_reaction, lattice, scenes, yade_test
 from validation_figures.program import ROOT, Program
 
 FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
@@ -20,6 +20,8 @@ FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
     "yade_biaxial": yade_test.draw,
     "error_budget": budget.draw,
     "scenes": scenes.draw,
+    "scenes_trapdoor": ground_reaction.draw,
+    "scenes_full_tunnel": both_halves.draw,
 }
 
 

@@ -61,6 +61,18 @@ def rankine(lateral_frictions: Array, passive: bool) -> float:
     return float(np.trapezoid(k * vertical, depth) / np.trapezoid(vertical, depth))
 
 
+def terzaghi(friction: float, lateral: float) -> float:
+    """Load on the trapdoor over its first value between vertical planes that slide, with the coefficient `lateral`."""
+    decay = 2 * lateral * np.tan(friction) * HEIGHT  # the door is 1 m wide
+    weight = UNIT_WEIGHT * HEIGHT * (1 - np.exp(-decay)) / decay
+    return float((weight + P0 * np.exp(-decay)) / (UNIT_WEIGHT * HEIGHT + P0))
+
+
+def wedge(angle: float) -> float:
+    """Weight on the trapdoor, over its first load, of the wedge whose sides leave the vertical by this angle [rad]."""
+    return float(UNIT_WEIGHT / (4 * np.tan(angle)) / (UNIT_WEIGHT * HEIGHT + P0))
+
+
 def _friction(axis: Axes, frictions: Array) -> list[str]:
     axis.semilogx(LATERAL, np.degrees(frictions), "o-", color=CYCLE[0])
     axis.set_xlabel("lateral stress of the element test [kPa]")
@@ -94,14 +106,11 @@ def _trapdoor(axis: Axes, program: Program, frictions: Array) -> list[str]:
     lowered = stage(program.run("trapdoor", ROOT / "cases/trapdoor/case.toml"), "lowering")
     load = lowered["traction_door_y"] / (UNIT_WEIGHT * HEIGHT + P0)
     axis.plot(-100 * lowered["displacement_door_y"], load, color=CYCLE[0])  # in % of the door's width of 1 m
-    first = UNIT_WEIGHT * HEIGHT + P0
     friction = float(np.interp(20, LATERAL, frictions))
-    decay = 2 * np.tan(friction) * HEIGHT
-    terzaghi = (UNIT_WEIGHT * HEIGHT * (1 - np.exp(-decay)) / decay + P0 * np.exp(-decay)) / first
     forms: list[tuple[str, float]] = [
-        ("wedge with $\\varphi$", UNIT_WEIGHT / (4 * np.tan(friction)) / first),
-        ("wedge with $\\psi$", UNIT_WEIGHT / (4 * np.tan(PSI)) / first),
-        ("Terzaghi, K = 1", terzaghi),
+        ("wedge with $\\varphi$", wedge(friction)),
+        ("wedge with $\\psi$", wedge(PSI)),
+        ("Terzaghi, K = 1", terzaghi(friction, 1.0)),
     ]
     for k, (name, value) in enumerate(forms, start=1):
         axis.axhline(value, color=CYCLE[k], linestyle="--", linewidth=1, label=name)

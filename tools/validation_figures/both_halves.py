@@ -1,0 +1,144 @@
+"""Both halves of a tunnel with random packings: how much of the symmetry is left, and the half tunnel beside them."""
+
+from pathlib import Path
+
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from voussoir.figures.ensemble import INDEX, Ensemble
+from voussoir.figures.style import CYCLE, save
+
+from .program import ROOT, Program
+
+Array = np.ndarray
+SHOWN = {0.01: CYCLE[0], 0.025: CYCLE[2], 0.05: CYCLE[3]}  # volume losses that are drawn and told
+MEMBERS, HALF_MEMBERS = 4, 8
+TO_FIVE = ("stage[1].steps=20", "stage[1].move[0].area=-5 %")  # increments as in the case, of half the volume loss
+HALF_TO_FIVE = ("volume_loss.increments=20", "volume_loss.total=5 %")
+SAME_MESH = ("ground.mesh_size_opening=1.2 m", "ground.mesh_size_far=6 m")  # as in cases/full_tunnel
+
+
+class Surface:
+    """Settlements of the surface of an ensemble of full tunnels."""
+
+    def __init__(self, folder: Path) -> None:
+        ensemble = Ensemble(folder)
+        table = ensemble.tables["line_surface"]
+        with h5py.File(folder / INDEX) as file:
+            index = file["table/index"][()]
+        self.count = ensemble.count
+        self.loss = ensemble.curve("area_opening").mean
+        first = table["increment"].mean == index[-1]
+        self.x = table["x"].mean[first] - np.mean(table["x"].mean[first])
+        self.rows = [table["increment"].mean == one for one in index]
+        self.settlement = -table["displacement_y"].members  # (member, row)
+
+    def at(self, loss: float) -> Array:
+        """Settlements (member, place) at the volume loss nearest to this one [m]."""
+        return self.settlement[:, self.rows[int(np.argmin(np.abs(self.loss - loss)))]]
+
+    def sides(self, loss: float) -> tuple[Array, Array]:
+        """Settlements left and right of the axis, from the axis outwards; places lie alike on both sides."""
+        values, middle = self.at(loss), len(self.x) // 2
+        return values[:, : middle + 1][:, ::-1], values[:, -middle - 1 :]
+
+    def asymmetry(self, loss: float) -> Array:
+        """Of each member, the rms of right less left over the rms of their mean."""
+        left, right = self.sides(loss)
+        return np.asarray(np.sqrt(np.mean((right - left) ** 2, axis=1) / np.mean((right + left) ** 2 / 4, axis=1)))
+
+
+def half_trough(folder: Path, loss: float) -> tuple[Array, Array]:
+    """Distances from the axis [m] and settlements (member, node) [m] of an ensemble of half tunnels."""
+    ensemble = Ensemble(folder)
+    if ensemble.trough is None or ensemble.trough_x is None:
+        raise ValueError(f"{folder} has no trough")
+    rows = ensemble.losing()
+    row = rows[int(np.argmin(np.abs(ensemble.load[rows] - loss)))]
+    return ensemble.trough_x, ensemble.trough.members[:, row]
+
+
+def _band(axis: Axes, x: Array, members: Array, colour: str, width: float = 1.6, label: str = "_") -> None:
+    """Mean of the members and their standard deviation around it."""
+    mean, deviation = 1e3 * members.mean(axis=0), 1e3 * members.std(axis=0, ddof=1)
+    axis.fill_between(x, mean - deviation, mean + deviation, color=colour, alpha=0.3, linewidth=0)
+    axis.plot(x, mean, color=colour, linewidth=width, label=label)
+
+
+def _troughs(axis: Axes, full: Surface, half: Path) -> None:
+    for loss, colour in SHOWN.items():
+        _band(axis, full.x, full.at(loss), colour, label=f"$V_l$ = {100 * loss:g} %")
+        x, members = half_trough(half, loss)
+        mean = 1e3 * members.mean(axis=0)
+        axis.plot(
+            x, mean, "k--", linewidth=1, label=f"half tunnel, mean of {len(members)}" if loss == max(SHOWN) else "_"
+        )
+        axis.plot(-x, mean, "k--", linewidth=1)
+    axis.invert_yaxis()
+    axis.set_xlim(-25, 25)
+    axis.set_xlabel("distance from the axis  $x$  [m]")
+    axis.set_ylabel("settlement  [mm]")
+    axis.set_title(f"mean ± deviation of {full.count}")
+    axis.legend(fontsize=8.5, loc="lower right")
+
+
+def _differences(axis: Axes, full: Surface) -> None:
+    for loss, colour in SHOWN.items():
+        left, right = full.sides(loss)
+        x = full.x[-left.shape[1] :]
+        for k, one in enumerate(1e3 * (right - left)):
+            axis.plot(x, one, color=colour, linewidth=1, label=f"$V_l$ = {100 * loss:g} %" if k == 0 else "_")
+        _band(axis, x, right - left, colour, 2.2)
+    axis.axhline(0, color="0.4", linewidth=0.8)
+    axis.set_xlim(0, 25)
+    axis.set_xlabel("distance from the axis  $|x|$  [m]")
+    axis.set_ylabel("settlement right less left  [mm]")
+    axis.set_title("difference of the halves")
+    axis.legend(fontsize=8.5, loc="upper right")
+
+
+def _growth(axis: Axes, full: Surface) -> None:
+    losses = full.loss[full.loss > 1e-6]
+    share = 100 * np.array([full.asymmetry(loss) for loss in losses])  # (increment, member)
+    for k in range(full.count):
+        axis.plot(100 * losses, share[:, k], color="0.45", linewidth=0.8, label="the members" if k == 0 else "_")
+    axis.plot(100 * losses, share.mean(axis=1), color=CYCLE[0], linewidth=2.2, label=f"mean of {full.count}")
+    axis.set_xlim(0, 100 * losses.max())
+    axis.set_ylim(bottom=0)
+    axis.set_xlabel("volume loss  $V_l$  [%]")
+    axis.set_ylabel("rms of the difference over rms of the mean  [%]")
+    axis.set_title("asymmetry")
+    axis.legend(fontsize=8.5, loc="upper left")
+
+
+def _told(full: Surface, half: Path) -> list[str]:
+    lines = []
+    for loss in SHOWN:
+        middle = 1e3 * full.at(loss)[:, len(full.x) // 2]
+        left, right = full.sides(loss)
+        largest = 1e3 * np.abs(right - left).max(axis=1)
+        places = full.x[full.at(loss).argmax(axis=1)]
+        share = 100 * full.asymmetry(loss)
+        x, members = half_trough(half, loss)
+        of_half = 1e3 * members[:, np.argmin(np.abs(x))]
+        lines.append(
+            f"V_l {100 * loss:g} %: {middle.mean():.1f} +- {middle.std(ddof=1):.1f} mm (half {of_half.mean():.1f} +- "
+            f"{of_half.std(ddof=1):.1f}); differences {', '.join(f'{d:.1f}' for d in largest)} mm; "
+            f"rms {', '.join(f'{s:.1f}' for s in share)} %; largest at {', '.join(f'{p:.1f}' for p in places)} m"
+        )
+    area = full.at(max(SHOWN))
+    lines.append(f"centre of the trough: {', '.join(f'{c:.2f}' for c in area @ full.x / area.sum(axis=1))} m")
+    return lines
+
+
+def draw(program: Program, path: Path) -> list[str]:
+    full = Surface(program.ensemble("full", ROOT / "cases/full_tunnel/case.toml", MEMBERS, *TO_FIVE))
+    half = program.ensemble("half", ROOT / "cases/tunnel_quick/case.toml", HALF_MEMBERS, *SAME_MESH, *HALF_TO_FIVE)
+    figure, axes = plt.subplots(1, 3, figsize=(14, 4.4), layout="constrained")
+    _troughs(axes[0], full, half)
+    _differences(axes[1], full)
+    _growth(axes[2], full)
+    figure.suptitle("Both halves of a tunnel in dense coarse sand, 16 packings over all points", fontsize=12)
+    save(figure, path)
+    return _told(full, half)
