@@ -6,7 +6,8 @@ import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from voussoir.figures.ensemble import INDEX, Ensemble
+from voussoir.ensembles import INDEX
+from voussoir.figures.ensemble import Ensemble
 from voussoir.figures.style import CYCLE, save
 
 from .program import ROOT, Program
