@@ -38,10 +38,14 @@ class Hub:
 
     The grains come from one of
 
-    - `case` and `settings`: a case file and overrides "key=value", as for `voussoir.RveBatch.from_case`;
+    - `case` and `settings`: a case file and overrides "key=value", as for `voussoir.RveBatch.from_case`, which deals
+      the packings of the case out to the points of this process;
     - `packings` and further arguments of `voussoir.RveBatch` (`preset`, `tangent`, ...); the point of global id g has
       packing g modulo their number, whichever rank it is on;
     - `make_batch`, which is called with the global ids of the points of this process, in ascending order (n,).
+
+    With `mirrored`, half of the points answer as mirror images of their packing: every second one by the global ids for
+    a case, every second one of each packing otherwise.
 
     `gradients` says from where the displacement gradients of the macro side count: "window" from the start of the time
     window, as updated Lagrangian codes have them, or "total" from the start of the coupling. `tangents=False` saves
@@ -60,6 +64,7 @@ class Hub:
         case: str | Path | None = None,
         settings: tuple[str, ...] | list[str] = (),
         packings: Any = None,
+        mirrored: bool = False,
         gradients: str = "window",
         tangents: bool = True,
         **options: Any,
@@ -72,6 +77,7 @@ class Hub:
             raise TypeError(f"arguments of RveBatch go with packings alone: {', '.join(options)}")
         self._make_batch = make_batch or (lambda ids: self._batch_of(ids, case, settings, packings, options))
         self._total = gradients == "total"
+        self._mirrored = mirrored
         self._tangents = tangents
         self._members: weakref.WeakValueDictionary[int, Point] = weakref.WeakValueDictionary()
         self._batch: Any = None
@@ -97,9 +103,11 @@ class Hub:
         import voussoir
 
         if case is not None:
-            return voussoir.RveBatch.from_case(case, len(ids), settings)
+            images = ids % 2 == 1 if self._mirrored else False
+            return voussoir.RveBatch.from_case(case, len(ids), settings, mirrored=images)
         packings = packings if isinstance(packings, list | tuple) else [packings]
-        return voussoir.RveBatch(packings, len(ids), packing_of=ids % len(packings), **options)
+        images = ids // len(packings) % 2 == 1 if self._mirrored else False
+        return voussoir.RveBatch(packings, len(ids), packing_of=ids % len(packings), mirrored=images, **options)
 
     # What the points call.
 
@@ -257,18 +265,23 @@ class Point(MicroSimulationInterface):
             data |= {f"Tangent-{i + 1}{j + 1}": tangent[i, j] for i in range(3) for j in range(i, 3)}
         return data | {"Status": float(report["status"]), "Steps": float(report["steps"])}
 
-    def solve(self, macro: Mapping[str, Any], dt: float) -> Mapping[str, Any]:  # noqa: ARG002  (grains know no time)
+    def solve(self, macro: Mapping[str, Any], dt: float) -> Mapping[str, Any]:  # noqa: ARG002
+        """Notes what the macro side has sent; grains know no time, so that the size of the step has no meaning."""
         return self.hub.solve(self, self.read(macro))
 
     def get_state(self) -> Any:
+        """The mark of the state to which `set_state` may go back; it accepts the last evaluation."""
         return self.hub.state()
 
     def set_state(self, state: Any) -> None:
+        """Goes back to the mark of the last `get_state`."""
         self.hub.take_back(state)
 
     def get_global_id(self) -> int:
+        """The number of this point in the whole coupling."""
         return self.global_id
 
     def set_global_id(self, global_id: int) -> None:
+        """Refuses another number, since the point has its place in the batch."""
         if global_id != self.global_id:
             raise RuntimeError(f"point {self.global_id} cannot become point {global_id}: {REFUSED}")

@@ -244,6 +244,9 @@ def check_grains(packings):
         written[name] = couple(name, macro, hub)
         seconds[name] = time.perf_counter() - begin
     check_same("grains", written["hub"], expected(voussoir.RveBatch(packings, POINTS), macro))
+    images = np.arange(POINTS) // len(packings) % 2 == 1
+    mirrored = couple("mirrored", macro, Hub(packings=packings, mirrored=True))
+    check_same("mirrored", mirrored, expected(voussoir.RveBatch(packings, POINTS, mirrored=images), macro))
     check_same("one by one", written["one_by_one"], written["hub"])
     print(f"{POINTS} points: hub {seconds['hub']:.2f} s, a batch for each point {seconds['one_by_one']:.2f} s")
 
