@@ -8,9 +8,11 @@ import. A name without a docstring is an error: the page is the only complete li
 import ast
 import inspect
 from pathlib import Path
+from typing import Any
 
 PACKAGE = Path(__file__).resolve().parent.parent / "python" / "voussoir"
 LINE = 100  # the longest signature in one line
+SUBMODULES = ("paths", "precice")  # figures and report are drawn by functions of the results
 
 
 class Module:
@@ -26,21 +28,26 @@ class Module:
             node.name: node for node in self.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)
         }
 
+    def constant(self, name: str) -> Any:
+        """The value of an assignment at the top."""
+        for node in self.tree.body:
+            if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == name:
+                return ast.literal_eval(node.value)
+        raise LookupError(f"python/voussoir/{self.name} has no {name}")
+
+    def origin(self, name: str) -> "tuple[Module, str]":
+        """The module that defines a name which this one may only import from its neighbours, and the name there."""
+        for node in self.tree.body:
+            for alias in node.names if isinstance(node, ast.ImportFrom) and node.level == 1 else ():
+                if (alias.asname or alias.name) == name:
+                    return Module(f"{self.name}.{node.module}"), alias.name
+        return self, name
+
 
 def public_names() -> dict[str, list[str]]:
-    """The public names of each module, from the table _MODULES of the package."""
-    for node in Module("__init__").tree.body:
-        target = (
-            node.target
-            if isinstance(node, ast.AnnAssign)
-            else node.targets[0]
-            if isinstance(node, ast.Assign)
-            else None
-        )
-        if isinstance(target, ast.Name) and target.id == "_MODULES":
-            assert isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None
-            return {module: list(names) for module, names in ast.literal_eval(node.value).items()}
-    raise LookupError("python/voussoir/__init__.py has no table _MODULES")
+    """The public names of each module: of those whose names are the package's own, and of the submodules."""
+    names = dict(Module("__init__").constant("_MODULES"))
+    return names | {module: Module(module).constant("__all__") for module in SUBMODULES}
 
 
 def code(text: str) -> str:
@@ -139,13 +146,14 @@ def comment_above(module: Module, name: str) -> str:
 
 def section(module: Module, name: str) -> str:
     """All that the page says of one public name."""
-    node = module.definitions.get(name)
+    module, own_name = module.origin(name)
+    node = module.definitions.get(own_name)
     if isinstance(node, ast.ClassDef):
         parts = class_section(module, node)
     elif isinstance(node, ast.FunctionDef):
         parts = [code(signature(node, name, bound=False)), documentation(node)]
     else:
-        parts = [comment_above(module, name)]
+        parts = [comment_above(module, own_name)]
     text = "\n\n".join(part for part in parts if part)
     if not text:
         raise LookupError(f"voussoir.{name} has no docstring")
