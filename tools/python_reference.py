@@ -38,9 +38,10 @@ class Module:
     def origin(self, name: str) -> "tuple[Module, str]":
         """The module that defines a name which this one may only import from its neighbours, and the name there."""
         for node in self.tree.body:
-            for alias in node.names if isinstance(node, ast.ImportFrom) and node.level == 1 else ():
-                if (alias.asname or alias.name) == name:
-                    return Module(f"{self.name}.{node.module}"), alias.name
+            if isinstance(node, ast.ImportFrom) and node.level == 1:
+                for alias in node.names:
+                    if (alias.asname or alias.name) == name:
+                        return Module(f"{self.name}.{node.module}"), alias.name
         return self, name
 
 
