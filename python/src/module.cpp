@@ -51,14 +51,15 @@ std::vector<std::string> status_names() {
 }  // namespace voussoir::python
 
 NB_MODULE(_core, module) {
-  using namespace voussoir::python;
-  nb::register_exception_translator(translate);
+  namespace python = voussoir::python;
+  namespace engine = python::engine;
+  nb::register_exception_translator(python::translate);
   module.doc() = "The engine of the package voussoir. Use the names of the package; those here may change.";
   module.def("initialize", &engine::start, nb::arg("threads"));
   module.def("is_initialized", &engine::started);
   module.def("threads", &engine::threads);
   module.def("finish", &engine::finish);
-  module.def("status_names", &status_names, "Names of the numbers in the column `status` of a report.");
-  bind_packings(module);
-  bind_batch(module);
+  module.def("status_names", &python::status_names, "Names of the numbers in the column `status` of a report.");
+  python::bind_packings(module);
+  python::bind_batch(module);
 }
