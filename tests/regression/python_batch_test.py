@@ -219,13 +219,10 @@ def check_errors(packings):
     raises(
         voussoir.InputError, lambda: voussoir.RveBatch.from_case(CASE, 2, ["packing.grain=3"]), "--set", "packing.grain"
     )
-    raises(voussoir.InputError, lambda: batch(preset="best"), "engine.preset", "fast, standard, reference")
-    raises(voussoir.InputError, lambda: batch(tangent="steep"), "newton.tangent")
     raises(voussoir.InputError, lambda: batch(microstructure=["colour"]), "output.microstructure")
     raises(RuntimeError, lambda: batch(backend="gpu"), "a device is asked for")
     raises(ValueError, lambda: batch(packing_of=[0, 1, 2], n=3), "packing 2")
     raises(ValueError, lambda: batch(packing_of=[0, 1], n=3), "3 integers")
-    raises(ValueError, lambda: batch(mirrored=[True]), "2 of them")
     raises(ValueError, lambda: voussoir.RveBatch([]), "at least one")
     raises(FileNotFoundError, lambda: voussoir.RveBatch(FOLDER / "none.h5"), "none.h5")
     raises(voussoir.Unreadable, lambda: voussoir.load_packing(FOLDER / "first" / "path.csv"))
@@ -241,6 +238,40 @@ def check_errors(packings):
     raises(
         voussoir.NoEquilibrium, lambda: voussoir.make_packings(1, grains=30, settings=flat), "none of the 1 packings"
     )
+
+
+def check_arguments(packings):
+    """Slips in arguments: the message names the argument, and what can be meant is taken."""
+
+    def batch(n=None, **more):
+        return voussoir.RveBatch(packings, n, **more)
+
+    error = raises(
+        voussoir.InputError, lambda: batch(preset="best"), "preset (engine.preset)", "fast, standard, reference"
+    )
+    check((error.place, error.key, error.line) == ("preset", "engine.preset", None), str(vars(error)))
+    raises(voussoir.InputError, lambda: batch(settings={"engine.preset": "best"}), "settings:1: engine.preset")
+    raises(voussoir.InputError, lambda: batch(tangent="steep"), "tangent (newton.tangent)")
+    raises(ValueError, lambda: batch(0), "at least one point", "n is 0")
+    raises(TypeError, lambda: batch(2.5), "n must be an integer, is 2.5")
+    raises(MemoryError, lambda: batch(10**12), "GiB")
+    raises(ValueError, lambda: batch(mirrored=[True]), "2 of them")
+    raises(ValueError, lambda: batch(mirrored="yes"), "2 of them")
+    raises(TypeError, lambda: voussoir.RveBatch(4), "make_packings")
+    raises(TypeError, lambda: voussoir.make_packings(2.5), "seeds must be an integer, is 2.5")
+    raises(TypeError, lambda: voussoir.make_packings("3"), "seeds must be an integer, is '3'")
+    raises(TypeError, lambda: voussoir.make_packings(pressure="100 kPa"), "a number in Pa")
+    raises(TypeError, lambda: voussoir.make_packings(settings=["soil.modulus=1"]), "are a dictionary")
+    with batch(packing_of=[0, 1, 1], microstructure="fabric") as three:
+        check(len(three) == 3 and "fabric_anisotropy" in three.fields(), repr(three))
+        raises(TypeError, lambda: three.evaluate(np.zeros((3, 2, 2)), tangent="loading"), "True or False")
+        raises(TypeError, lambda: three.set_state("x"), "bytes")
+        inside_out = np.zeros((3, 2, 2))
+        inside_out[1, 0, 0] = -1.5
+        answer = three.evaluate(inside_out)
+        check("point 1 turns its cell inside out: det F is -0.5" in answer.message, answer.message)
+    with voussoir.RveBatch.from_case(CASE, 2, {"packing": {"grains": np.int64(40)}}) as small:
+        check(len(small.packing(0)) == 40, repr(small.packing(0)))
 
 
 def check_device(packings):
@@ -274,6 +305,7 @@ check_mirrored(made)
 check_states(made)
 check_increments(made)
 check_errors(made)
+check_arguments(made)
 if Path(os.environ["VOUSSOIR_EMULATED_GPU"]).exists():
     check_device(made)
 check(voussoir.status_names == tuple(voussoir.engine.core().status_names()), "names of the statuses")
