@@ -10,7 +10,13 @@ from voussoir.paths.tensors import pressure_of, strain_of_gradient
 
 BULK, SHEAR = 100e6, 60e6  # Pa
 REPORT = np.dtype([("status", "i4"), ("steps", "i4"), ("contacts", "i4"), ("unbalanced", "f8")])
-STIFFNESS = np.array([[BULK + SHEAR, BULK - SHEAR, 0], [BULK - SHEAR, BULK + SHEAR, 0], [0, 0, SHEAR]])
+
+
+def stiffness(bulk, shear):
+    return np.array([[bulk + shear, bulk - shear, 0], [bulk - shear, bulk + shear, 0], [0, 0, shear]])
+
+
+STIFFNESS = stiffness(BULK, SHEAR)
 NO_ANSWER = 5
 
 
@@ -32,8 +38,8 @@ class Packing:
 
 
 class Batch:
-    """Points whose stress is stiffness times the logarithmic strain of each increment, summed. The stiffness that they
-    tell is `told` times the true one. A point whose strain in an increment exceeds `limit` fails."""
+    """Points whose stress is stiffness times the logarithmic strain of each increment, summed. The shear modulus of the
+    tangent that they tell is `told` times the true one. A point whose strain in an increment exceeds `limit` fails."""
 
     def __init__(self, packings, packing_of, told=1.0, limit=0.05):
         self.told, self.limit, self.evaluations, self.closed = told, limit, 0, False
@@ -74,7 +80,9 @@ class Batch:
         report = np.zeros(len(stress), REPORT)
         report["status"], report["steps"] = status, 7
         tensor = stress[:, [[0, 2], [2, 1]]]
-        matrix = np.where(np.isnan(stress[:, :1, None]), np.nan, self.told * STIFFNESS) if tangent else None
+        matrix = (
+            np.where(np.isnan(stress[:, :1, None]), np.nan, stiffness(BULK, self.told * SHEAR)) if tangent else None
+        )
         return SimpleNamespace(
             stress=tensor, tangent=matrix, report=report, usable=bool((status == 0).all()), message=""
         )
