@@ -208,10 +208,6 @@ def _trust(data: Dataset, scatter: Scatter | None, preset: tuple[int, float] | N
     ]
     if "control_error" in data:
         lines.append(_control_line(data))
-    lines.append(
-        "- Steps of the engine are chosen anew in each increment; two calls that begin an increment with other strains "
-        "may differ by about 0.1 % of the stress."
-    )
     return "\n".join(lines)
 
 
@@ -246,5 +242,7 @@ def _control_line(data: Dataset) -> str:
     share = share[held] if held.any() else share[:, :1]
     return (
         f"- Held stresses miss their values by {100 * np.nanpercentile(share, 50):.2g} % of p in half of the points "
-        f"and by {100 * np.nanpercentile(share, 99):.2g} % in 1 % of them (`control_error`)."
+        f"and by {100 * np.nanpercentile(share, 99):.2g} % in 1 % of them (`control_error`). "
+        "The numbers of time steps were chosen by the first evaluation of an increment, and the committed one may "
+        "differ by about 0.1 % of the stress from one that is made alone."
     )
