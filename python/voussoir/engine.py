@@ -11,7 +11,7 @@ _is_first = True
 def core() -> ModuleType:
     """The compiled module. ImportError says how to get it where it is missing."""
     try:
-        from voussoir import _core  # noqa: PLC0415 - results are read without it
+        from voussoir import _core
     except ImportError as fault:
         raise ImportError(
             "voussoir's compiled module is missing, or was built for another Python. `pip install .` in a checkout "

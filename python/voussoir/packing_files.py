@@ -16,7 +16,7 @@ _format, _format_version = "voussoir packing", 1
 
 def _h5py() -> Any:
     try:
-        import h5py  # noqa: PLC0415 - only files need it
+        import h5py
     except ImportError as fault:
         raise ImportError("packing files need h5py: pip install h5py, or pip install 'voussoir[files]'") from fault
     return h5py

@@ -46,7 +46,7 @@ class Batch:
         self.seed = np.array([packings[k].seed for k in packing_of], float)
         pressure = np.array([packings[k].pressure for k in packing_of], float)
         self.stress = -pressure[:, None] * [1.0, 1.0, 0.0]
-        self.trial = None
+        self.trial = self.stress
 
     def evaluate(self, gradient, tangent=True):
         self.evaluations += 1

@@ -4,6 +4,7 @@ import json
 import os
 import sys
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 import numpy as np
@@ -141,7 +142,7 @@ def elastic(batches, **settings):
 
 def check_dataset():
     """Every number of a set of the elastic law, its tables, its card and its copies."""
-    folder, batches = fresh("elastic"), []
+    folder, batches = fresh("elastic"), list[Batch]()
     sets = {"walk": paths.random(20, 12, seed=1), "shear": paths.undrained(12, [0.01, 0.02], 0.5)}
     grains = [Packing(seed) for seed in (1, 2, 3)]
     with elastic(batches):
@@ -182,6 +183,7 @@ def check_scatter():
             folder / "set.h5", paths.undrained(10, 0.01), [Packing(k) for k in (1, 2, 3)], packing_of="all", fields=[]
         )
     found = paths.scatter_between_packings(data)
+    assert found is not None
     q = 2 * SHEAR * 0.01 * np.arange(11) / 10 * 0.01  # standard deviation of s_xx = - s_yy
     near(found.by_point, np.sqrt(2 / 3) * q / 100e3, 1e-5, "scatter")
     near(found.value, np.sqrt((found.by_point**2).mean()), 1e-12, "scatter of the set")
@@ -192,7 +194,7 @@ def check_held():
     the law tells has four times its shear modulus."""
     folder = fresh("drained")
     for told, most in ((1.0, 1.0), (4.0, 3.0)):
-        batches = []
+        batches: list[Batch] = []
         with elastic(batches, told=told):
             data = paths.generate(folder / f"{told}.h5", paths.drained(20, -0.01), [Packing(0)], fields=["tangent"])
         near(data["stress"][:, :, 0], -100e3, 500, "held stress")
@@ -215,7 +217,7 @@ def check_best_iterate():
     """Where the iteration ends without success, the best of its strains is what is committed; a path whose grains fail
     under a strain goes back as well."""
     for third in (60e3, np.nan):
-        calls = []
+        calls: list[np.ndarray] = []
 
         def evaluate(gradient, tangent, calls=calls, third=third):
             calls.append(gradient.copy())
@@ -232,7 +234,7 @@ def check_best_iterate():
 
 def check_failures():
     """A row that fails keeps what it has, is masked from there on, and changes no bit of the others."""
-    folder, batches = fresh("failed"), []
+    folder, batches = fresh("failed"), list[Batch]()
     some = paths.random(6, 8, seed=3)
     bad = some.copy()
     bad[4, 6] = tensors.gradient_of_strain(np.array([0, -0.06, 0]))
@@ -256,7 +258,7 @@ def check_interruption():
     """Stopped anywhere, the same call goes on; other calls are refused; two processes do not meet."""
     folder = fresh("stopped")
     some = {"walk": paths.random(7, 9, seed=5), "drained": paths.drained(9, [-0.004, -0.008])}
-    call = {"paths": some, "packings": [Packing(1), Packing(2)], "fields": FIELDS, "points_at_once": 4}
+    call: dict[str, Any] = {"paths": some, "packings": [Packing(1), Packing(2)], "fields": FIELDS, "points_at_once": 4}
 
     def stop_at(count):
         def hear(done, _):

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 
 from .dataset import Dataset
-from .engine import STATUS_NAMES, Engine
+from .engine import FIRST_FAILURE, Engine
 from .errors import Scatter, error_of_preset, scatter_between_packings
 from .fields import BY_NAME
 from .parts import write
@@ -139,13 +139,14 @@ def _fields(data: Dataset) -> str:
         components = f" ({', '.join(BY_NAME[name].components)})" if name in BY_NAME and BY_NAME[name].components else ""
         about = array.attrs["meaning"] + components
         lines.append(f"| `{name}` | {array.shape} | {array.dtype} | {array.attrs['unit']} | {about} |")
-    words = ", ".join(f"{k} {name}" for k, name in enumerate(STATUS_NAMES))
+    names = data.attrs["status_names"]
+    words = ", ".join(f"{k} {name}" for k, name in enumerate(names))
     lines += [
         "",
         "The tables `row/`, `path/` and `packing/` say which path and packing each row has.",
         (
-            f"Statuses: {words}; -1: behind a point that failed. From {STATUS_NAMES[3]} on a point has failed: its "
-            "values and those of later points are NaN (integers: -1). `open`: no contacts, stress zero, which is an "
+            f"Statuses: {words}; -1: behind a failed point. From {names[FIRST_FAILURE]} on a point has failed: "
+            "its values and those of later points are NaN (integers: -1). `open`: no contacts, stress zero, which is an "
             "answer. `step_limit`: the grains were not quite at rest."
         ),
     ]
@@ -191,7 +192,7 @@ def _trust(data: Dataset, scatter: Scatter | None, preset: tuple[int, float] | N
     status = data["status"][:]
     pressure = pressure_of(data["stress"][:])
     low, middle, high = np.nanpercentile(pressure, [1, 50, 99]) / 1e3
-    failed = (status >= 3).any(axis=1).sum()
+    failed = (status >= FIRST_FAILURE).any(axis=1).sum()
     lines = [
         "## Errors to expect",
         "",

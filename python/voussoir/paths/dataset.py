@@ -120,7 +120,7 @@ class Dataset:
             index = self._h5[f"row/{table}"][:][which]
             arrays[f"row_{table}"] = index
             arrays[f"{table}_split"] = self._h5[f"{table}/split"][:][index]
-        np.savez_compressed(file, card=self.card, row_family=self.family[which], **arrays)  # type: ignore[arg-type]
+        np.savez_compressed(file, card=self.card, row_family=self.family[which], **arrays)
 
     def to_xarray(self, fields: Iterable[str] | None = None) -> Any:
         """An xarray.Dataset of fields (all: None), with the tables as coordinates of the rows.

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from voussoir.batch import status_names
+
 Array = np.ndarray
-FIRST_FAILURE = 3  # statuses from here on have no answer: neighbour_overflow, overlap_limit, not_finite
-STATUS_NAMES = ("converged", "step_limit", "open", "neighbour_overflow", "overlap_limit", "not_finite")
+FIRST_FAILURE = status_names.index("neighbour_overflow")  # statuses from here on have no answer
 
 
 @dataclass(frozen=True)

@@ -5,15 +5,15 @@ Parameters are numbers or arrays with one value a path; n is the length of the l
 extension is positive, so a compression has a negative strain."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .schedule import Paths
 from .tensors import gradient_of_strain, increments_between, strain_of_direction
 
 Array = np.ndarray
-PerPath = Array | float
 
 
-def prescribed(history: Array) -> Array:
+def prescribed(history: ArrayLike) -> Array:
     """Increments of a history: (n, points, 3) logarithmic strains (xx, yy, gamma_xy), or (n, points, 2, 2) deformation
     gradients F. The first point of a history is where the path begins, so that there is one increment fewer than
     points.
@@ -27,13 +27,13 @@ def prescribed(history: Array) -> Array:
     raise ValueError(f"a history has the shape (n, points, 3) or (n, points, 2, 2), and this one has {history.shape}")
 
 
-def undrained(increments: int, amplitude: PerPath = 0.02, direction: PerPath = 0.0) -> Array:
+def undrained(increments: int, amplitude: ArrayLike = 0.02, direction: ArrayLike = 0.0) -> Array:
     """Shear at constant volume: the strain grows to +`amplitude` along the axis at the angle `direction` from x [rad],
     and to -`amplitude` across it. det F is 1 in every increment, as in saturated ground that cannot drain."""
     return _proportional(increments, *_columns(amplitude, direction))
 
 
-def biaxial(increments: int, axial: PerPath = -0.02, lateral: PerPath = 0.0, direction: PerPath = 0.0) -> Array:
+def biaxial(increments: int, axial: ArrayLike = -0.02, lateral: ArrayLike = 0.0, direction: ArrayLike = 0.0) -> Array:
     """A biaxial test whose two strains are given: yy grows to `axial` and xx to `lateral`, both in proportion.
     lateral = -axial keeps the volume, lateral = 0 is an oedometer.
     `direction` turns the sample counter-clockwise [rad]."""
@@ -43,10 +43,10 @@ def biaxial(increments: int, axial: PerPath = -0.02, lateral: PerPath = 0.0, dir
 
 def cyclic(
     increments: int,
-    amplitude: PerPath = 0.005,
+    amplitude: ArrayLike = 0.005,
     cycles: int = 2,
-    direction: PerPath = 0.0,
-    volumetric: PerPath = 0.0,
+    direction: ArrayLike = 0.0,
+    volumetric: ArrayLike = 0.0,
     one_way: bool = False,
 ) -> Array:
     """Cycles of shear along a fixed axis, at constant volume by default: the deviatoric strain follows a triangular
@@ -64,7 +64,11 @@ def cyclic(
 
 
 def rotating(
-    increments: int, amplitude: PerPath = 0.005, turns: PerPath = 0.5, direction: PerPath = 0.0, radial: float = 0.25
+    increments: int,
+    amplitude: ArrayLike = 0.005,
+    turns: ArrayLike = 0.5,
+    direction: ArrayLike = 0.0,
+    radial: float = 0.25,
 ) -> Array:
     """Rotating principal axes of strain: in the first share `radial` of the increments the deviatoric strain grows to
     `amplitude` along the axis at `direction`; then it keeps its size, and its axes turn counter-clockwise by `turns`
@@ -78,7 +82,7 @@ def rotating(
     return prescribed(strain_of_direction(size, angle))
 
 
-def drained(increments: int, axial: PerPath = -0.02, held: str = "xx") -> Paths:
+def drained(increments: int, axial: ArrayLike = -0.02, held: str = "xx") -> Paths:
     """Drained biaxial tests: the stress `held` ("xx" or "yy") keeps its value, and the strain of the other axis is
     prescribed: `axial` is its value at the end (a number, or one a path), or its history (n, increments + 1).
 
@@ -98,12 +102,12 @@ def drained(increments: int, axial: PerPath = -0.02, held: str = "xx") -> Paths:
     )
 
 
-def triangle(phase: Array) -> Array:
+def triangle(phase: ArrayLike) -> Array:
     """A wave of period 1 that begins at 0 and has the values 1, 0, -1, 0 at its quarters."""
     return 2 / np.pi * np.arcsin(np.sin(2 * np.pi * np.asarray(phase)))
 
 
-def _columns(*values: PerPath) -> list[Array]:
+def _columns(*values: ArrayLike) -> list[Array]:
     """Parameters as columns (n, 1) of one length."""
     return [
         np.array(value)[:, None] for value in np.broadcast_arrays(*(np.atleast_1d(v).astype(float) for v in values))

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import card, engine, storage
 from .block import Block
@@ -25,9 +26,9 @@ def generate(
     paths: Paths | Array | Mapping[str, Paths | Array],
     packings: Any,
     *,
-    packing_of: str | Array = "turn",
-    mirrored: bool | Array = False,
-    pressure: float | Array | None = None,
+    packing_of: str | ArrayLike = "turn",
+    mirrored: bool | ArrayLike = False,
+    pressure: ArrayLike | None = None,
     preset: str = "standard",
     accuracy: float | str | None = None,
     precision: str | None = None,

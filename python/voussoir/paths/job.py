@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import engine
 from .block import RATIO, Rows, Work
@@ -52,7 +53,7 @@ class Job:
     def blocks(self) -> list[tuple[Array, Rows]]:
         """Rows of one batch each, with their indices. Rows that hold stresses have blocks of their own, because each of
         their increments takes several evaluations of the whole batch."""
-        holds = self.paths.held.any(axis=1)[self.rows.path]
+        holds: Array = self.paths.held[self.rows.path].any(axis=1)
         pieces: list[Array] = []
         for index in (np.flatnonzero(~holds), np.flatnonzero(holds)):
             pieces += [index[k : k + self.points_at_once] for k in range(0, len(index), self.points_at_once)]
@@ -83,7 +84,7 @@ def make_work(
     return Work(replace(how, microstructure=microstructure(wanted)), packings, wanted, control, 0, checkpoint_every)
 
 
-def consolidated(work: Work, rows: TableRows, wanted: float | Array | None) -> tuple[Work, Array]:
+def consolidated(work: Work, rows: TableRows, wanted: ArrayLike | None) -> tuple[Work, Array]:
     """The work with the number of increments in which all rows come to their pressures, and these pressures [Pa]: those
     of the packings (None), or `wanted`, one number or one a path.
 

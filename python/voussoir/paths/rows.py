@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 Array = np.ndarray
 PARTS = ("train", "validation", "test")
@@ -25,7 +26,7 @@ class Rows:
         return len(self.path)
 
 
-def deal(paths: int, packings: int, packing_of: str | Array) -> tuple[Array, Array]:
+def deal(paths: int, packings: int, packing_of: str | ArrayLike) -> tuple[Array, Array]:
     """Path and packing of each row. "turn": path i runs on packing i modulo the number of packings; "all": every path
     runs on every packing, path by path; an array names the packing of each path.
 
@@ -68,7 +69,9 @@ def parts(count: int, split: Split, seed: int) -> Array:
     return part
 
 
-def make_rows(paths: int, packings: int, packing_of: str | Array, mirrored: Any, splits: tuple[Split, Split]) -> Rows:
+def make_rows(
+    paths: int, packings: int, packing_of: str | ArrayLike, mirrored: Any, splits: tuple[Split, Split]
+) -> Rows:
     """The rows of a dataset; `splits` are those of the packings and of the paths."""
     path, packing = deal(paths, packings, packing_of)
     try:

@@ -9,8 +9,9 @@ from typing import Any
 import h5py
 import numpy as np
 
+from voussoir.batch import status_names
+
 from .block import Work, part_name
-from .engine import STATUS_NAMES
 from .fields import BY_NAME, Field
 from .parts import Arrays, Parts
 from .rows import PARTS, Rows
@@ -61,7 +62,7 @@ def _describe(out: h5py.File, contents: Contents, work: Work) -> None:
     out.attrs.update(contents.about)
     for name, value in work.engine.plan().items():
         out.attrs[name] = value if isinstance(value, str | float) else json.dumps(value)
-    out.attrs["status_names"] = list(STATUS_NAMES)
+    out.attrs["status_names"] = list(status_names)
     out.attrs["split_names"] = list(PARTS)
 
 
