@@ -146,8 +146,8 @@ def _fields(data: Dataset) -> str:
         "The tables `row/`, `path/` and `packing/` say which path and packing each row has.",
         (
             f"Statuses: {words}; -1: behind a failed point. From {names[FIRST_FAILURE]} on a point has failed: "
-            "its values and those of later points are NaN (integers: -1). `open`: no contacts, stress zero, which is an "
-            "answer. `step_limit`: the grains were not quite at rest."
+            "its values and those of later points are NaN (integers: -1). `open`: no contacts, stress zero, which is "
+            "an answer. `step_limit`: the grains were not quite at rest."
         ),
     ]
     return "\n".join(lines)
