@@ -275,6 +275,7 @@ def check_interruption():
         other = {**call, "fields": []}
         refused(FileExistsError, paths.generate, "differs in fields", file=folder / "set.h5", **other)
         busy = parts.Parts(folder / "set.h5", json_of(folder / "set.h5.parts"), True)
+        parts.PATIENCE = 0.1
         refused(RuntimeError, paths.generate, "another process", file=folder / "set.h5", **call)
         busy.leave()
         data = paths.generate(folder / "set.h5", **call)

@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import shutil
+import time
 import zipfile
 from pathlib import Path
 from typing import IO, Any
@@ -15,6 +16,7 @@ from typing import IO, Any
 import numpy as np
 
 Arrays = dict[str, np.ndarray]
+PATIENCE = 2.0  # with a process that holds a folder [s]
 
 
 class Parts:
@@ -86,13 +88,18 @@ class Parts:
         self._lock.close()
 
     def _locked(self) -> IO[bytes]:
-        lock = (self.folder / "lock").open("wb")
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            lock.close()
-            raise RuntimeError(f"another process makes the dataset of {self.folder}") from None
-        return lock
+        """The locked file. A process that was killed a moment ago may still hold it."""
+        lock, patience = (self.folder / "lock").open("wb"), time.monotonic() + PATIENCE
+        while True:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError:
+                if time.monotonic() > patience:
+                    lock.close()
+                    raise RuntimeError(f"another process makes the dataset of {self.folder}") from None
+                time.sleep(0.05)
+            else:
+                return lock
 
     def _empty(self) -> None:
         for entry in self.folder.iterdir():
