@@ -9,9 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from program import check, fresh, run, wait_until
-
 from python_package import voussoir  # ends here where the module was not built
-
 from voussoir import paths
 
 GRAINS, INCREMENTS = 60, 16
@@ -103,6 +101,7 @@ def check_shell():
 
 def main():
     folder = fresh("datasets").absolute()
+    folder.mkdir()
     check_killed(folder)
     packings = voussoir.make_packings(2, grains=GRAINS, folder="packings")
     check_bits(packings)
