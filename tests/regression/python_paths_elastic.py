@@ -70,8 +70,9 @@ class Batch:
     def set_state(self, state):
         self.stress = pickle.loads(state)
 
-    def fields(self):
-        return {"void_ratio": 0.2 - pressure_of(self.stress) / BULK}
+    @property
+    def void_ratio(self):
+        return 0.2 - pressure_of(self.stress) / BULK
 
     def close(self):
         self.closed = True

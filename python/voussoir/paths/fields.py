@@ -15,7 +15,7 @@ class Field:
     meaning: str
     kind: str = "f4"
     components: tuple[str, ...] = ()
-    source: str = "fields"  # "fields" and "report" of a batch, or "always": this package computes it
+    source: str = "fields"  # "fields" or "report" of a batch; "block": block.py says how
     microstructure: str = ""  # what the batch must be asked for
 
     def empty(self, *shape: int) -> np.ndarray:
@@ -29,19 +29,19 @@ TANGENT_PLACES = ((0, 0, 0, 1, 1, 2), (0, 1, 2, 1, 2, 2))  # rows and columns of
 MASKED = -1  # the status of the increments behind one that failed
 
 ALL = (
-    Field("stress", "Pa", "Cauchy stress, tension positive", components=("xx", "yy", "xy"), source="always"),
-    Field("strain", "-", "logarithmic strain ln V since point 0", components=("xx", "yy", "gamma_xy"), source="always"),
-    Field("tangent", "Pa", "d stress/d strain, Voigt (xx, yy, gamma_xy)", components=TANGENT, source="always"),
+    Field("stress", "Pa", "Cauchy stress, tension positive", components=("xx", "yy", "xy"), source="block"),
+    Field("strain", "-", "logarithmic strain ln V since point 0", components=("xx", "yy", "gamma_xy"), source="block"),
+    Field("tangent", "Pa", "d stress/d strain, Voigt (xx, yy, gamma_xy)", components=TANGENT, source="block"),
     Field("status", "-", "how the evaluation ended (see the card)", "i1", source="report"),
     Field("steps", "-", "time steps of the grains", "i4", source="report"),
     Field("unbalanced", "-", "rms force on a grain over p t d", source="report"),
-    Field("control_error", "Pa", "by how much held stresses miss their values", source="always"),
+    Field("control_error", "Pa", "by how much held stresses miss their values", source="block"),
     Field("contacts", "-", "number of contacts", "i4", source="report"),
     Field("inertial_number", "-", "inertial number of the straining", source="report"),
     Field("mean_overlap", "-", "overlap over the sum of the radii, mean over contacts", source="report"),
     Field("largest_overlap", "-", "overlap over the sum of the radii, largest", source="report"),
-    Field("void_ratio", "-", "area of voids over area of grains"),
-    Field("coordination", "-", "contacts of a grain, mean"),
+    Field("void_ratio", "-", "area of voids over area of grains", source="block"),
+    Field("coordination", "-", "contacts of a grain, mean", source="block"),
     Field("grain_rotation", "rad", "mean rotation of the grains, counter-clockwise"),
     Field("fabric_anisotropy", "-", "anisotropy of the contact normals", microstructure="fabric"),
     Field("fabric_direction", "rad", "most contact normals point there; an axis", microstructure="fabric"),
