@@ -122,8 +122,9 @@ class Block:
         status = np.full(len(gradient), MASKED, np.int8)
         gradient = np.where(self.failed[:, None, None], 0.0, gradient)
         held = held & ~self.failed[:, None]
-        wants = self.work.engine.tangent is not None or bool(held.any())
-        answer, used, error = evaluate(self.batch, self.state, gradient, held, target, wants, self.work.control)
+        wants = self.work.engine.tangent is not None
+        done = evaluate(self.batch, self.state, gradient, held, target, wants, self.work.control)
+        answer, used = done.answer, done.gradient
         for _ in range(3):
             failed = engine.failures(answer)
             if not failed.any():
@@ -134,9 +135,9 @@ class Block:
             used = np.where(failed[:, None, None], 0.0, used)
             answer = self.batch.evaluate(used, tangent=wants)
         self.batch.commit()
-        stress = voigt_of(answer.stress)
-        self.state = State.of(answer) if answer.tangent is not None else State(stress, np.zeros((len(stress), 3, 3)))
-        return answer, used, error, status
+        self.state = done.state
+        self.state.stress = voigt_of(answer.stress)
+        return answer, used, done.error, status
 
     def _record(self, answer: Any, gradient: Array, error: Array, status: Array) -> Arrays:
         """The part of one point. Rows that have failed have NaN, or -1 in integers; their status tells where."""
@@ -150,8 +151,8 @@ class Block:
         return record
 
     def _values(self, answer: Any, error: Array) -> dict[str, Callable[[], Array]]:
-        """How each field is got. fields() of a batch takes a quarter of the time of an evaluation
-        (docs/measurements/datasets.md), so that it is called only for what nothing else gives."""
+        """How each field is got. fields() of a batch goes through all contacts, and is called only for what nothing
+        else gives."""
         report, rows, column = answer.report, TANGENT_PLACES[0], TANGENT_PLACES[1]
         described = self.batch.fields() if any(one.source == "fields" for one in self.work.fields) else {}
         return {
