@@ -103,26 +103,33 @@ def error(guess, stress, axes=None):
 
 
 def draw(file, curves, errors, grains, network):
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(15, 4.8), layout="constrained")
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14, 4.6), layout="constrained")
     for part, (name, sign) in enumerate((("mean stress p", -1), ("(yy − xx)/2", -1), ("shear stress xy", 1))):
         colour = f"C{part}"
         one, guess, law, mean, scatter = (sign * curve[:, part] / 1e3 for curve in curves)
-        left.fill_between(range(len(mean)), mean - scatter, mean + scatter, color=colour, alpha=0.2)
-        left.plot(one, colour, label=f"{name}: grains")
-        left.plot(guess, colour, ls="--", label="network")
-        left.plot(law, colour, ls=":", lw=1.2, label="elastic law")
+        left.fill_between(
+            range(len(mean)),
+            mean - scatter,
+            mean + scatter,
+            color=colour,
+            alpha=0.2,
+            label=None if part < 2 else "packings ± s.d.",
+        )
+        left.plot(one, colour, label=f"{name}, grains")
+        left.plot(guess, colour, ls="--", label=None if part else "network")
+        left.plot(law, colour, ls=":", lw=1.2, label=None if part else "elastic law")
         pair = (sign * stress[..., part].ravel() / 1e3 for stress in (grains, network))
         right.plot(*pair, ".", color=colour, ms=2, alpha=0.3, label=name)
     for (name, values), style in zip(errors.items(), (":", "--", "-", "-.")):
         middle.plot(100 * values, style, label=name)
-    title = "An unseen path on an unseen packing (bands: packings ± 1 s.d.)"
+    title = "An unseen path on an unseen packing"
     left.set(xlabel="increment", ylabel="stress [kPa]", ylim=(None, 1.45 * left.get_ylim()[1]), title=title)
     middle.set(
         xlabel="increment", ylabel="error over mean p [%]", ylim=(0, None), title="Unseen paths, unseen packings"
     )
-    right.set(xlabel="stress of the grains [kPa]", ylabel="stress of the network [kPa]", title="All points of these")
+    right.set(xlabel="stress of the grains [kPa]", ylabel="stress of the network [kPa]", title="All their points")
     right.axline((0, 0), slope=1, color="k", lw=0.8)
-    left.legend(fontsize=8, ncols=3, loc="upper left")
+    left.legend(fontsize=8, ncols=2, loc="upper left")
     middle.legend(fontsize=8)
     right.legend(fontsize=8, markerscale=4)
     figure.savefig(file, dpi=100)
