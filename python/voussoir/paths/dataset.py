@@ -8,7 +8,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from .fields import BY_NAME
+from .fields import BY_NAME, MOST_MEAN_OVERLAP
 from .rows import PARTS
 from .storage import FORMAT
 
@@ -92,7 +92,8 @@ class Dataset:
 
     def rows(self, packing: Part = None, path: Part = None, family: str | None = None, complete: bool = False) -> Array:
         """Indices of rows. `packing`, `path`: "train", "validation" or "test", or indices of packings and paths;
-        `family`: a kind of paths; `complete`: only rows whose grains had contacts at all points and did not fail.
+        `family`: a kind of paths; `complete`: only rows whose grains had contacts at all points, did not fail, and were
+        nowhere pressed beyond the range of the contact law.
 
         A model that is to be judged on unknown ground learns from rows(packing="train", path="train")."""
         chosen = np.ones(len(self), bool)
@@ -104,6 +105,7 @@ class Dataset:
         if complete:
             status = self._h5["status"][:]
             chosen &= ((status == 0) | (status == 1)).all(axis=1)
+            chosen &= (self._h5["mean_overlap"][:] <= MOST_MEAN_OVERLAP).all(axis=1)
         return np.flatnonzero(chosen)
 
     @property
