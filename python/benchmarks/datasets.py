@@ -1,10 +1,12 @@
 """What datasets of strain paths cost (docs/measurements/datasets.md).
 
     python3 datasets.py large FILE.h5 [SECONDS]
+    python3 datasets.py every FILE.h5 [SECONDS]
     python3 datasets.py parts
 
-"large" makes 4096 paths of 50 increments on 8 packings of 300 grains, with so many seconds between checkpoints; it may
-be killed and called again. "parts" shows what fields, tangents, presets, checkpoints and held stresses cost.
+"large" makes 4096 paths of 50 increments on 8 packings of 300 grains, dealt out in turn, with so many seconds between
+checkpoints; it may be killed and called again. "every" lets every path run on every packing. "parts" shows what fields,
+tangents, presets, checkpoints and held stresses cost.
 
 Packings are kept in ./packings. Calls of a batch are counted and timed: number, wall time and processor time [s]."""
 
@@ -52,7 +54,7 @@ def make(file: str, label: str, kinds: Any, packings: Any, **more: Any) -> None:
     print(data.card.split("## Errors to expect")[1].strip() + "\n" if more.get("reference_rows") else "", end="")
 
 
-def large(packings: Any, file: str, seconds: float = 60.0) -> None:
+def large(packings: Any, file: str, packing_of: str, seconds: float = 60.0) -> None:
     def angles(n: int) -> np.ndarray:
         return np.pi * np.arange(n) / n
 
@@ -63,7 +65,8 @@ def large(packings: Any, file: str, seconds: float = 60.0) -> None:
         "cyclic": paths.cyclic(50, np.geomspace(5e-4, 5e-3, 512), 2, angles(512)),
         "rotating": paths.rotating(50, np.geomspace(5e-4, 5e-3, 256), 1.0, angles(256)),
     }
-    make(file, "large", kinds, packings, checkpoint_every=seconds, reference_rows=16, progress=True)
+    more: dict[str, Any] = {"checkpoint_every": seconds, "reference_rows": 16, "progress": True}
+    make(file, "4096 paths", kinds, packings, packing_of=packing_of, **more)
 
 
 def parts(packings: Any) -> None:
@@ -86,7 +89,7 @@ def parts(packings: Any) -> None:
 for method in ("evaluate", "commit", "fields", "state"):
     timed(method)
 made = voussoir.make_packings(8, grains=300, folder="packings")
-if sys.argv[1] == "large":
-    large(made, sys.argv[2], *map(float, sys.argv[3:]))
-else:
+if sys.argv[1] == "parts":
     parts(made)
+else:
+    large(made, sys.argv[2], {"large": "turn", "every": "all"}[sys.argv[1]], *map(float, sys.argv[3:]))

@@ -55,12 +55,12 @@ def _head(data: Dataset, name: str) -> str:
 def _how(data: Dataset) -> str:
     plan = data.plan["engine"]
     changes = ", ".join(f"{key} = {value}" for key, value in plan["settings"].items()) or "no other settings"
-    accuracy = f", accuracy {plan['accuracy']}" if plan["accuracy"] is not None else ""
-    precision = f", precision {plan['precision']}" if plan["precision"] else ""
+    more = {name: plan[name] for name in ("accuracy", "precision", "backend") if plan[name] not in (None, "lanes")}
+    words = "".join(f", {name} {value}" for name, value in more.items())
     lines = [
         "## How it was made",
         "",
-        f"Engine: preset {plan['preset']}{accuracy}{precision}, tangent {plan['tangent'] or 'none'}; {changes}.",
+        f"Engine: preset {plan['preset']}{words}, tangent {plan['tangent'] or 'none'}; {changes}.",
         _beginning(data),
         (
             "Strains are given, and the grains come to rest after each increment, so that there is no rate; inertia "
