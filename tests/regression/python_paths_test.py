@@ -284,6 +284,34 @@ def check_interruption():
         check((whole[name][:].tobytes() == data[name][:].tobytes()), f"{name} differs after the stops")
 
 
+def check_interruption_within():
+    """Stopped while an answer is written, or between the two evaluations of an increment in which a row fails."""
+    folder, some = fresh("stopped_within"), paths.random(4, 6, seed=7)
+    some[2, 3] = tensors.gradient_of_strain(np.array([0.06, 0, 0]))
+    call: dict[str, Any] = {"paths": some, "packings": [Packing(1)], "fields": FIELDS}
+
+    def stopping(work, count):
+        calls = iter(range(count))
+
+        def stopped(batch, *given, **named):
+            if next(calls, None) is None:
+                raise KeyboardInterrupt
+            return work(batch, *given, **named)
+
+        return stopped
+
+    with elastic([]):
+        whole = paths.generate(folder / "whole.h5", **call)
+        for count in (2, 3):
+            with mock.patch.object(Batch, "void_ratio", property(stopping(Batch.void_ratio.fget, count))):
+                refused(KeyboardInterrupt, paths.generate, file=folder / "set.h5", **call)
+        with mock.patch.object(Batch, "evaluate", stopping(Batch.evaluate, 4)):
+            refused(KeyboardInterrupt, paths.generate, file=folder / "set.h5", **call)
+        data = paths.generate(folder / "set.h5", **call)
+    for name in whole.fields:
+        check((whole[name][:].tobytes() == data[name][:].tobytes()), f"{name} differs after a stop within an increment")
+
+
 def json_of(folder):
     return json.loads((folder / "plan.json").read_text())
 
@@ -299,6 +327,7 @@ def main():
     check_best_iterate()
     check_failures()
     check_interruption()
+    check_interruption_within()
 
 
 main()

@@ -72,9 +72,11 @@ class Block:
             self.batch.set_state(known["state"].tobytes())
             self.point, self.failed, self.target = int(known["point"]), known["failed"], known["target"]
             self.state = State(known["stress"], known["tangent"])
+        self.is_between = True  # two increments: the committed state, `point`, `failed` and the parts belong together
 
     def advance(self, told: Callable[[int], None]) -> None:
-        """Runs all increments that are left; `told` hears of each. Whatever ends this leaves a checkpoint."""
+        """Runs all increments that are left; `told` hears of each. What ends this during an evaluation or between two
+        increments leaves a checkpoint; while an answer is written, the checkpoint before has to do."""
         try:
             while self.point < self.rows.increments:
                 self._increment()
@@ -82,7 +84,8 @@ class Block:
                 if time.monotonic() - self.saved > self.work.checkpoint_every:
                     self._save()
         except BaseException:
-            self._save()
+            if self.is_between:
+                self._save()
             raise
         finally:
             self.batch.close()
@@ -114,6 +117,7 @@ class Block:
         used = np.where(before[:, None, None], np.nan, np.where(self.failed[:, None, None], gradient, used))
         self.point += 1
         self.parts.save(self.rows.part(self.point), self._record(answer, used, error, status))
+        self.is_between = True
 
     def _advance(self, gradient: Array, held: Array, target: Array) -> tuple[Any, Array, Array, Array]:
         """Evaluates and commits one increment: answer, gradients, control errors, statuses of failures (MASKED where
@@ -124,18 +128,19 @@ class Block:
         held = held & ~self.failed[:, None]
         wants = self.work.engine.tangent is not None
         done = evaluate(self.batch, self.state, gradient, held, target, wants, self.work.control)
-        answer, used = done.answer, done.gradient
+        answer, used, all_failed = done.answer, done.gradient, self.failed
         for _ in range(3):
             failed = engine.failures(answer)
             if not failed.any():
                 break
-            new = failed & ~self.failed
+            new = failed & ~all_failed
             status[new] = answer.report["status"][new]
-            self.failed |= failed
+            all_failed = all_failed | failed
             used = np.where(failed[:, None, None], 0.0, used)
             answer = self.batch.evaluate(used, tangent=wants)
+        self.is_between = False
         self.batch.commit()
-        self.state = done.state
+        self.state, self.failed = done.state, all_failed
         self.state.stress = voigt_of(answer.stress)
         return answer, used, done.error, status
 

@@ -49,6 +49,7 @@ ALL = (
     Field("mechanical_coordination", "-", "contacts of grains that carry force", microstructure="coordination"),
     Field("strong_coordination_1", "-", "in the network of forces above the mean", microstructure="strong_networks"),
 )
+#: The fields that a dataset may have, by name: each has its shape, unit and meaning.
 BY_NAME = {one.name: one for one in ALL}
 DEFAULT = [
     "stress",

@@ -17,7 +17,7 @@ class Progress:
 
     def begin(self, done: int) -> None:
         """So many were done before, by another process perhaps: they do not count for the rate."""
-        self.first += done - self.first if done > self.first else 0
+        self.first = max(self.first, done)
         self.started = time.monotonic()
 
     def __call__(self, done: int) -> None:
