@@ -179,7 +179,7 @@ def check_states(packings):
 def check_increments(packings):
     small, large = np.full((2, 2, 2), 1e-5) * np.eye(2), -np.full((2, 2, 2), 4e-4) * np.eye(2)
     with voussoir.RveBatch(packings) as batch:
-        raises(RuntimeError, batch.commit, "needs an evaluation")
+        raises(voussoir.Error, batch.commit, "needs an evaluation")
         frozen = batch.evaluate(large)
         check((batch.evaluate(small).report["steps"] >= frozen.report["steps"] / 2).all(), "steps are frozen")
         batch.begin_increment()
