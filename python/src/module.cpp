@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <exception>
+#include <stdexcept>
 
 #include "host/process/build_info.hpp"
 #include "host/process/exit_code.hpp"
@@ -23,17 +24,23 @@ void raise(const char* name, const nb::object& value) {
 }
 
 /// Exceptions of the C++ code as those of voussoir.errors. What this function throws is left to nanobind, which has
-/// ValueError for std::invalid_argument, IndexError for std::out_of_range and RuntimeError for others.
+/// ValueError for std::invalid_argument, IndexError for std::out_of_range and MemoryError for std::bad_alloc.
 void translate(const std::exception_ptr& thrown, void* /*unused*/) {
   try {
     std::rethrow_exception(thrown);
   } catch (const nb::builtin_exception&) {
+    throw;
+  } catch (const std::invalid_argument&) {
+    throw;
+  } catch (const std::out_of_range&) {
     throw;
   } catch (const io::InputError& error) {
     raise("InputError", nb::make_tuple(error.what(), error.place(), error.key(), error.sentence()));
   } catch (const host::NoEquilibrium& error) {
     raise("NoEquilibrium", nb::str(error.what()));
   } catch (const std::runtime_error& error) {
+    raise("Error", nb::str(error.what()));
+  } catch (const std::logic_error& error) {  // such as a commit without an evaluation
     raise("Error", nb::str(error.what()));
   }
 }

@@ -1,7 +1,9 @@
 """Batches of RVEs in Python: the same bits as the program, mirrored points, states, increments, failures, errors."""
 
+import ast
 import os
 import pickle
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -179,7 +181,7 @@ def check_states(packings):
 def check_increments(packings):
     small, large = np.full((2, 2, 2), 1e-5) * np.eye(2), -np.full((2, 2, 2), 4e-4) * np.eye(2)
     with voussoir.RveBatch(packings) as batch:
-        raises(RuntimeError, batch.commit, "needs an evaluation")
+        raises(voussoir.Error, batch.commit, "needs an evaluation")
         frozen = batch.evaluate(large)
         check((batch.evaluate(small).report["steps"] >= frozen.report["steps"] / 2).all(), "steps are frozen")
         batch.begin_increment()
@@ -298,7 +300,28 @@ def check_device(packings):
     check(on_device == on_lanes, f"the device answers {on_device}, the lanes {on_lanes}")
 
 
+def check_stub():
+    """The stub of the compiled module has its functions, and these have the stub's arguments."""
+    core = voussoir.engine.core()
+    stub = ast.parse((Path(voussoir.__file__).parent / "_core.pyi").read_text())
+
+    def functions(body):
+        return {one.name: [a.arg for a in one.args.args] for one in body if isinstance(one, ast.FunctionDef)}
+
+    def runtime(owner):  # a signature is not Python's grammar: ndarray[dtype=float64, ...]
+        known = {name: getattr(owner, name) for name in dir(owner) if not name.startswith("__") or name == "__len__"}
+        texts = {name: one.__nb_signature__[0][0] for name, one in known.items() if hasattr(one, "__nb_signature__")}
+        return {name: ["self"] * ("(self" in text) + re.findall(r"(\w+):", text) for name, text in texts.items()}
+
+    batch = next(one for one in stub.body if isinstance(one, ast.ClassDef))
+    methods = functions(batch.body)
+    check(methods.pop("is_open") == ["self"], "is_open is a property")
+    check(functions(stub.body) == runtime(core), f"{functions(stub.body)} and {runtime(core)}")
+    check(methods == runtime(core.Batch), f"{methods} and {runtime(core.Batch)}")
+
+
 made = check_packing_files()
+check_stub()
 check_same_bits(made)
 check_tangents()
 check_mirrored(made)
