@@ -19,7 +19,7 @@ def _h5py() -> Any:
     try:
         import h5py
     except ImportError as fault:
-        raise ImportError("packing files need h5py: pip install h5py, or pip install 'voussoir[files]'") from fault
+        raise ImportError("packing files need h5py, which `pip install h5py` installs") from fault
     return h5py
 
 
