@@ -303,7 +303,7 @@ def check_interruption_within():
     with elastic([]):
         whole = paths.generate(folder / "whole.h5", **call)
         for count in (2, 3):
-            with mock.patch.object(Batch, "void_ratio", property(stopping(Batch.void_ratio.fget, count))):
+            with mock.patch.object(Batch, "void_ratio", property(stopping(vars(Batch)["void_ratio"].fget, count))):
                 refused(KeyboardInterrupt, paths.generate, file=folder / "set.h5", **call)
         with mock.patch.object(Batch, "evaluate", stopping(Batch.evaluate, 4)):
             refused(KeyboardInterrupt, paths.generate, file=folder / "set.h5", **call)
