@@ -139,8 +139,6 @@ void GrainBatch::set_state(std::span<const std::byte> bytes, std::span<const std
   std::sort(ascending.begin(), ascending.end());
   if (std::adjacent_find(ascending.begin(), ascending.end()) != ascending.end())
     throw std::invalid_argument("a point occurs twice, but has one state");
-  trial_ = Trial::none;
-  begin_increment();
   try {
     pool_->set_states(points, host::split_state(bytes, pool_->identity(packings_of(points)), points.size()));
   } catch (const io::InputError& fault) {
@@ -148,6 +146,8 @@ void GrainBatch::set_state(std::span<const std::byte> bytes, std::span<const std
   } catch (const std::runtime_error& fault) {
     throw std::invalid_argument(std::string("the bytes are no state of these points: ") + fault.what());
   }
+  trial_ = Trial::none;
+  begin_increment();
 }
 
 std::vector<double> GrainBatch::void_ratios() const {

@@ -64,7 +64,9 @@ class GrainBatch {
   [[nodiscard]] std::size_t size() const { return pool_->size(); }
   [[nodiscard]] const std::vector<int>& packing_of() const { return packing_of_; }
   [[nodiscard]] std::string device_sentence() const { return pool_->device_sentence(); }
-  void set_pause(host::Pause pause) { pool_->set_pause(std::move(pause)); }
+  void set_pause(host::Pause pause, host::Watched watched = {}) {
+    pool_->set_pause(std::move(pause), std::move(watched));
+  }
 
   /// Answers to displacement gradients (n, 2, 2) that count from the committed state [-]. The numbers of steps follow
   /// the first evaluation of an increment and stay until `commit` or `begin_increment`. A point that has failed answers
@@ -88,7 +90,8 @@ class GrainBatch {
   /// @throws std::out_of_range where there is no such point
   [[nodiscard]] std::vector<std::byte> state(std::span<const std::size_t> points) const;
   /// Gives a state to these points, which must have the packings of the points that it was taken from; begins an
-  /// increment. @throws std::invalid_argument where the bytes are no state of such points, or a point occurs twice
+  /// increment. @throws std::invalid_argument where the bytes are no state of such points, or a point occurs twice;
+  /// nothing has changed then
   void set_state(std::span<const std::byte> bytes, std::span<const std::size_t> points);
 
   [[nodiscard]] std::vector<fem::PointField> fields() const { return batch_->fields(); }

@@ -43,6 +43,7 @@ std::vector<std::string> lines_of(const char* text) {
   std::vector<std::string> lines;
   std::istringstream stream(text == nullptr ? "" : text);
   for (std::string line; std::getline(stream, line);) {
+    if (line.ends_with('\r')) line.pop_back();
     if (!line.empty()) lines.push_back(line);
   }
   return lines;
@@ -127,15 +128,9 @@ int evaluate(CRves& rves, const double* gradients, const Answers& out) {
 }
 
 void set_state(CRves& rves, std::span<const std::byte> bytes) {
+  rves.batch->set_state(bytes);
   rves.may_commit = false;
   rves.fields.clear();
-  const std::vector<std::byte> before = rves.batch->state();
-  try {
-    rves.batch->set_state(bytes);
-  } catch (...) {
-    rves.batch->set_state(before);  // a fault may be found after some of the RVEs have been set
-    throw;
-  }
 }
 
 const std::vector<fem::PointField>& fields_of(CRves& rves) {

@@ -46,7 +46,13 @@ kernels::Work Piecewise::advance(kernels::RveBatch& batch, std::span<const kerne
     std::size_t n = 0;
     while (n < left.size() && (pieces == 1 || work < all / pieces || n % widest_group != 0)) work += work_of(left[n++]);
     const auto begin = std::chrono::steady_clock::now();
-    const kernels::Work done = kernels::advance(batch, requests, settings, reports, left.first(n));
+    kernels::Work done;
+    const auto piece = [&] { done = kernels::advance(batch, requests, settings, reports, left.first(n)); };
+    if (watched_ && work * rate_ > 2 * seconds_) {
+      watched_(piece);
+    } else {
+      piece();
+    }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     if (work > 0) rate_ = seconds.count() / work;
     add_later(sum, done);

@@ -57,7 +57,7 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
 
   /// Evaluations pause now and then (piecewise.hpp). Where a pause throws, the committed state is as it was, and the
   /// increment begins anew.
-  void set_pause(Pause pause) { pieces_.set_pause(std::move(pause)); }
+  void set_pause(Pause pause, Watched watched = {}) { pieces_.set_pause(std::move(pause), std::move(watched)); }
 
   /// The functions from here on are for a pool that is one rank's part of a larger pool, which needs the engine's own
   /// reports and the states of single RVEs. `advance` evaluates as `evaluate` does and leaves the answers in
@@ -77,6 +77,8 @@ class RvePool final : public fem::MaterialBatch, public SnapshotSource {
   /// The records (state_records.hpp) of these RVEs, in their order, or of `n` RVEs from `first` on.
   [[nodiscard]] std::vector<std::vector<std::byte>> records(std::span<const std::size_t> rves) const;
   [[nodiscard]] std::vector<std::vector<std::byte>> records(std::size_t first, std::size_t n) const;
+  /// Gives these records to these RVEs. @throws std::runtime_error where one of them is damaged; all RVEs then keep
+  /// the states that they have
   void set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records);
 
  private:

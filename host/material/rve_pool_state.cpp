@@ -67,6 +67,18 @@ void transfer_record(Transfer& transfer, const HeldRves& held, std::size_t rve) 
   transfer_rve(transfer, held.states, rve, held.grains[rve]);
 }
 
+/// Reads a record into the RVE `to` of these states.
+/// @param deferred null without deferral
+/// @throws std::runtime_error where it is no record of an RVE of so many grains
+void read_record(const StateRecord& record, kernels::RveReport& report, Deferral::Committed* deferred,
+                 const kernels::RveStates& states, std::size_t to, std::size_t grains) {
+  io::ByteReader read(record, not_of_this_case);
+  transfer_report(read, report);
+  if (deferred != nullptr) transfer_deferral(read, *deferred);
+  transfer_rve(read, states, to, grains);
+  if (!read.at_end()) throw std::runtime_error(not_of_this_case);
+}
+
 bool same_arrays(const kernels::RveStates& a, const kernels::RveStates& b) {
   return a.position.data() == b.position.data();
 }
@@ -191,13 +203,20 @@ kernels::RveStates RvePool::free_states() {
 
 void RvePool::set_states(std::span<const std::size_t> rves, std::span<const StateRecord> records) {
   if (is_held(batch_.committed)) throw std::logic_error("a state that is held would be overwritten");
+  const auto grains_of = [&](std::size_t rve) { return static_cast<std::size_t>(batch_.packing(rve).size()); };
+  // A damaged record is found before anything is overwritten.
+  const kernels::RveStates scratch("scratch", 1, static_cast<int>(batch_.committed.rotation.extent(1)),
+                                   static_cast<int>(batch_.committed.history_size()));
+  kernels::RveReport report;
+  Deferral::Committed deferred;
+  for (std::size_t k = 0; k < rves.size(); ++k) {
+    read_record(records[k], report, deferral_.on() ? &deferred : nullptr, scratch, 0, grains_of(rves[k]));
+  }
   kernels::bring_committed(batch_);
   for (std::size_t k = 0; k < rves.size(); ++k) {
-    io::ByteReader read(records[k], not_of_this_case);
-    transfer_report(read, committed_reports_[rves[k]]);
-    if (deferral_.on()) transfer_deferral(read, deferral_.committed(rves[k]));
-    transfer_rve(read, batch_.committed, rves[k], static_cast<std::size_t>(batch_.packing(rves[k]).size()));
-    if (!read.at_end()) throw std::runtime_error(not_of_this_case);
+    const std::size_t rve = rves[k];
+    read_record(records[k], committed_reports_[rve], deferral_.on() ? &deferral_.committed(rve) : nullptr,
+                batch_.committed, rve, grains_of(rve));
   }
   kernels::forget_candidates(batch_);
   begin_increment();

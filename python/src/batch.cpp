@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -29,23 +30,19 @@ using Points = std::vector<std::size_t>;
 class Batch final : public engine::Closable {
  public:
   explicit Batch(std::unique_ptr<GrainBatch> batch) : batch_(std::move(batch)), size_(batch_->size()) {
-    batch_->set_pause(&engine::look_for_signals);
+    batch_->set_pause(&engine::look_for_signals, &engine::run_stoppable);
   }
   ~Batch() override {
     // The memory is that of an engine whose threads are elsewhere: it is left alone.
     // NOLINTNEXTLINE(bugprone-unused-return-value): nobody is to delete it
     if (engine::forked()) static_cast<void>(batch_.release());
   }
-  void close() override {
-    const std::lock_guard lock(busy_);
-    is_open_ = false;
-    batch_.reset();
-  }
+  void close() override { end(std::unique_lock(busy_)); }
   void close_by_user() {
     if (engine::forked()) return;
     refuse_handler();
     const nb::gil_scoped_release free;
-    close();
+    end(wait_for_turn());
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
@@ -57,7 +54,7 @@ class Batch final : public engine::Closable {
     const engine::Call call;
     refuse_handler();
     const nb::gil_scoped_release free;
-    const std::lock_guard lock(busy_);
+    const auto lock = wait_for_turn();
     const User user(user_);
     if (!batch_) throw std::runtime_error("this batch is closed");
     return work(*batch_);
@@ -75,13 +72,26 @@ class Batch final : public engine::Closable {
     std::atomic<std::thread::id>* user_;
   };
 
+  /// Waits until no other thread uses the batch, and looks for signals meanwhile.
+  std::unique_lock<std::timed_mutex> wait_for_turn() {
+    std::unique_lock lock(busy_, std::try_to_lock);
+    while (!lock && !lock.try_lock_for(std::chrono::milliseconds(50))) engine::look_for_signals();
+    return lock;
+  }
+
+  /// Frees the grains. @param held the lock of `busy_`
+  void end(const std::unique_lock<std::timed_mutex>& /*held*/) {
+    is_open_ = false;
+    batch_.reset();
+  }
+
   /// A signal's handler runs within a pause of its thread, which has the batch and would wait for itself.
   void refuse_handler() const {
     if (user_ == std::this_thread::get_id())
       throw std::runtime_error("a signal's handler cannot use a batch that is at work in its own thread");
   }
 
-  std::mutex busy_;
+  std::timed_mutex busy_;
   std::atomic<std::thread::id> user_;  ///< the thread that has `busy_`
   std::unique_ptr<GrainBatch> batch_;
   std::size_t size_;

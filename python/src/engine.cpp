@@ -101,6 +101,7 @@ void look_for_signals() {
   if (ends) throw std::runtime_error("the interpreter ends");
   const nb::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
+  if (is_child) throw std::runtime_error(after_fork);  // a handler has called fork()
 }
 
 void run_stoppable(const std::function<void()>& work) {
@@ -121,7 +122,11 @@ void run_stoppable(const std::function<void()>& work) {
     while (end.wait_for(nap) != std::future_status::ready) look_for_signals();
   } catch (...) {
     stop = true;
-    thread.join();
+    if (is_child) {
+      thread.detach();  // it is a thread of the parent
+    } else {
+      thread.join();
+    }
     throw;
   }
   thread.join();

@@ -42,7 +42,8 @@ class Closable {
 };
 
 /// Looks whether a signal such as Ctrl-C has arrived, or the interpreter ends. To be called without the interpreter
-/// lock. @throws nanobind::python_error of the signal's handler; std::runtime_error at the end
+/// lock. @throws nanobind::python_error of the signal's handler; std::runtime_error at the end, and in a child whose
+/// fork() a handler has called
 void look_for_signals();
 
 /// Runs `work`, which has no pauses, in a thread of its own, and looks for signals meanwhile. To be called without the

@@ -171,11 +171,28 @@ def check_states(packings):
         raises(ValueError, lambda: batch.set_state(some, [0, 2]), "no state of these points")
         raises(ValueError, lambda: batch.set_state(later[:-3]), "no state of these points")
         raises(ValueError, lambda: batch.set_state(some, [2, 2]), "twice")
+        check_damaged_states(batch)
         raises(IndexError, lambda: batch.state([6]), "6")
+        raises(IndexError, lambda: batch.state([True, False]), "mask")
+        raises(IndexError, lambda: batch.state(1.5), "whole numbers")
         equal(batch.state(np.arange(6) < 0), batch.state([]), "the state of no point")
         again = voussoir.RveBatch([batch.packing(5)], tangent="contact")
         near = np.abs(again.committed().stress[0] - batch.committed().stress[5]).max()
         check(near < 1e-3 * again.packing(0).pressure, f"a batch that starts from a point is off by {near} Pa")
+
+
+def check_damaged_states(batch):
+    """A fault may stand behind records that are good: nothing may be taken over then."""
+    before, refused = batch.state(), 0
+    for place in range(24, len(before), 101):
+        try:
+            batch.set_state(before[:place] + b"\xff\xff\xff\x7f" + before[place + 4 :])
+        except ValueError:
+            refused += 1
+            check(batch.state() == before, f"a state with a fault at byte {place} was taken over in part")
+        else:
+            batch.set_state(before)
+    check(refused > 10, f"{refused} damaged states were refused")
 
 
 def check_increments(packings):

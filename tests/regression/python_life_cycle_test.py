@@ -128,6 +128,35 @@ ABUSES = {
         """,
         "True the last evaluation was interrupted and cannot be committed\nTrue True",
     ),
+    "Ctrl-C in the evaluation of one large RVE": (
+        """
+        one = voussoir.RveBatch(voussoir.make_packings(grains=700), 1, preset="reference", precision="double")
+        print(stopped(lambda: one.evaluate(strain(1, -0.2)), 1.0) < 1.5)
+        """,
+        "True",
+    ),
+    "Ctrl-C while another thread uses the batch": (
+        """
+        b = batch(8192, preset="reference")
+        other = threading.Thread(target=lambda: refusal(lambda: [b.evaluate(strain(8192)) for _ in range(9)]))
+        other.daemon = True; other.start(); time.sleep(0.2)
+        print(stopped(lambda: [b.evaluate(strain(8192)) for _ in range(9)]) < 1.5)
+        """,
+        "True",
+    ),
+    "a signal's handler that forks": (
+        """
+        b = batch(8192, preset="reference"); parent = os.getpid(); children = []
+        def handler(*_):
+            pid = os.fork()
+            if pid: children.append(pid)
+        signal.signal(signal.SIGALRM, handler); signal.setitimer(signal.ITIMER_REAL, 0.3)
+        said = refusal(lambda: b.evaluate(strain(8192)))
+        if os.getpid() != parent: os._exit(5 if "spawn" in said else 6)
+        print(said, os.waitstatus_to_exitcode(os.waitpid(children[0], 0)[1]))
+        """,
+        "no error 5",
+    ),
     "Ctrl-C while packings are made": (
         """
         settings = {"packing.void_ratio": 0.2}

@@ -64,6 +64,25 @@ TEST(Piecewise, AnswersWithTheBitsOfOneGo) {
   }
 }
 
+TEST(Piecewise, PiecesThatTakeLongAreWatched) {
+  const PackingMix points = small_mix();
+  const auto requests = requests_of();
+  std::vector<kernels::RveReport> reports(n);
+  const std::vector<int> two{0, 50};
+  for (const bool is_long : {true, false}) {
+    kernels::RveBatch batch = batch_at(points);
+    Piecewise pieces(is_long ? 1e-9 : 1e3);
+    int watched = 0;
+    pieces.set_pause([] {},
+                     [&](const std::function<void()>& work) {
+                       ++watched;
+                       work();
+                     });
+    EXPECT_GT(pieces.advance(batch, requests, {}, reports, two).particle_steps, 0U);
+    EXPECT_EQ(watched, is_long ? 1 : 0);
+  }
+}
+
 TEST(Piecewise, APauseThatThrowsLeavesTheCommittedState) {
   RvePool pool(small_mix(), {});
   std::vector<fem::Gradient> gradients(n, fem::Gradient::Zero());
