@@ -211,6 +211,11 @@ def check_held():
         check(data["consolidation"].shape[1] == 10, f"{data['consolidation'].shape[1]} increments of consolidation")
         repeated = paths.replay(data, [Packing(0)], np.array([1, 0]))
         near(repeated, data["stress"][:], 0.05, "a replay")
+    with elastic([], limit=1e-3):
+        lost = paths.generate(
+            folder / "lost.h5", paths.undrained(5, [0.001, 0.001]), [Packing(0)], pressure=[50e3, 4e6], fields=[]
+        )
+    check((lost["status"][:] == [[0] * 6, [5] + [-1] * 5]).all(), f"lost before point 0: {lost['status'][:]}")
 
 
 def check_best_iterate():

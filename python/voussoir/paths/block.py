@@ -100,12 +100,14 @@ class Block:
         self.state = State.of(self.batch.committed(tangent=True))
         first, held = -0.5 * (self.state.stress[:, 0] + self.state.stress[:, 1]), np.array([True, True, False])
         gradients = np.zeros((m, self.work.consolidation, 2, 2))
-        answer, error, status = self.batch.committed(tangent=True), np.zeros(m), np.full(m, MASKED, np.int8)
+        answer, error = self.batch.committed(tangent=True), np.zeros(m)
+        status: Array = np.full(m, MASKED, np.int8)  # of the increment in which each row failed
         for k in range(self.work.consolidation):
             share = (k + 1) / self.work.consolidation
             target = np.zeros((m, 3))
             target[:, :2] = -(first ** (1 - share) * self.rows.pressure**share)[:, None]
-            answer, gradients[:, k], error, status = self._advance(gradients[:, k], np.tile(held, (m, 1)), target)
+            answer, gradients[:, k], error, new = self._advance(gradients[:, k], np.tile(held, (m, 1)), target)
+            status = np.where(new == MASKED, status, new)
         self.target = self.state.stress.copy()
         record = self._record(answer, np.full((m, 2, 2), np.nan), error, status)
         self.parts.save(self.rows.part(0), {**record, "consolidation": gradients})
