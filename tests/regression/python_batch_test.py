@@ -254,9 +254,10 @@ def check_errors(packings):
     open_one.close()
     check("closed" in repr(open_one) and len(open_one) == 2, repr(open_one))
     flat = {"packing.void_ratio": 0.9}
-    raises(
+    error = raises(
         voussoir.NoEquilibrium, lambda: voussoir.make_packings(1, grains=30, settings=flat), "none of the 1 packings"
     )
+    check("out of reach" in error.__notes__[0], str(error.__notes__))
 
 
 def check_arguments(packings):
