@@ -5,6 +5,7 @@ import logging
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from operator import index
 from types import TracebackType
 from typing import Any, NamedTuple, Self
 
@@ -99,7 +100,7 @@ class RveBatch:
         precision: str | None = None,
         tangent: str = "elastic",
         mirrored: bool | ArrayLike = False,
-        microstructure: Sequence[str] = (),
+        microstructure: str | Sequence[str] = (),
         backend: str = "lanes",
         settings: Settings | None = None,
     ) -> None:
@@ -114,7 +115,7 @@ class RveBatch:
             precision: "float" or "double" of the pair forces; that of the preset where it is left out
             tangent: "contact" (eq. 4 of the paper), "elastic", "static" or "loading" (docs/explanation/tangents.md)
             mirrored: whether points answer as the mirror image (x to -x) of their packing: all, or (n,) of them
-            microstructure: quantities to add to `fields`, such as "fabric" (key output.microstructure)
+            microstructure: one or several quantities to add to `fields`, such as "fabric" (key output.microstructure)
             backend: "lanes" of the processor, "gpu", or "auto" for a GPU where there is one
             settings: further keys of [engine] and newton.tangent_strain; they override the arguments above
 
@@ -124,15 +125,15 @@ class RveBatch:
             RuntimeError: no GPU for backend="gpu"; after fork()
         """
         listed = _listed(packings)
-        count = len(listed) if n is None else int(n)
-        index = np.arange(count) % max(len(listed), 1) if packing_of is None else np.asarray(packing_of)
-        if index.shape != (count,) or index.dtype.kind not in "iu":
+        count = len(listed) if n is None else index(n)
+        dealt = np.arange(count) % max(len(listed), 1) if packing_of is None else np.asarray(packing_of)
+        if dealt.shape != (count,) or dealt.dtype.kind not in "iu":
             raise ValueError(f"packing_of needs {count} integers, one for each point")
         given: dict[str, Any] = {
             "engine.preset": preset,
             "engine.backend": backend,
             "newton.tangent": tangent,
-            "output.microstructure": list(microstructure),
+            "output.microstructure": [microstructure] if isinstance(microstructure, str) else list(microstructure),
         }
         if accuracy is not None:
             given["engine.accuracy"] = accuracy
@@ -142,7 +143,7 @@ class RveBatch:
         text = text_of("biaxial_bvp", settings, allowed, given)
         self._begin(
             running().new_batch(
-                [as_dict(packing) for packing in listed], index.tolist(), text, name, _mirrored(mirrored, count)
+                [as_dict(packing) for packing in listed], dealt.tolist(), text, name, _mirrored(mirrored, count)
             )
         )
 
@@ -169,7 +170,7 @@ class RveBatch:
             InputError: with file, line and key
             NoEquilibrium: no packing comes to rest
         """
-        batch, notes = running().batch_of_case(str(case_file), list(settings), int(n), _mirrored(mirrored, int(n)))
+        batch, notes = running().batch_of_case(str(case_file), list(settings), index(n), _mirrored(mirrored, n))
         for note in notes:
             _log.info(note)
         new = cls.__new__(cls)
@@ -236,23 +237,28 @@ class RveBatch:
         self._core.begin_increment()
 
     def committed(self, tangent: bool = True) -> Answer:
-        """The answer of the committed state. The tangent is the one that was found when it was evaluated."""
+        """The answer of the committed state. The tangent is the one that its evaluation found, or after
+        `tangent=False` that of eq. (4), which is stiffer than those of the other kinds."""
         return _answer(self._core.committed(tangent))
 
     def state(self, points: ArrayLike | None = None) -> bytes:
         """The committed state of these points (None: of all) as bytes, for `set_state` of this or an equal batch.
 
+        Args:
+            points: numbers of points, of which negative ones count from the end, or a mask (n,) of bool
+
         Raises:
-            IndexError: there is no such point
+            IndexError: there is no such point, or the mask has another length
         """
         return bytes(self._core.state(self._points(points)))
 
     def set_state(self, state: bytes, points: ArrayLike | None = None) -> None:
         """Gives a state to these points (None: to all). Their packings must be those of the points that it was taken
-        from, in the same order. An increment begins.
+        from, in the same order. An increment begins. A state is that of the grains: whether a point is mirrored is no
+        part of it.
 
         Raises:
-            ValueError: the bytes are no state of such points
+            ValueError: the bytes are no state of such points, which keep the state that they have
             IndexError: there is no such point
         """
         self._core.set_state(state, self._points(points))
@@ -296,7 +302,7 @@ class RveBatch:
         return from_dict(self._core.packing(self._point(point)))
 
     def _point(self, point: int) -> int:
-        number = int(point)
+        number = index(point)
         if not -len(self) <= number < len(self):
             raise IndexError(f"there is no point {number}: the batch has {len(self)}")
         return number % len(self)
@@ -304,10 +310,14 @@ class RveBatch:
     def _points(self, points: ArrayLike | None) -> list[int]:
         if points is None:
             return list(range(len(self)))
-        array = np.asarray(points)
-        if array.dtype == bool and array.shape == (len(self),):
-            return [int(k) for k in np.flatnonzero(array)]
-        return [self._point(int(k)) for k in np.atleast_1d(array)]
+        array = np.atleast_1d(np.asarray(points))
+        if array.dtype == bool:
+            if array.shape != (len(self),):
+                raise IndexError(f"a mask of points needs {len(self)} truth values, one for each")
+            return np.flatnonzero(array).tolist()
+        if array.ndim > 1 or (array.size and array.dtype.kind not in "iuO"):
+            raise IndexError("points are whole numbers in one row, or a mask")
+        return [self._point(k) for k in array.tolist()]
 
 
 def _listed(packings: Any) -> list[Packing]:

@@ -5,6 +5,7 @@ import os
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import index
 from pathlib import Path
 from typing import Any
 
@@ -150,7 +151,7 @@ def make_packings(
         InputError: a setting is wrong
         NoEquilibrium: no packing comes to rest
     """
-    wanted = list(range(1, seeds + 1)) if isinstance(seeds, int) else [int(seed) for seed in seeds]
+    wanted = list(range(1, seeds + 1)) if isinstance(seeds, int | np.integer) else [index(seed) for seed in seeds]
     if not wanted:
         raise ValueError("there must be at least one seed")
     defaults: dict[str, Any] = {"packing.grains": grains, "packing.pressure": f"{float(pressure)!r} Pa"}
@@ -161,10 +162,10 @@ def make_packings(
     packings = [from_dict(packing) for packing in made]
     for note in notes:
         _log.info(note)
-    left = sorted(set(wanted) - {packing.seed for packing in packings})
-    if left:
+    missing = len(wanted) - len(packings)
+    if missing:
         reasons = "; ".join(note for note in notes if note.endswith("left out") or "left out:" in note)
-        warnings.warn(f"{len(left)} of {len(wanted)} packings are missing: {reasons}", PackingWarning, stacklevel=2)
+        warnings.warn(f"{missing} of {len(wanted)} packings are missing: {reasons}", PackingWarning, stacklevel=2)
     return packings
 
 

@@ -4,7 +4,6 @@ How the program ends becomes a result or an exception (docs/reference/exit_statu
 key, NoEquilibrium, MachineFailure, Interrupted; Ctrl-C ends a run after its increment, and KeyboardInterrupt follows.
 """
 
-import json
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,6 +15,7 @@ from .opening import open_ensemble, open_result, open_sweep
 from .programs import Ended, Process, find_program
 from .progress import Told, progress_of
 from .results import Result
+from .settings import flat, toml
 from .sweeps import Sweep
 
 Settings = Mapping[str, Any] | Sequence[str]
@@ -44,7 +44,7 @@ def run(
 
     Raises InputError where the input has a fault, NoEquilibrium where no equilibrium is found (`folder` of the
     exception has the results up to there, its `lines` what the program printed), MachineFailure, and KeyboardInterrupt
-    after Ctrl-C: then resume=True goes on.
+    after Ctrl-C: then resume=True goes on. Where this process is killed, the run goes on; open_result(out) shows it.
     """
     chosen = as_texts(settings)
     folder = Path(out) if out is not None else Path("out") / _title(case, chosen)
@@ -142,7 +142,7 @@ def as_texts(settings: Settings) -> list[str]:
     if isinstance(settings, str):
         return [settings]
     if isinstance(settings, Mapping):
-        return [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in settings.items()]
+        return [f"{key}={value if isinstance(value, str) else toml(value)}" for key, value in flat(settings).items()]
     return list(settings)
 
 

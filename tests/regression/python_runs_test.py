@@ -15,6 +15,7 @@ from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
+import numpy as np
 import tiny_results
 import voussoir
 from program import PROGRAM, ROOT, check_same, fresh, run
@@ -73,7 +74,8 @@ class Ends(unittest.TestCase):
         self.assertIsInstance(error, ValueError)
         with self.assertRaises(voussoir.InputError) as caught:
             voussoir.run("tunnel.toml", "runs/wrong", settings={"ground.width": "3 mm"})
-        self.assertEqual((caught.exception.place, caught.exception.key), ("--set", "ground.width"))
+        error = caught.exception
+        self.assertEqual((error.place, error.file, error.key), ("--set", None, "ground.width"))
         with self.assertRaisesRegex(voussoir.InputError, "no_such.toml: cannot be read"):
             voussoir.run("no_such.toml")
         self.assertFalse(Path("runs/wrong").exists())
@@ -181,6 +183,8 @@ class Words(unittest.TestCase):
         wanted = ["soil.friction_angle=30 deg", "packing.seeds=[1, 2]", "a.b=true", 'biaxial.pressures=["1 kPa"]']
         self.assertEqual(runs.as_texts(settings), wanted)
         self.assertEqual(runs.as_texts(["a=1"]), ["a=1"])
+        nested = {"packing": {"grains": np.int64(9), "folder": Path("x")}, "b": np.array([1.5, 2])}
+        self.assertEqual(runs.as_texts(nested), ["packing.grains=9", 'packing.folder="x"', "b=[1.5, 2.0]"])
 
     def test_the_program_is_found(self):
         with mock.patch.dict(os.environ, {"VOUSSOIR": "", "PATH": str(Path(PROGRAM).parent)}):
