@@ -7,10 +7,13 @@ import. A name without a docstring is an error: the page is the only complete li
 
 import ast
 import inspect
+import re
 from pathlib import Path
 from typing import Any
 
 PACKAGE = Path(__file__).resolve().parent.parent / "python" / "voussoir"
+TITLES = {"Args": "Arguments", "Returns": "Returns", "Raises": "Raises"}  # sections of a docstring
+ENTRY = re.compile(r" {4}(?P<names>\w+(?:, \w+)*): (?P<text>.*)")
 LINE = 100  # the longest signature in one line
 SUBMODULES = ("paths", "precice")  # figures and report are drawn by functions of the results
 
@@ -64,7 +67,25 @@ def decorators(node: ast.FunctionDef) -> set[str]:
 
 
 def documentation(node: ast.FunctionDef | ast.ClassDef) -> str:
-    return inspect.cleandoc(ast.get_docstring(node, clean=False) or "")
+    return with_lists(inspect.cleandoc(ast.get_docstring(node, clean=False) or ""))
+
+
+def with_lists(text: str) -> str:
+    """A docstring whose sections "Args:", "Returns:", "Raises:" are lists, which Markdown would join into one line."""
+    lines: list[str] = []
+    inside = ""
+    for line in text.splitlines():
+        if line.removesuffix(":") in TITLES and line.endswith(":"):
+            inside = line.removesuffix(":")
+            lines += [f"{TITLES[inside]}:", ""]
+        elif not inside or not line.startswith(" ") or inside == "Returns":
+            lines.append(line.strip() if inside == "Returns" else line)
+        elif found := ENTRY.fullmatch(line):
+            names = ", ".join(f"`{name}`" for name in found["names"].split(", "))
+            lines.append(f"- {names}: {found['text']}")
+        else:
+            lines.append(f"  {line.strip()}")
+    return "\n".join(lines)
 
 
 def split_arguments(text: str) -> list[str]:

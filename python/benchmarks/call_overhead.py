@@ -4,8 +4,8 @@ Python, the part of it within RvePool::evaluate, which a C++ program would call,
 
     PYTHONPATH=build/openmp/python python/benchmarks/call_overhead.py [--grains 300] [--calls 30]
 
-The difference is the median over the calls, because other processes of the machine disturb single calls. Prints a table
-in Markdown.
+Median and least value of the calls are printed, because other processes of the machine disturb some or most of them.
+Prints a table in Markdown.
 """
 
 import argparse
@@ -20,7 +20,7 @@ REST = 0.0  # without a strain the grains are only looked at: the shortest call 
 
 
 def measure(batch, strain, calls):
-    """Wall time of a call and its part beside the engine, in seconds: medians over the calls."""
+    """Wall time of a call [ms], and its part beside the engine [µs]: "median (least)"."""
     gradients = np.zeros((len(batch), 2, 2))
     gradients[:, 1, 1] = -strain
     batch.begin_increment()
@@ -31,7 +31,11 @@ def measure(batch, strain, calls):
         wall = time.perf_counter() - start
         walls.append(wall)
         besides.append(wall - batch._core.engine_seconds())
-    return float(np.median(walls)), float(np.median(besides))
+
+    def text(values, unit):
+        return f"{np.median(values) / unit:.3g} ({np.min(values) / unit:.3g})"
+
+    return text(walls, 1e-3), text(besides, 1e-6)
 
 
 def main():
@@ -49,9 +53,7 @@ def main():
         with voussoir.RveBatch(packing, n) as batch:
             rest, rest_beside = measure(batch, REST, options.calls)
             wall, beside = measure(batch, STRAIN, max(3, options.calls // (3 if n < 1024 else 10)))
-        print(
-            f"| {n} | {rest * 1e3:.3g} | {rest_beside * 1e6:.3g} | {wall * 1e3:.4g} | {beside * 1e6:.3g} |", flush=True
-        )
+        print(f"| {n} | {rest} | {rest_beside} | {wall} | {beside} |", flush=True)
 
 
 if __name__ == "__main__":

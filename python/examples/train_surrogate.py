@@ -3,14 +3,12 @@
     python3 train_surrogate.py [--paths 224] [--packings 8] [--grains 300] [--file set.h5] [--figure surrogate.png]
 
 Makes a dataset (every path on every packing), trains a network of scikit-learn on training packings and training paths,
-and judges it on paths and packings that it has not seen. Beside its errors stand those of an elastic law, and those of
-the best guess of somebody who knows all about a path and nothing about the packing: the mean of the training packings
-on this very path. No model that is not told the packing can be expected to do better than that.
+and judges it on new paths and new packings. Beside its errors stand those of an elastic law, and those of the best
+guess of somebody who knows all about a path and nothing about the packing: the mean of the training packings.
 
 The network gets what a material point of a finite-element program knows: its strain, the last increment, and memories
 of the strains before that fade over several lengths. It returns the whole stress; errors are not fed back. Packings of
-one recipe are isotropic on average, so that a path in turned axes gives the same stress, turned: each path is learned
-in several directions."""
+a recipe are isotropic on average: a path in turned axes gives the same stress, turned, and is learned as well."""
 
 import argparse
 
@@ -103,26 +101,31 @@ def error(guess, stress, axes=None):
 
 
 def draw(file, curves, errors, grains, network):
-    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(15, 4.8), layout="constrained")
+    figure, (left, middle, right) = plt.subplots(1, 3, figsize=(14, 4.6), layout="constrained")
     for part, (name, sign) in enumerate((("mean stress p", -1), ("(yy − xx)/2", -1), ("shear stress xy", 1))):
         colour = f"C{part}"
         one, guess, law, mean, scatter = (sign * curve[:, part] / 1e3 for curve in curves)
-        left.fill_between(range(len(mean)), mean - scatter, mean + scatter, color=colour, alpha=0.2)
-        left.plot(one, colour, label=f"{name}: grains")
-        left.plot(guess, colour, ls="--", label="network")
-        left.plot(law, colour, ls=":", lw=1.2, label="elastic law")
+        left.fill_between(
+            range(len(mean)),
+            mean - scatter,
+            mean + scatter,
+            color=colour,
+            alpha=0.2,
+            label=None if part < 2 else "packings ± s.d.",
+        )
+        left.plot(one, colour, label=f"{name}, grains")
+        left.plot(guess, colour, ls="--", label=None if part else "network")
+        left.plot(law, colour, ls=":", lw=1.2, label=None if part else "elastic law")
         pair = (sign * stress[..., part].ravel() / 1e3 for stress in (grains, network))
         right.plot(*pair, ".", color=colour, ms=2, alpha=0.3, label=name)
     for (name, values), style in zip(errors.items(), (":", "--", "-", "-.")):
         middle.plot(100 * values, style, label=name)
-    title = "An unseen path on an unseen packing (bands: packings ± 1 s.d.)"
+    title = "A new path on a new packing"
     left.set(xlabel="increment", ylabel="stress [kPa]", ylim=(None, 1.45 * left.get_ylim()[1]), title=title)
-    middle.set(
-        xlabel="increment", ylabel="error over mean p [%]", ylim=(0, None), title="Unseen paths, unseen packings"
-    )
-    right.set(xlabel="stress of the grains [kPa]", ylabel="stress of the network [kPa]", title="All points of these")
+    middle.set(xlabel="increment", ylabel="error over mean p [%]", ylim=(0, None), title="New paths, new packings")
+    right.set(xlabel="stress of the grains [kPa]", ylabel="stress of the network [kPa]", title="All their points")
     right.axline((0, 0), slope=1, color="k", lw=0.8)
-    left.legend(fontsize=8, ncols=3, loc="upper left")
+    left.legend(fontsize=8, ncols=2, loc="upper left")
     middle.legend(fontsize=8)
     right.legend(fontsize=8, markerscale=4)
     figure.savefig(file, dpi=100)
@@ -130,10 +133,9 @@ def draw(file, curves, errors, grains, network):
 
 def main():
     parser = argparse.ArgumentParser(description="Trains a network on strain paths of grains.")
-    for name, default in (("paths", 224), ("increments", 40), ("packings", 8), ("grains", 300)):
-        parser.add_argument(f"--{name}", type=int, default=default)
-    parser.add_argument("--file", default="surrogate.h5")
-    parser.add_argument("--figure", default="surrogate.png")
+    numbers, names = {"paths": 224, "increments": 40, "packings": 8, "grains": 300}, {"file": "surrogate.h5"}
+    for name, default in {**numbers, **names, "figure": "surrogate.png"}.items():
+        parser.add_argument(f"--{name}", type=type(default), default=default)
     given = parser.parse_args()
     data = make_dataset(given)
     shape = (-1, len(data["packing/seed"]), data.points, 3)  # rows stand path by path

@@ -33,7 +33,9 @@ class Batch final : public engine::Closable {
     batch_->set_pause(&engine::look_for_signals, &engine::run_stoppable);
   }
   ~Batch() override {
-    if (engine::forked()) static_cast<void>(batch_.release());  // memory of an engine whose threads are elsewhere
+    // The memory is that of an engine whose threads are elsewhere: it is left alone.
+    // NOLINTNEXTLINE(bugprone-unused-return-value): nobody is to delete it
+    if (engine::forked()) static_cast<void>(batch_.release());
   }
   void close() override { end(std::unique_lock(busy_)); }
   void close_by_user() {

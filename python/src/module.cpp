@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <exception>
+#include <stdexcept>
 
 #include "host/process/build_info.hpp"
 #include "host/process/exit_code.hpp"
@@ -23,17 +24,23 @@ void raise(const char* name, const nb::object& value) {
 }
 
 /// Exceptions of the C++ code as those of voussoir.errors. What this function throws is left to nanobind, which has
-/// ValueError for std::invalid_argument, IndexError for std::out_of_range and RuntimeError for others.
+/// ValueError for std::invalid_argument, IndexError for std::out_of_range and MemoryError for std::bad_alloc.
 void translate(const std::exception_ptr& thrown, void* /*unused*/) {
   try {
     std::rethrow_exception(thrown);
   } catch (const nb::builtin_exception&) {
+    throw;
+  } catch (const std::invalid_argument&) {
+    throw;
+  } catch (const std::out_of_range&) {
     throw;
   } catch (const io::InputError& error) {
     raise("InputError", nb::make_tuple(error.what(), error.place(), error.key(), error.sentence()));
   } catch (const host::NoEquilibrium& error) {
     raise("NoEquilibrium", nb::str(error.what()));
   } catch (const std::runtime_error& error) {
+    raise("Error", nb::str(error.what()));
+  } catch (const std::logic_error& error) {  // such as a commit without an evaluation
     raise("Error", nb::str(error.what()));
   }
 }
@@ -51,14 +58,15 @@ std::vector<std::string> status_names() {
 }  // namespace voussoir::python
 
 NB_MODULE(_core, module) {
-  using namespace voussoir::python;
-  nb::register_exception_translator(translate);
+  namespace python = voussoir::python;
+  namespace engine = python::engine;
+  nb::register_exception_translator(python::translate);
   module.doc() = "The engine of the package voussoir. Use the names of the package; those here may change.";
   module.def("initialize", &engine::start, nb::arg("threads"));
   module.def("is_initialized", &engine::started);
   module.def("threads", &engine::threads);
   module.def("finish", &engine::finish);
-  module.def("status_names", &status_names, "Names of the numbers in the column `status` of a report.");
-  bind_packings(module);
-  bind_batch(module);
+  module.def("status_names", &python::status_names, "Names of the numbers in the column `status` of a report.");
+  python::bind_packings(module);
+  python::bind_batch(module);
 }

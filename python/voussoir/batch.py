@@ -5,7 +5,6 @@ import logging
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from operator import index
 from types import TracebackType
 from typing import Any, NamedTuple, Self
 
@@ -14,19 +13,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from voussoir.engine import running
 from voussoir.packings import Floats, Integers, Packing, as_dict, drawing, from_dict, load_packing
-from voussoir.settings import Settings, name, text_of
+from voussoir.settings import Settings, as_texts, name, text_of, told_by_argument, whole_number
 
 _log = logging.getLogger("voussoir")
 
 #: Columns of a report. A column's unit is [-] where none is given.
-#:   status          index into `status_names`
-#:   steps           time steps that the grains took, with those of the hold at the end
-#:   contacts        number of contacts that carry force
-#:   unbalanced      unbalanced ratio at the end: rms force on a grain over pressure x thickness x mean diameter
-#:   inertial_number of the straining, at the final pressure
-#:   largest_overlap of a contact, over r_i + r_j
-#:   mean_overlap    the same, mean over the contacts
-#:   cell_area       at the end [m^2]
+#:
+#: - `status`: index into `status_names`
+#: - `steps`: time steps that the grains took, with those of the hold at the end
+#: - `contacts`: number of contacts that carry force
+#: - `unbalanced`: unbalanced ratio at the end: rms force on a grain over pressure x thickness x mean diameter
+#: - `inertial_number`: of the straining, at the final pressure
+#: - `largest_overlap`: of a contact, over r_i + r_j
+#: - `mean_overlap`: the same, mean over the contacts
+#: - `cell_area`: at the end [m^2]
 report_dtype = np.dtype(
     {
         "names": ["status", "steps", "contacts", "unbalanced", "inertial_number", "largest_overlap", "mean_overlap",
@@ -37,7 +37,16 @@ report_dtype = np.dtype(
     }
 )  # fmt: skip
 
-#: Names of the numbers in a report's column `status`. The last three are failures, and such a point answers with NaN.
+#: Names of the numbers in a report's column `status` (docs/reference/log_lines.md says what to do about each):
+#:
+#: - `converged`: the grains are at rest
+#: - `step_limit`: the grains still move; the stress is that of the last step
+#: - `open`: no contacts are left, and the stress is zero
+#: - `neighbour_overflow`: a failure: the cell is too narrow for its largest grains, or grains have too many neighbours
+#: - `overlap_limit`: a failure: grains overlap too much; take smaller increments
+#: - `not_finite`: a failure: a number grew beyond all bounds, or the cell was turned inside out
+#:
+#: A point with a failure answers with NaN.
 status_names: tuple[str, ...] = (
     "converged",
     "step_limit",
@@ -46,6 +55,8 @@ status_names: tuple[str, ...] = (
     "overlap_limit",
     "not_finite",
 )
+
+_bytes_of_a_grain = 200  # at least: 227 to 240 were measured on a batch of 1000 points, 300 and 100 grains
 
 _precisions = {"float": "float", "double": "double", "float32": "float", "float64": "double"}
 
@@ -108,26 +119,30 @@ class RveBatch:
 
         Args:
             packings: a Packing or a packing file, or several
-            n: number of points; as many as packings where it is left out
+            n: number of points; where it is left out, as many as `packing_of` has, or else as packings
             packing_of: (n,) index of the packing of each point; dealt out in turn where it is left out
             preset: "fast", "standard" or "reference": speed against accuracy (docs/validation/trade.md)
             accuracy: wanted error of the stress over the pressure [-], in place of the preset's rate of strain
             precision: "float" or "double" of the pair forces; that of the preset where it is left out
-            tangent: "contact" (eq. 4 of the paper), "elastic", "static" or "loading" (docs/explanation/tangents.md)
+            tangent: "contact" (eq. 4 of the paper), "elastic", "static" or "loading" (docs/explanation/tangents.md), or
+                "auto", which is "elastic", on a GPU "contact"
             mirrored: whether points answer as the mirror image (x to -x) of their packing: all, or (n,) of them
             microstructure: one or several quantities to add to `fields`, such as "fabric" (key output.microstructure)
             backend: "lanes" of the processor, "gpu", or "auto" for a GPU where there is one
             settings: further keys of [engine] and newton.tangent_strain; they override the arguments above
 
         Raises:
-            InputError: a setting is wrong
+            InputError: a setting, or a value of an argument, is wrong
             ValueError: wrong shape or index; a packing that is not of this program
+            MemoryError: the points need more memory than this computer has
             RuntimeError: no GPU for backend="gpu"; after fork()
         """
         listed = _listed(packings)
-        count = len(listed) if n is None else index(n)
-        dealt = np.arange(count) % max(len(listed), 1) if packing_of is None else np.asarray(packing_of)
-        if dealt.shape != (count,) or dealt.dtype.kind not in "iu":
+        count = _count(listed, n, packing_of)
+        if backend == "lanes":
+            _check_memory(count * min(len(packing) for packing in listed))
+        index = np.arange(count) % len(listed) if packing_of is None else np.asarray(packing_of)
+        if index.shape != (count,) or index.dtype.kind not in "iu":
             raise ValueError(f"packing_of needs {count} integers, one for each point")
         given: dict[str, Any] = {
             "engine.preset": preset,
@@ -141,18 +156,16 @@ class RveBatch:
             given["engine.precision"] = _precisions.get(precision, precision)
         allowed = ("engine", "newton.tangent", "newton.tangent_strain", "output.microstructure")
         text = text_of("biaxial_bvp", settings, allowed, given)
-        self._begin(
-            running().new_batch(
-                [as_dict(packing) for packing in listed], dealt.tolist(), text, name, _mirrored(mirrored, count)
-            )
-        )
+        mirrors, parts = _mirrored(mirrored, len(index)), [as_dict(packing) for packing in listed]
+        with told_by_argument(settings, {key: key.rpartition(".")[2] for key in given}):
+            self._begin(running().new_batch(parts, index.tolist(), text, name, mirrors))
 
     @classmethod
     def from_case(
         cls,
         case_file: str | os.PathLike[str],
         n: int,
-        settings: Sequence[str] = (),
+        settings: Settings | Sequence[str] = (),
         *,
         mirrored: bool | ArrayLike = False,
     ) -> Self:
@@ -163,14 +176,16 @@ class RveBatch:
         Args:
             case_file: of one of the kinds pack, probe, column, tunnel
             n: number of points
-            settings: as --set of the program, such as ["packing.grains=300"]
+            settings: keys that replace those of the case, as {"packing.grains": 300} or as texts
+                ["packing.grains=300"], which --set of the program takes
             mirrored: as in RveBatch. packing.mirrored of the case does not count.
 
         Raises:
             InputError: with file, line and key
             NoEquilibrium: no packing comes to rest
         """
-        batch, notes = running().batch_of_case(str(case_file), list(settings), index(n), _mirrored(mirrored, n))
+        count = whole_number(n, "n")
+        batch, notes = running().batch_of_case(str(case_file), as_texts(settings), count, _mirrored(mirrored, count))
         for note in notes:
             _log.info(note)
         new = cls.__new__(cls)
@@ -207,13 +222,14 @@ class RveBatch:
 
         Args:
             f_minus_i: (n, 2, 2) F - I, where F maps the committed configuration to the new one [-]
-            tangent: False saves the time of the tangents
+            tangent: False saves the time of the tangents. Which tangent it is, RveBatch(tangent=...) says.
 
         Returns:
             Answer. A point that has failed has NaN.
 
         Raises:
             ValueError: wrong shape, or a gradient that is not finite
+            TypeError: `tangent` is neither True nor False
             KeyboardInterrupt: after Ctrl-C; the committed state is as before, and the next evaluation is the first one
                 of the increment
             RuntimeError: the batch is closed; after fork()
@@ -221,7 +237,8 @@ class RveBatch:
         gradients = np.ascontiguousarray(f_minus_i, dtype=np.float64)
         if gradients.shape != (len(self), 2, 2):
             raise ValueError(f"f_minus_i needs the shape ({len(self)}, 2, 2), has {gradients.shape}")
-        return _answer(self._core.evaluate(gradients, tangent))
+        answer = _answer(self._core.evaluate(gradients, _truth(tangent)))
+        return answer if answer.usable else answer._replace(message=answer.message + _inside_out(gradients))
 
     def commit(self) -> None:
         """Makes the state of the last evaluation the committed one and begins an increment.
@@ -239,7 +256,7 @@ class RveBatch:
     def committed(self, tangent: bool = True) -> Answer:
         """The answer of the committed state. The tangent is the one that its evaluation found, or after
         `tangent=False` that of eq. (4), which is stiffer than those of the other kinds."""
-        return _answer(self._core.committed(tangent))
+        return _answer(self._core.committed(_truth(tangent)))
 
     def state(self, points: ArrayLike | None = None) -> bytes:
         """The committed state of these points (None: of all) as bytes, for `set_state` of this or an equal batch.
@@ -249,6 +266,7 @@ class RveBatch:
 
         Raises:
             IndexError: there is no such point, or the mask has another length
+            TypeError: a point is no whole number
         """
         return bytes(self._core.state(self._points(points)))
 
@@ -259,8 +277,11 @@ class RveBatch:
 
         Raises:
             ValueError: the bytes are no state of such points, which keep the state that they have
+            TypeError: the state is no bytes
             IndexError: there is no such point
         """
+        if not isinstance(state, bytes):
+            raise TypeError(f"a state is bytes, as state() gives them, not {type(state).__name__}")
         self._core.set_state(state, self._points(points))
 
     def fields(self) -> dict[str, Floats]:
@@ -302,7 +323,7 @@ class RveBatch:
         return from_dict(self._core.packing(self._point(point)))
 
     def _point(self, point: int) -> int:
-        number = index(point)
+        number = whole_number(point, "a point")
         if not -len(self) <= number < len(self):
             raise IndexError(f"there is no point {number}: the batch has {len(self)}")
         return number % len(self)
@@ -315,7 +336,7 @@ class RveBatch:
             if array.shape != (len(self),):
                 raise IndexError(f"a mask of points needs {len(self)} truth values, one for each")
             return np.flatnonzero(array).tolist()
-        if array.ndim > 1 or (array.size and array.dtype.kind not in "iuO"):
+        if array.ndim > 1:
             raise IndexError("points are whole numbers in one row, or a mask")
         return [self._point(k) for k in array.tolist()]
 
@@ -323,15 +344,56 @@ class RveBatch:
 def _listed(packings: Any) -> list[Packing]:
     if isinstance(packings, Packing | str | os.PathLike):
         packings = [packings]
-    return [packing if isinstance(packing, Packing) else load_packing(packing) for packing in packings]
+    if not isinstance(packings, Iterable):
+        raise TypeError(f"packings are those of make_packings or packing files, not {packings!r}")
+    listed = [packing if isinstance(packing, Packing) else load_packing(packing) for packing in packings]
+    if not listed:
+        raise ValueError("a batch needs at least one packing")
+    return listed
+
+
+def _count(packings: list[Packing], n: int | None, packing_of: ArrayLike | None) -> int:
+    """The number of points."""
+    if n is None:
+        n = len(packings) if packing_of is None else np.size(packing_of)
+    count = whole_number(n, "n")
+    if count < 1:
+        raise ValueError(f"a batch needs at least one point, and n is {count}")
+    return count
+
+
+def _check_memory(grains: int) -> None:
+    """Refuses grains that cannot be held, before any list of their points is made: the system would end the process."""
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    needed = grains * _bytes_of_a_grain
+    if needed > memory:
+        raise MemoryError(
+            f"{grains:.3g} grains of all points need at least {needed / 2**30:.0f} GiB, "
+            f"and this computer has {memory / 2**30:.0f} GiB"
+        )
 
 
 def _mirrored(mirrored: bool | ArrayLike, n: int) -> list[bool]:
     """Empty where no point is mirrored."""
-    flags = np.broadcast_to(np.asarray(mirrored, dtype=bool), (n,)) if np.ndim(mirrored) == 0 else np.asarray(mirrored)
-    if flags.shape != (n,) or flags.dtype != bool:
+    flags = np.asarray(mirrored)
+    if flags.shape not in ((), (n,)) or flags.dtype != bool:
         raise ValueError(f"mirrored needs one truth value, or {n} of them")
-    return [bool(flag) for flag in flags] if flags.any() else []
+    return [bool(flag) for flag in np.broadcast_to(flags, (n,))] if flags.any() else []
+
+
+def _truth(tangent: Any) -> bool:
+    if not isinstance(tangent, bool | np.bool_):
+        raise TypeError(f"tangent is True or False here, not {tangent!r}; RveBatch(tangent=...) says which it is")
+    return bool(tangent)
+
+
+def _inside_out(f_minus_i: Floats) -> str:
+    """What is to be added to the message of a failure where a gradient turns a cell inside out."""
+    volume = np.linalg.det(np.eye(2) + f_minus_i)
+    wrong = np.flatnonzero(volume <= 0)
+    if not len(wrong):
+        return ""
+    return f"; the gradient of point {wrong[0]} turns its cell inside out: det F is {volume[wrong[0]]:.3g}"
 
 
 def _answer(parts: tuple[Any, ...]) -> Answer:

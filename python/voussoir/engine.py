@@ -21,7 +21,8 @@ def core() -> ModuleType:
 
 
 def initialize(threads: int = 0) -> None:
-    """Starts the engine with this number of threads. It happens by itself at the first use.
+    """Starts the engine with this number of threads. It happens by itself at the first use. The number becomes that of
+    OpenMP in the calling thread, too, for whatever else uses the system's libgomp.
 
     Args:
         threads: wanted number; 0 takes KOKKOS_NUM_THREADS, or OMP_NUM_THREADS, or one for each core

@@ -78,7 +78,7 @@ class Ensemble(Shown):
     def curve(self, name: str) -> Bands:
         """The bands of a curve, such as "surface_settlement", over the increments."""
         if name not in self.curves:
-            raise Missing(f"{self.folder / INDEX} has no curve {name}")
+            raise Missing(f"{self.folder / INDEX} has no curve {name}", self.curves)
         return self.curves[name]
 
     def fields(self, increment: int) -> dict[str, Bands]:

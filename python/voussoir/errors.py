@@ -14,6 +14,7 @@ The compiled module raises them as well.
 """
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 _FILE = re.compile(r"(?P<place>(?P<file>\S.*?\.\w+)(?::(?P<line>\d+))?): (?:(?P<key>[A-Za-z_][\w.\[\]-]*): )?")
@@ -32,13 +33,13 @@ class Error(RuntimeError):
 
 
 class InputError(Error, ValueError):
-    """A mistake of the user. The message is the program's line, such as "case.toml:12: soil.friction_angle: must be
-    positive, is -3 deg".
+    """A mistake of the user. The message is the program's line, such as "case.toml:12: soil.friction: must be at
+    least 0 deg, is -3 deg".
 
     place: "FILE:LINE", "FILE", "settings:2" for the second entry of a dictionary of settings, "--set" for an override
-    of the program, or ""; file: the place without its line, or None; line: the line, or the number of the setting, or
-    None; key: the key, such as "soil.friction_angle", or ""; sentence: what is wrong, without place and key. What is
-    not given is read from the message.
+    of the program, the name of an argument, such as "grains", or ""; file: the place without its line, or None; line:
+    the line, or the number of the setting, or None; key: the key, such as "soil.friction", or ""; sentence: what is
+    wrong, without place and key. What is not given is read from the message.
     """
 
     def __init__(
@@ -72,7 +73,12 @@ class Interrupted(Error):
 
 
 class Missing(Error):
-    """The result lacks data that were asked for; the message names these data."""
+    """The result lacks data that were asked for; the message names these data, and a traceback those that there are."""
+
+    def __init__(self, message: str = "", there_are: Iterable[str] = ()) -> None:
+        super().__init__(message)
+        if known := ", ".join(there_are):
+            self.add_note(f"There are: {known}")
 
 
 class Unreadable(Missing):

@@ -16,7 +16,7 @@ try:
     import h5py
 except ModuleNotFoundError as missing:
     raise ModuleNotFoundError(
-        f"results are read by h5py; `pip install 'voussoir[files]'` or `pip install h5py` installs it ({missing})",
+        f"results are read by h5py; `pip install h5py` installs it ({missing})",
         name=missing.name,
     ) from missing
 

@@ -33,7 +33,7 @@ class Increment:
 
     def __getitem__(self, attribute: str) -> Any:
         if attribute not in self.attributes:
-            raise Missing(f"{self.path} has no attribute {attribute}")
+            raise Missing(f"{self.path} has no attribute {attribute}", sorted(self.attributes))
         return self.attributes[attribute]
 
     def __repr__(self) -> str:
@@ -48,7 +48,7 @@ class Increment:
             return name
         found = [f"{group}/{name}" for group in GROUPS if f"{group}/{name}" in self.names]
         if not found:
-            raise Missing(f"{self.path} has no {name}")
+            raise Missing(f"{self.path} has no {name}", sorted(self.names))
         return found[0]
 
     def field(self, name: str) -> np.ndarray:
@@ -82,6 +82,6 @@ class Increment:
     def snapshot(self, name: str) -> Snapshot:
         """Arrays of one RVE, by the names of docs/reference/files.md."""
         if name not in self.snapshots:
-            raise Missing(f"{self.path} has no snapshot {name}")
+            raise Missing(f"{self.path} has no snapshot {name}", self.snapshots)
         with reading(self.path) as file:
             return {key: data[()] for key, data in file[f"snapshots/{name}"].items()}

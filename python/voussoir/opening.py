@@ -34,7 +34,8 @@ def open_result(folder: Path | str) -> Result:
 def open_ensemble(folder: Path | str) -> Ensemble:
     """Means and bands of an ensemble as NumPy arrays. Raises Unreadable where the folder has none."""
     path = Path(folder)
-    is_ensemble(path)  # tells of an ensemble that is not reduced yet
+    if not is_ensemble(path) and (path / "run.h5").exists():  # is_ensemble tells of one that is not reduced yet
+        raise Unreadable(f"{path} is a run without ensemble.h5, which voussoir.open_result opens")
     return Ensemble(path)
 
 

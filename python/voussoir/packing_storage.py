@@ -19,7 +19,7 @@ def _h5py() -> Any:
     try:
         import h5py
     except ImportError as fault:
-        raise ImportError("packing files need h5py: pip install h5py, or pip install 'voussoir[files]'") from fault
+        raise ImportError("packing files need h5py, which `pip install h5py` installs") from fault
     return h5py
 
 
@@ -33,7 +33,7 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     """
     path = Path(path)
     if not path.is_file():
-        raise FileNotFoundError(f"{path}: there is no such file")
+        raise FileNotFoundError(f"{path}: " + ("it is no file" if path.exists() else "there is no such file"))
     file = PackingFile(path)
     packing: dict[str, Any] = {
         name: np.ascontiguousarray(getattr(file, name)) for name in (*_columns, "cell", "history")

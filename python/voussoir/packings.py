@@ -3,9 +3,8 @@
 import logging
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from operator import index
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from voussoir import packing_storage
 from voussoir.engine import core, running
 from voussoir.errors import PackingWarning
-from voussoir.settings import Settings, name, text_of
+from voussoir.settings import Settings, name, text_of, told_by_argument, whole_number
 
 _log = logging.getLogger("voussoir")
 
@@ -148,17 +147,18 @@ def make_packings(
         PackingWarning.
 
     Raises:
-        InputError: a setting is wrong
+        InputError: a setting, or a value of an argument, is wrong
+        TypeError: seeds are no integers; the pressure is no number
+        ValueError: there is no seed
         NoEquilibrium: no packing comes to rest
     """
-    wanted = list(range(1, seeds + 1)) if isinstance(seeds, int | np.integer) else [index(seed) for seed in seeds]
-    if not wanted:
-        raise ValueError("there must be at least one seed")
-    defaults: dict[str, Any] = {"packing.grains": grains, "packing.pressure": f"{float(pressure)!r} Pa"}
+    wanted = _seeds(seeds)
+    defaults: dict[str, Any] = {"packing.grains": grains, "packing.pressure": _in_pascal(pressure)}
     if folder is not None:
         defaults["packing.folder"] = str(Path(folder).absolute())
     text = text_of("pack", settings, ("soil", "packing"), defaults)
-    made, notes = running().make_packings(text, name, wanted, folder is not None)
+    with told_by_argument(settings, {key: key.removeprefix("packing.") for key in defaults}):
+        made, notes = running().make_packings(text, name, wanted, folder is not None)
     packings = [from_dict(packing) for packing in made]
     for note in notes:
         _log.info(note)
@@ -167,6 +167,21 @@ def make_packings(
         reasons = "; ".join(note for note in notes if note.endswith("left out") or "left out:" in note)
         warnings.warn(f"{missing} of {len(wanted)} packings are missing: {reasons}", PackingWarning, stacklevel=2)
     return packings
+
+
+def _in_pascal(pressure: Any) -> str:
+    if isinstance(pressure, str):
+        raise TypeError(f"pressure is a number in Pa, such as 100e3, not {pressure!r}")
+    return f"{float(pressure)!r} Pa"
+
+
+def _seeds(seeds: Any) -> list[int]:
+    if isinstance(seeds, str) or not isinstance(seeds, Iterable):
+        seeds = range(1, whole_number(seeds, "the number of seeds") + 1)
+    wanted = [whole_number(seed, "a seed") for seed in seeds]
+    if not wanted:
+        raise ValueError("there must be at least one seed")
+    return wanted
 
 
 def load_packing(path: str | os.PathLike[str], *, settings: Settings | None = None) -> Packing:

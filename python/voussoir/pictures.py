@@ -3,7 +3,7 @@
 import tempfile
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -62,7 +62,7 @@ class Picture:
 
 def figure(folder: Path, name: str = "", **settings: Any) -> Picture:
     """One figure of the results in a folder; see voussoir.shown.Shown.figure."""
-    source = open_source([folder], Settings(**settings))
+    source = open_source([folder], _settings(settings))
     everything = _of(source, [name] if name else None)
     wanted = everything if name else [file for stem in FIRST for file in everything if Path(file).stem == stem]
     reason = Missing(f"there is no picture of {source.what}")
@@ -72,6 +72,14 @@ def figure(folder: Path, name: str = "", **settings: Any) -> Picture:
         except Missing as missing:
             reason = missing
     raise reason
+
+
+def _settings(given: dict[str, Any]) -> Settings:
+    known = [field.name for field in fields(Settings)]
+    for name in given:
+        if name not in known:
+            raise TypeError(f"figures have no setting {name}; there are: {', '.join(known)}")
+    return Settings(**given)
 
 
 def _of(source: Source, only: Sequence[str] | None) -> list[str]:
@@ -113,7 +121,7 @@ def figures(
     **settings: Any,
 ) -> list[Path]:
     """All figures of the results in a folder; see voussoir.shown.Shown.figures."""
-    source = open_source([folder], Settings(**settings))
+    source = open_source([folder], _settings(settings))
     to = Path(output) if output is not None else folder
     make_folder(to)
     written = []
@@ -135,7 +143,7 @@ def report(folder: Path, file: Path | str | None = None, only: Sequence[str] | N
     output = Path(file) if file is not None else folder / "report.html"
     before = set(plt.get_fignums())
     with matplotlib.rc_context():
-        page = page_of(folder, Settings(**settings), only).page.written()
+        page = page_of(folder, _settings(settings), only).page.written()
     for number in set(plt.get_fignums()) - before:
         plt.close(number)
     make_folder(output.parent)

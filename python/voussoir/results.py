@@ -109,7 +109,7 @@ class Result(Shown):
             found = [i for i in self.increments if i["stage"] == name]
             if found:
                 return found
-        raise Missing(f"there is no stage {' or '.join(names)}")
+        raise Missing(f"there is no stage {' or '.join(names)}", self.stages)
 
     def _chosen(self, stage: str | None) -> list[Increment]:
         if not self.increments:
@@ -147,10 +147,10 @@ class Result(Shown):
         found = self._of_increments if name == "increments" and self.increments else self.tables.get(name)
         index = self.folder / "run.h5"
         if found is None:
-            raise Missing(f"{index} has no table {name}")
+            raise Missing(f"{index} has no table {name}", [*["increments"] * bool(self.increments), *self.tables])
         for column in columns:
             if column not in found:
-                raise Missing(f"{index}: the table {name} has no column {column}")
+                raise Missing(f"{index}: the table {name} has no column {column}", found)
         return found
 
     @cached_property

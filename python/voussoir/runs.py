@@ -15,7 +15,7 @@ from .opening import open_ensemble, open_result, open_sweep
 from .programs import Ended, Process, find_program
 from .progress import Told, progress_of
 from .results import Result
-from .settings import flat, toml
+from .settings import as_texts
 from .sweeps import Sweep
 
 Settings = Mapping[str, Any] | Sequence[str]
@@ -135,15 +135,6 @@ def _raise_for(ended: Ended, folder: Path, interrupted: bool) -> None:
         raise KeyboardInterrupt(f"the run in {folder} has stopped; resume=True goes on")
     if ended.status != 0:
         raise ended.error(folder)
-
-
-def as_texts(settings: Settings) -> list[str]:
-    """Settings as the program takes them: "table.key=value"."""
-    if isinstance(settings, str):
-        return [settings]
-    if isinstance(settings, Mapping):
-        return [f"{key}={value if isinstance(value, str) else toml(value)}" for key, value in flat(settings).items()]
-    return list(settings)
 
 
 def value_of(case: Path | str, settings: Sequence[str], key: str, default: str) -> str:

@@ -2,7 +2,8 @@
 line in a message is the number of the entry."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,13 @@ def toml(value: Any) -> str:
 
 
 def flat(settings: Settings | None, prefix: str = "") -> dict[str, Any]:
-    """Tables within the dictionary as keys with dots: {"soil": {"modulus": 1}} is {"soil.modulus": 1}."""
+    """Tables within the dictionary as keys with dots: {"soil": {"modulus": 1}} is {"soil.modulus": 1}.
+
+    Raises:
+        TypeError: it is no dictionary
+    """
+    if settings is not None and not isinstance(settings, Mapping):
+        raise TypeError(f"settings are a dictionary, such as {{'soil.friction': '30 deg'}}, not {settings!r}")
     out: dict[str, Any] = {}
     for key, value in (settings or {}).items():
         if isinstance(value, Mapping):
@@ -40,6 +47,15 @@ def flat(settings: Settings | None, prefix: str = "") -> dict[str, Any]:
         else:
             out[f"{prefix}{key}"] = value
     return out
+
+
+def as_texts(settings: Settings | Sequence[str]) -> list[str]:
+    """Settings as --set of the program takes them: {"packing.grains": 300} is ["packing.grains=300"]."""
+    if isinstance(settings, str):
+        return [settings]
+    if isinstance(settings, Mapping):
+        return [f"{key}={value if isinstance(value, str) else toml(value)}" for key, value in flat(settings).items()]
+    return list(settings)
 
 
 def text_of(kind: str, settings: Settings | None, tables: Sequence[str], defaults: Settings | None = None) -> str:
@@ -63,6 +79,36 @@ def text_of(kind: str, settings: Settings | None, tables: Sequence[str], default
     lines = [f"{key} = {toml(value)}" for key, value in given.items()]
     lines += [f"{key} = {toml(value)}" for key, value in (defaults or {}).items() if key not in given]
     return "\n".join([*lines, f'kind = "{kind}"']) + "\n"
+
+
+@contextmanager
+def told_by_argument(settings: Settings | None, arguments: Mapping[str, str]) -> Iterator[None]:
+    """Names the argument in place of the line in a message about a key that the caller did not write.
+
+    Args:
+        settings: those of the caller
+        arguments: the argument of each key, such as {"packing.grains": "grains"}
+    """
+    try:
+        yield
+    except InputError as fault:
+        argument = arguments.get(fault.key.partition("[")[0])
+        if argument is None or fault.key in flat(settings):
+            raise
+        message = f"{argument} ({fault.key}): {fault.sentence}"
+        raise InputError(message, argument, fault.key, fault.sentence) from None
+
+
+def whole_number(value: Any, what: str) -> int:
+    """An int of Python or NumPy, or a number without a fraction.
+
+    Raises:
+        TypeError: it is another number or no number; the message begins with `what`
+    """
+    number = np.asarray(value)
+    if number.ndim == 0 and number.dtype.kind in "iuf" and number == np.floor(number) and np.isfinite(number):
+        return int(number)
+    raise TypeError(f"{what} must be an integer, is {value!r}")
 
 
 def _input_error(number: int, key: str, sentence: str) -> InputError:

@@ -30,9 +30,12 @@ class Shown:
     def figure(self, name: str = "", **settings: Any) -> "Picture":
         """One figure by its name in docs/reference/figures.md, such as "settlement_troughs", as a picture that a
         notebook shows; without a name the one that a notebook shows of this result. `settings` are places and volume
-        losses that figures show, as voussoir.figures.settings.Settings has them: `depths=(0, 0.5)`.
+        losses that figures show, such as `depths=(0, 0.5)`: losses, field_losses, depths, above_crown, aside,
+        aside_above, line, as the options of tools/figures.py with these names, and range_of_k; losses are shares (0.05)
+        and not percent.
 
-        Raises Missing where the result lacks what the figure needs, ValueError where there is no such figure."""
+        Raises Missing where the result lacks what the figure needs, ValueError where there is no such figure, TypeError
+        where there is no such setting."""
         from . import pictures
 
         return pictures.figure(self.folder, name, **settings)

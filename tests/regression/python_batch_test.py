@@ -1,7 +1,9 @@
 """Batches of RVEs in Python: the same bits as the program, mirrored points, states, increments, failures, errors."""
 
+import ast
 import os
 import pickle
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -177,7 +179,7 @@ def check_states(packings):
         check_damaged_states(batch)
         raises(IndexError, lambda: batch.state([6]), "6")
         raises(IndexError, lambda: batch.state([True, False]), "mask")
-        raises(IndexError, lambda: batch.state(1.5), "whole numbers")
+        raises(TypeError, lambda: batch.state(1.5), "a point must be an integer")
         equal(batch.state(np.arange(6) < 0), batch.state([]), "the state of no point")
         again = voussoir.RveBatch([batch.packing(5)], tangent="contact")
         near = np.abs(again.committed().stress[0] - batch.committed().stress[5]).max()
@@ -201,7 +203,7 @@ def check_damaged_states(batch):
 def check_increments(packings):
     small, large = np.full((2, 2, 2), 1e-5) * np.eye(2), -np.full((2, 2, 2), 4e-4) * np.eye(2)
     with voussoir.RveBatch(packings) as batch:
-        raises(RuntimeError, batch.commit, "needs an evaluation")
+        raises(voussoir.Error, batch.commit, "needs an evaluation")
         frozen = batch.evaluate(large)
         check((batch.evaluate(small).report["steps"] >= frozen.report["steps"] / 2).all(), "steps are frozen")
         batch.begin_increment()
@@ -243,15 +245,12 @@ def check_errors(packings):
     raises(
         voussoir.InputError, lambda: voussoir.RveBatch.from_case(CASE, 2, ["packing.grain=3"]), "--set", "packing.grain"
     )
-    raises(voussoir.InputError, lambda: batch(preset="best"), "engine.preset", "fast, standard, reference")
-    raises(voussoir.InputError, lambda: batch(tangent="steep"), "newton.tangent")
     raises(voussoir.InputError, lambda: batch(microstructure=["colour"]), "output.microstructure")
     check("fabric_anisotropy" in batch(microstructure="fabric").fields(), "one quantity of the microstructure")
     raises(RuntimeError, lambda: batch(backend="gpu"), "a device is asked for")
     raises(TypeError, lambda: batch(n=2.5), "integer")
     raises(ValueError, lambda: batch(packing_of=[0, 1, 2], n=3), "packing 2")
     raises(ValueError, lambda: batch(packing_of=[0, 1], n=3), "3 integers")
-    raises(ValueError, lambda: batch(mirrored=[True]), "2 of them")
     raises(ValueError, lambda: voussoir.RveBatch([]), "at least one")
     raises(FileNotFoundError, lambda: voussoir.RveBatch(FOLDER / "none.h5"), "none.h5")
     raises(voussoir.Unreadable, lambda: voussoir.load_packing(FOLDER / "first" / "path.csv"))
@@ -267,6 +266,40 @@ def check_errors(packings):
     raises(
         voussoir.NoEquilibrium, lambda: voussoir.make_packings(1, grains=30, settings=flat), "none of the 1 packings"
     )
+
+
+def check_arguments(packings):
+    """Slips in arguments: the message names the argument, and what can be meant is taken."""
+
+    def batch(n=None, **more):
+        return voussoir.RveBatch(packings, n, **more)
+
+    error = raises(
+        voussoir.InputError, lambda: batch(preset="best"), "preset (engine.preset)", "fast, standard, reference"
+    )
+    check((error.place, error.key, error.line) == ("preset", "engine.preset", None), str(vars(error)))
+    raises(voussoir.InputError, lambda: batch(settings={"engine.preset": "best"}), "settings:1: engine.preset")
+    raises(voussoir.InputError, lambda: batch(tangent="steep"), "tangent (newton.tangent)")
+    raises(ValueError, lambda: batch(0), "at least one point", "n is 0")
+    raises(TypeError, lambda: batch(2.5), "n must be an integer, is 2.5")
+    raises(MemoryError, lambda: batch(10**12), "GiB")
+    raises(ValueError, lambda: batch(mirrored=[True]), "2 of them")
+    raises(ValueError, lambda: batch(mirrored="yes"), "2 of them")
+    raises(TypeError, lambda: voussoir.RveBatch(4), "make_packings")
+    raises(TypeError, lambda: voussoir.make_packings(2.5), "seeds must be an integer, is 2.5")
+    raises(TypeError, lambda: voussoir.make_packings("3"), "seeds must be an integer, is '3'")
+    raises(TypeError, lambda: voussoir.make_packings(pressure="100 kPa"), "a number in Pa")
+    raises(TypeError, lambda: voussoir.make_packings(settings=["soil.modulus=1"]), "are a dictionary")
+    with batch(packing_of=[0, 1, 1], microstructure="fabric") as three:
+        check(len(three) == 3 and "fabric_anisotropy" in three.fields(), repr(three))
+        raises(TypeError, lambda: three.evaluate(np.zeros((3, 2, 2)), tangent="loading"), "True or False")
+        raises(TypeError, lambda: three.set_state("x"), "bytes")
+        inside_out = np.zeros((3, 2, 2))
+        inside_out[1, 0, 0] = -1.5
+        answer = three.evaluate(inside_out)
+        check("point 1 turns its cell inside out: det F is -0.5" in answer.message, answer.message)
+    with voussoir.RveBatch.from_case(CASE, 2, {"packing": {"grains": np.int64(40)}}) as small:
+        check(len(small.packing(0)) == 40, repr(small.packing(0)))
 
 
 def check_device(packings):
@@ -293,13 +326,35 @@ def check_device(packings):
     check(on_device == on_lanes, f"the device answers {on_device}, the lanes {on_lanes}")
 
 
+def check_stub():
+    """The stub of the compiled module has its functions, and these have the stub's arguments."""
+    core = voussoir.engine.core()
+    stub = ast.parse((Path(voussoir.__file__).parent / "_core.pyi").read_text())
+
+    def functions(body):
+        return {one.name: [a.arg for a in one.args.args] for one in body if isinstance(one, ast.FunctionDef)}
+
+    def runtime(owner):  # a signature is not Python's grammar: ndarray[dtype=float64, ...]
+        known = {name: getattr(owner, name) for name in dir(owner) if not name.startswith("__") or name == "__len__"}
+        texts = {name: one.__nb_signature__[0][0] for name, one in known.items() if hasattr(one, "__nb_signature__")}
+        return {name: ["self"] * ("(self" in text) + re.findall(r"(\w+):", text) for name, text in texts.items()}
+
+    batch = next(one for one in stub.body if isinstance(one, ast.ClassDef))
+    methods = functions(batch.body)
+    check(methods.pop("is_open") == ["self"], "is_open is a property")
+    check(functions(stub.body) == runtime(core), f"{functions(stub.body)} and {runtime(core)}")
+    check(methods == runtime(core.Batch), f"{methods} and {runtime(core.Batch)}")
+
+
 made = check_packing_files()
+check_stub()
 check_same_bits(made)
 check_tangents()
 check_mirrored(made)
 check_states(made)
 check_increments(made)
 check_errors(made)
+check_arguments(made)
 if Path(os.environ["VOUSSOIR_EMULATED_GPU"]).exists():
     check_device(made)
 check(voussoir.status_names == tuple(voussoir.engine.core().status_names()), "names of the statuses")

@@ -34,14 +34,22 @@ def parts_of(file):
 
 
 def check_killed(folder):
-    """Killed three times without a warning, at moments that differ, a set has the bits of one that was not."""
+    """Killed without a warning or stopped by Ctrl-C, at several moments, a set has the bits of one that was not."""
     os.chdir(folder)
     run([*script(60), "whole.h5"])
-    for parts, every in ((4, 60), (9, 0), (25, 0)):
-        process = subprocess.Popen([*script(every), "killed.h5"])
+    for parts, every, way in (
+        (4, 60, signal.SIGKILL),
+        (9, 0, signal.SIGKILL),
+        (14, 60, signal.SIGINT),
+        (25, 0, signal.SIGKILL),
+    ):
+        process = subprocess.Popen([*script(every), "killed.h5"], stderr=subprocess.PIPE, text=True)
         wait_until(lambda parts=parts: parts_of("killed.h5") >= parts, process, f"part {parts}")
-        process.send_signal(signal.SIGKILL)
-        process.wait()
+        process.send_signal(way)
+        told = process.communicate(timeout=30)[1]
+        check(process.returncode in (-way, 128 + way), f"{way}: exit status {process.returncode}\n{told}")
+        if way == signal.SIGINT:
+            check("KeyboardInterrupt" in told and list(Path("killed.h5.parts").glob("*_state.npz")), told)
         check(not Path("killed.h5").exists(), "the set was done before it was killed")
     run([*script(60), "killed.h5"])
     with paths.open_dataset("whole.h5") as whole, paths.open_dataset("killed.h5") as killed:
@@ -88,6 +96,22 @@ def check_held():
         check(np.allclose(first, data["row/pressure"][:], rtol=0.006), f"consolidated to {first}")
 
 
+def check_crushed(packings):
+    """Grains that are crushed, out of range or without contacts are told as such, and change no bit of other rows."""
+    good = paths.random(3, 20, seed=5)
+    bad = np.concatenate([good, paths.biaxial(20, [-0.3, -0.6]), paths.biaxial(20, 0.2, 0.2)])
+    data = paths.generate("crushed.h5", bad, packings, reference_rows=0)
+    others = paths.generate("sound.h5", good, packings, reference_rows=0)
+    for name in others.fields:
+        check(data[name][:3].tobytes() == others[name][:].tobytes(), f"{name} of sound rows changed")
+    status, overlap, stress = (data[name][:] for name in ("status", "mean_overlap", "stress"))
+    end = int(np.argmax(status[4] == 4))
+    check(end > 1 and (status[4, end + 1 :] == -1).all() and np.isnan(stress[4, end:]).all(), f"crushed: {status[4]}")
+    check((status[5, 2:] == 2).all() and (stress[5, 2:] == 0).all(), f"without contacts: {status[5]}")
+    check((status[3] == 0).all() and 0.06 < overlap[3].max() < 0.15, f"pressed: {overlap[3].max()}")
+    check((data.rows(complete=True) == [0, 1, 2]).all() and "1 of 6 rows failed" in data.card, "rows that are complete")
+
+
 def check_shell():
     words = [sys.executable, "-m", "voussoir.paths"]
     size = ["--increments", "8", "--packings", "2", "--grains", "60", "--folder", "packings"]
@@ -108,6 +132,7 @@ def main():
     packings = voussoir.make_packings(2, grains=GRAINS, folder="packings")
     check_bits(packings)
     check_held()
+    check_crushed(packings)
     check_shell()
 
 

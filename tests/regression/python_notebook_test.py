@@ -56,6 +56,8 @@ class Shown(unittest.TestCase):
         self.assertEqual(picture.save("one.png").read_bytes(), picture.content)
         with self.assertRaisesRegex(ValueError, "no figure weather of a biaxial specimen; there are: specimen"):
             result.figure("weather")
+        with self.assertRaisesRegex(TypeError, "no setting dephts; there are: losses, "):
+            result.figure("deviatoric_strain", dephts=(0,))
         written = result.figures("drawn", form="svg", only=["specimen", "void_ratio.png"])
         self.assertEqual(written, [Path("drawn/specimen.svg"), Path("drawn/void_ratio.svg")])
         self.assertTrue(all(path.stat().st_size > 1000 for path in written))

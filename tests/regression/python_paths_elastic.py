@@ -9,7 +9,7 @@ import numpy as np
 from voussoir.paths.tensors import pressure_of, strain_of_gradient
 
 BULK, SHEAR = 100e6, 60e6  # Pa
-REPORT = np.dtype([("status", "i4"), ("steps", "i4"), ("contacts", "i4"), ("unbalanced", "f8")])
+REPORT = np.dtype([("status", "i4"), ("steps", "i4"), ("contacts", "i4"), ("unbalanced", "f8"), ("mean_overlap", "f8")])
 
 
 def stiffness(bulk, shear):

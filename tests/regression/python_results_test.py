@@ -69,6 +69,18 @@ class OfAMesh(unittest.TestCase):
         self.assertEqual(grains["force"].shape, grains["branch"].shape)
         self.assertEqual(result.table("gauss_histories").units["stress_yy"], "Pa")
 
+    def test_what_is_missing_names_what_there_is(self):
+        result = voussoir.open_result("runs/tunnel")
+        for ask, known in (
+            (lambda: result.stage("weather"), "gravity, volume_loss"),
+            (lambda: result.history("weather"), "gauss/stress"),
+            (lambda: result.increments[-1]["weather"], "load_parameter"),
+            (lambda: result.table("weather"), "There are: increments, "),
+        ):
+            with self.assertRaisesRegex(voussoir.Missing, "weather$") as caught:
+                ask()
+            self.assertIn(known, caught.exception.__notes__[0])
+
     def test_records_of_a_scene(self):
         scene = voussoir.open_result("runs/scene")
         self.assertEqual(scene.records, ["bed", "door", "floor", "left", "level", "middle", "right", "wall"])

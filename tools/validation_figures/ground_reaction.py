@@ -53,6 +53,8 @@ def members(folder: Path) -> Members:
     for run in sorted(folder.glob("member_*/run.h5")):
         with h5py.File(run) as file:
             rows = np.flatnonzero(file["table/stage"][()] != b"gravity")
+            if len(rows) == 0:
+                continue  # stopped before the door moved
             rows = np.concatenate([[rows[0] - 1], rows])
             down = -file["table/displacement_door_y"][()][rows]
             load = file["table/reaction_door_y"][()][rows]

@@ -11,6 +11,11 @@ before it; the functions `random`, `stratified`, `prescribed`, `undrained`, `bia
 such arrays (n, increments, 2, 2). `drained` makes paths that hold a stress. The page docs/how-to/make_a_dataset.md
 shows all of it."""
 
+try:
+    import h5py as _h5py  # noqa: F401
+except ImportError as _missing:
+    raise ImportError("voussoir.paths needs h5py: pip install 'voussoir[files]'") from _missing
+
 from .control import StressControl
 from .dataset import Dataset, open_dataset
 from .draws import random, stratified

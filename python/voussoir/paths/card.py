@@ -11,7 +11,7 @@ import numpy as np
 from .dataset import Dataset
 from .engine import FIRST_FAILURE, Engine
 from .errors import Scatter, error_of_preset, scatter_between_packings
-from .fields import BY_NAME
+from .fields import BY_NAME, MOST_MEAN_OVERLAP
 from .parts import write
 from .rows import PARTS
 from .tensors import pressure_of
@@ -55,12 +55,12 @@ def _head(data: Dataset, name: str) -> str:
 def _how(data: Dataset) -> str:
     plan = data.plan["engine"]
     changes = ", ".join(f"{key} = {value}" for key, value in plan["settings"].items()) or "no other settings"
-    accuracy = f", accuracy {plan['accuracy']}" if plan["accuracy"] is not None else ""
-    precision = f", precision {plan['precision']}" if plan["precision"] else ""
+    more = {name: plan[name] for name in ("accuracy", "precision", "backend") if plan[name] not in (None, "lanes")}
+    words = "".join(f", {name} {value}" for name, value in more.items())
     lines = [
         "## How it was made",
         "",
-        f"Engine: preset {plan['preset']}{accuracy}{precision}, tangent {plan['tangent'] or 'none'}; {changes}.",
+        f"Engine: preset {plan['preset']}{words}, tangent {plan['tangent'] or 'none'}; {changes}.",
         _beginning(data),
         (
             "Strains are given, and the grains come to rest after each increment, so that there is no rate; inertia "
@@ -192,6 +192,7 @@ def _trust(data: Dataset, scatter: Scatter | None, preset: tuple[int, float] | N
     status = data["status"][:]
     pressure = pressure_of(data["stress"][:])
     low, middle, high = np.nanpercentile(pressure, [1, 50, 99]) / 1e3
+    beyond = (data["mean_overlap"][:] > MOST_MEAN_OVERLAP).mean()
     failed = (status >= FIRST_FAILURE).any(axis=1).sum()
     lines = [
         "## Errors to expect",
@@ -203,6 +204,10 @@ def _trust(data: Dataset, scatter: Scatter | None, preset: tuple[int, float] | N
         (
             f"- Mean stress p: 1 % of the points are below {low:.3g} kPa, half below {middle:.3g} kPa, 99 % below "
             f"{high:.4g} kPa."
+        ),
+        (
+            f"- {100 * beyond:.2g} % of the points have a mean overlap above {100 * MOST_MEAN_OVERLAP:.0f} %: their "
+            "grains are pressed beyond the range of the contact law, and their stresses are not those of grains."
         ),
         _scatter_line(scatter),
         _preset_line(preset),

@@ -1,14 +1,14 @@
 """Reading a dataset of strain paths."""
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
-from .fields import BY_NAME
+from .fields import BY_NAME, MOST_MEAN_OVERLAP
 from .rows import PARTS
 from .storage import FORMAT
 
@@ -31,8 +31,9 @@ class Dataset:
     def __init__(self, file: str | Path) -> None:
         self.file = Path(file)
         beginning = self.file.with_name(self.file.name + ".parts")
-        if not self.file.exists() and beginning.exists():
-            raise FileNotFoundError(f"{self.file} is not finished ({beginning}); call generate() again to go on")
+        if not self.file.exists():
+            unfinished = f"is not finished ({beginning}); call generate() again to go on"
+            raise FileNotFoundError(f"{self.file} {unfinished if beginning.exists() else 'does not exist'}")
         self._h5 = h5py.File(self.file, "r")
         if self._h5.attrs.get("format") != FORMAT:
             self._h5.close()
@@ -61,6 +62,10 @@ class Dataset:
 
     def __contains__(self, name: str) -> bool:
         return name in self._h5
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of `fields`."""
+        return iter(self.fields)
 
     def __repr__(self) -> str:
         what = f"{len(self)} rows, {self.points} points, {len(self['packing/seed'])} packings"
@@ -92,18 +97,25 @@ class Dataset:
 
     def rows(self, packing: Part = None, path: Part = None, family: str | None = None, complete: bool = False) -> Array:
         """Indices of rows. `packing`, `path`: "train", "validation" or "test", or indices of packings and paths;
-        `family`: a kind of paths; `complete`: only rows whose grains had contacts at all points and did not fail.
+        `family`: a kind of paths; `complete`: only rows whose grains had contacts at all points, did not fail, and were
+        nowhere pressed beyond the range of the contact law.
 
-        A model that is to be judged on unknown ground learns from rows(packing="train", path="train")."""
+        A model that is to be judged on unknown ground learns from rows(packing="train", path="train").
+
+        ValueError: there is no such part, or no such kind of paths."""
         chosen = np.ones(len(self), bool)
         for table, wanted in (("packing", packing), ("path", path)):
             if wanted is not None:
                 chosen &= self._is_in(table, wanted)
         if family is not None:
+            known = sorted(set(self.family))
+            if family not in known:
+                raise ValueError(f"{self.file} has no paths of the kind {family!r}; there are: {', '.join(known)}")
             chosen &= self.family == family
         if complete:
             status = self._h5["status"][:]
             chosen &= ((status == 0) | (status == 1)).all(axis=1)
+            chosen &= (self._h5["mean_overlap"][:] <= MOST_MEAN_OVERLAP).all(axis=1)
         return np.flatnonzero(chosen)
 
     @property

@@ -26,9 +26,8 @@ class Engine:
     microstructure: tuple[str, ...] = ()
 
     def plan(self) -> dict[str, Any]:
-        """As JSON has it, but for the backend, which changes no bits worth resuming for."""
+        """As JSON has it."""
         known = {**asdict(self), "settings": dict(self.settings or {})}
-        known.pop("backend")
         return json.loads(json.dumps(known, default=str))
 
 

@@ -26,6 +26,7 @@ class Field:
 
 TANGENT = ("xxxx", "xxyy", "xxxy", "yyyy", "yyxy", "xyxy")
 TANGENT_PLACES = ((0, 0, 0, 1, 1, 2), (0, 1, 2, 1, 2, 2))  # rows and columns of the 3 x 3 tangent
+MOST_MEAN_OVERLAP = 0.06  # beyond it the contact law is out of its range (docs/explanation/range.md)
 MASKED = -1  # the status of the increments behind one that failed
 
 ALL = (
@@ -62,7 +63,7 @@ DEFAULT = [
     "fabric_anisotropy",
     "fabric_direction",
 ]
-NEEDED = ("stress", "strain", "status")
+NEEDED = ("stress", "strain", "status", "mean_overlap")
 
 
 def chosen(names: Sequence[str] | None, held: bool) -> list[Field]:
