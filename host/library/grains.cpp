@@ -50,7 +50,7 @@ std::string case_with(const host::KeyTexts& soil) {
 
 Grains grains_of(const io::Packing& file) {
   const std::string disagreement = io::disagreement_of(file);
-  if (!disagreement.empty()) throw std::invalid_argument("the packing " + disagreement);
+  if (!disagreement.empty()) throw std::invalid_argument("the packing: " + disagreement);
   const host::KeyTexts keys = host::soil_keys_of(file);
   if (keys.empty()) throw std::invalid_argument("the packing does not say which soil it was made with");
   const host::SoilCase soil = host::case_of_text(case_with(keys), "soil of the packing").soil;

@@ -67,7 +67,7 @@ const char* voussoir_version(void);
 /// "file:line: key" where the input had a fault. "" where there was none. The text lives until the next such call.
 const char* voussoir_last_error(void);
 
-/// Name of the status of an RVE, such as "overlap limit"; "" for a number that is no status.
+/// Name of the status of an RVE, such as "overlap_limit"; "" for a number that is no status.
 const char* voussoir_status_name(int32_t status);
 
 /// Starts the threads of the engine, once in a process. A second call is voussoir_ok if it asks for the same number or

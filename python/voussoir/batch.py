@@ -111,7 +111,7 @@ class RveBatch:
         precision: str | None = None,
         tangent: str = "elastic",
         mirrored: bool | ArrayLike = False,
-        microstructure: Sequence[str] = (),
+        microstructure: str | Sequence[str] = (),
         backend: str = "lanes",
         settings: Settings | None = None,
     ) -> None:
@@ -127,7 +127,7 @@ class RveBatch:
             tangent: "contact" (eq. 4 of the paper), "elastic", "static" or "loading" (docs/explanation/tangents.md), or
                 "auto", which is "elastic", on a GPU "contact"
             mirrored: whether points answer as the mirror image (x to -x) of their packing: all, or (n,) of them
-            microstructure: quantities to add to `fields`, such as "fabric" (key output.microstructure)
+            microstructure: one or several quantities to add to `fields`, such as "fabric" (key output.microstructure)
             backend: "lanes" of the processor, "gpu", or "auto" for a GPU where there is one
             settings: further keys of [engine] and newton.tangent_strain; they override the arguments above
 
@@ -254,23 +254,29 @@ class RveBatch:
         self._core.begin_increment()
 
     def committed(self, tangent: bool = True) -> Answer:
-        """The answer of the committed state. The tangent is the one that was found when it was evaluated."""
+        """The answer of the committed state. The tangent is the one that its evaluation found, or after
+        `tangent=False` that of eq. (4), which is stiffer than those of the other kinds."""
         return _answer(self._core.committed(_truth(tangent)))
 
     def state(self, points: ArrayLike | None = None) -> bytes:
         """The committed state of these points (None: of all) as bytes, for `set_state` of this or an equal batch.
 
+        Args:
+            points: numbers of points, of which negative ones count from the end, or a mask (n,) of bool
+
         Raises:
-            IndexError: there is no such point
+            IndexError: there is no such point, or the mask has another length
+            TypeError: a point is no whole number
         """
         return bytes(self._core.state(self._points(points)))
 
     def set_state(self, state: bytes, points: ArrayLike | None = None) -> None:
         """Gives a state to these points (None: to all). Their packings must be those of the points that it was taken
-        from, in the same order. An increment begins.
+        from, in the same order. An increment begins. A state is that of the grains: whether a point is mirrored is no
+        part of it.
 
         Raises:
-            ValueError: the bytes are no state of such points
+            ValueError: the bytes are no state of such points, which keep the state that they have
             TypeError: the state is no bytes
             IndexError: there is no such point
         """
@@ -317,7 +323,7 @@ class RveBatch:
         return from_dict(self._core.packing(self._point(point)))
 
     def _point(self, point: int) -> int:
-        number = int(point)
+        number = whole_number(point, "a point")
         if not -len(self) <= number < len(self):
             raise IndexError(f"there is no point {number}: the batch has {len(self)}")
         return number % len(self)
@@ -325,10 +331,14 @@ class RveBatch:
     def _points(self, points: ArrayLike | None) -> list[int]:
         if points is None:
             return list(range(len(self)))
-        array = np.asarray(points)
-        if array.dtype == bool and array.shape == (len(self),):
-            return [int(k) for k in np.flatnonzero(array)]
-        return [self._point(int(k)) for k in np.atleast_1d(array)]
+        array = np.atleast_1d(np.asarray(points))
+        if array.dtype == bool:
+            if array.shape != (len(self),):
+                raise IndexError(f"a mask of points needs {len(self)} truth values, one for each")
+            return np.flatnonzero(array).tolist()
+        if array.ndim > 1:
+            raise IndexError("points are whole numbers in one row, or a mask")
+        return [self._point(k) for k in array.tolist()]
 
 
 def _listed(packings: Any) -> list[Packing]:

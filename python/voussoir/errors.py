@@ -53,11 +53,11 @@ class InputError(Error, ValueError):
         self.sentence = (message[found.end() :] if found else message) if sentence is None else sentence
         file, colon, line = self.place.rpartition(":")
         has_line = bool(colon) and line.isdigit()
-        self.file = (file if has_line else self.place) or None
+        self.file = None if self.place.startswith("--") else (file if has_line else self.place) or None
         self.line = int(line) if has_line else None
 
-    def __reduce__(self) -> tuple[type, tuple[str, ...]]:
-        return type(self), (str(self), self.place, self.key, self.sentence)
+    def __reduce__(self) -> tuple[type, tuple[str, ...], dict[str, object]]:
+        return type(self), (str(self), self.place, self.key, self.sentence), self.__dict__
 
 
 class NoEquilibrium(Error):

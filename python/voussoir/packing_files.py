@@ -43,6 +43,10 @@ class PackingFile:
         if len(contacts) and (contacts.min() < 0 or contacts.max() >= grains):
             raise Unreadable(f"{path} cannot be read: a contact has a grain that does not exist")
 
+    def __fspath__(self) -> str:
+        """Its path, so that RveBatch and load_packing take it as they take a path."""
+        return str(self.path)
+
     def __repr__(self) -> str:
         return f"<PackingFile {self.path.name}: {len(self.radius)} grains, void ratio {self.void_ratio:.3f}>"
 

@@ -170,10 +170,10 @@ def make_packings(
     packings = [from_dict(packing) for packing in made]
     for note in notes:
         _log.info(note)
-    left = sorted(set(wanted) - {packing.seed for packing in packings})
-    if left:
+    missing = len(wanted) - len(packings)
+    if missing:
         reasons = "; ".join(note for note in notes if note.endswith("left out") or "left out:" in note)
-        warnings.warn(f"{len(left)} of {len(wanted)} packings are missing: {reasons}", PackingWarning, stacklevel=2)
+        warnings.warn(f"{missing} of {len(wanted)} packings are missing: {reasons}", PackingWarning, stacklevel=2)
     return packings
 
 

@@ -44,7 +44,7 @@ def run(
 
     Raises InputError where the input has a fault, NoEquilibrium where no equilibrium is found (`folder` of the
     exception has the results up to there, its `lines` what the program printed), MachineFailure, and KeyboardInterrupt
-    after Ctrl-C: then resume=True goes on.
+    after Ctrl-C: then resume=True goes on. Where this process is killed, the run goes on; open_result(out) shows it.
     """
     chosen = as_texts(settings)
     folder = Path(out) if out is not None else Path("out") / _title(case, chosen)

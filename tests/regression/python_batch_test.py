@@ -71,6 +71,11 @@ def check_packing_files():
     for stored, fresh_one in zip(found, voussoir.make_packings([2, 1], grains=GRAINS), strict=True):
         same_packing(stored, fresh_one, f"seed {stored.seed}")
         check(stored.soil["soil.friction"] == "25 deg" and len(stored) == GRAINS, str(stored.soil))
+    same_packing(
+        voussoir.make_packings(np.int64(1), grains=GRAINS)[0], found[1], "a number of NumPy as number of seeds"
+    )
+    of_files = voussoir.RveBatch(voussoir.open_result(FOLDER / "packings").packings)
+    same_packing(of_files.packing(0), voussoir.RveBatch(found[::-1]).packing(0), "a packing of a result")
     copy = FOLDER / "copy.h5"
     found[0].save(copy)
     same_packing(voussoir.load_packing(copy), found[0], "a saved packing")
@@ -174,7 +179,7 @@ def check_states(packings):
         check_damaged_states(batch)
         raises(IndexError, lambda: batch.state([6]), "6")
         raises(IndexError, lambda: batch.state([True, False]), "mask")
-        raises(IndexError, lambda: batch.state(1.5), "whole numbers")
+        raises(TypeError, lambda: batch.state(1.5), "a point must be an integer")
         equal(batch.state(np.arange(6) < 0), batch.state([]), "the state of no point")
         again = voussoir.RveBatch([batch.packing(5)], tangent="contact")
         near = np.abs(again.committed().stress[0] - batch.committed().stress[5]).max()
@@ -228,7 +233,9 @@ def check_errors(packings):
     error = raises(voussoir.InputError, lambda: voussoir.make_packings(settings={"soil": {"modulus": "-3 GPa"}}))
     check((error.file, error.line, error.key) == ("settings", 1, "soil.modulus"), str(vars(error)))
     check(isinstance(error, ValueError) and isinstance(error, voussoir.Error), "kinds of an InputError")
-    check(str(pickle.loads(pickle.dumps(error))) == str(error), "an InputError can be sent to another process")
+    error.folder = FOLDER
+    sent = pickle.loads(pickle.dumps(error))
+    check((str(sent), sent.folder) == (str(error), FOLDER), "an InputError can be sent to another process")
     misspelt = {"soil.damping": 0.2, "soil.modulu": "3 GPa"}
     raises(voussoir.InputError, lambda: voussoir.make_packings(settings=misspelt), "settings:2", 'mean "modulus"')
     raises(
@@ -239,7 +246,9 @@ def check_errors(packings):
         voussoir.InputError, lambda: voussoir.RveBatch.from_case(CASE, 2, ["packing.grain=3"]), "--set", "packing.grain"
     )
     raises(voussoir.InputError, lambda: batch(microstructure=["colour"]), "output.microstructure")
+    check("fabric_anisotropy" in batch(microstructure="fabric").fields(), "one quantity of the microstructure")
     raises(RuntimeError, lambda: batch(backend="gpu"), "a device is asked for")
+    raises(TypeError, lambda: batch(n=2.5), "integer")
     raises(ValueError, lambda: batch(packing_of=[0, 1, 2], n=3), "packing 2")
     raises(ValueError, lambda: batch(packing_of=[0, 1], n=3), "3 integers")
     raises(ValueError, lambda: voussoir.RveBatch([]), "at least one")

@@ -75,7 +75,8 @@ class Ends(unittest.TestCase):
         self.assertIsInstance(error, ValueError)
         with self.assertRaises(voussoir.InputError) as caught:
             voussoir.run("tunnel.toml", "runs/wrong", settings={"ground.width": "3 mm"})
-        self.assertEqual((caught.exception.place, caught.exception.key), ("--set", "ground.width"))
+        error = caught.exception
+        self.assertEqual((error.place, error.file, error.key), ("--set", None, "ground.width"))
         with self.assertRaisesRegex(voussoir.InputError, "no_such.toml: cannot be read"):
             voussoir.run("no_such.toml")
         self.assertFalse(Path("runs/wrong").exists())
