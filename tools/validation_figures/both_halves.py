@@ -14,7 +14,7 @@ from .program import ROOT, Program
 
 Array = np.ndarray
 SHOWN = {0.01: CYCLE[0], 0.025: CYCLE[2], 0.05: CYCLE[3]}  # volume losses that are drawn and told
-MEMBERS, HALF_MEMBERS = 4, 8
+MEMBERS, HALF_MEMBERS = 4, 3
 TO_FIVE = ("stage[1].steps=20", "stage[1].move[0].area=-5 %")  # increments as in the case, of half the volume loss
 HALF_TO_FIVE = ("volume_loss.increments=20", "volume_loss.total=5 %")
 SAME_MESH = ("ground.mesh_size_opening=1.2 m", "ground.mesh_size_far=6 m")  # as in cases/full_tunnel
