@@ -195,10 +195,11 @@ ABUSES = {
         "True\nTrue",
     ),
     "many batches that nobody closes": (
-        (
-            "p = voussoir.make_packings(grains=40)\nfor _ in range(100): b = voussoir.RveBatch(p, 4)\n"
-            "print(b.evaluate(strain(4)).usable)"
-        ),
+        """
+        p = voussoir.make_packings(grains=40)
+        for _ in range(100): b = voussoir.RveBatch(p, 4)
+        print(b.evaluate(strain(4)).usable)
+        """,
         "True",
     ),
     "a batch in a pickle": (
