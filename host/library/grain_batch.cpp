@@ -66,8 +66,8 @@ void GrainBatch::take_gradients(std::span<const double> f_minus_i) {
 }
 
 Outcome GrainBatch::evaluate(std::span<const double> f_minus_i, const AnswerArrays& to) {
-  take_gradients(f_minus_i);
   trial_ = Trial::unfinished;
+  take_gradients(f_minus_i);
   if (std::exchange(increment_begins_, false)) batch_->begin_increment();
   const auto begin = std::chrono::steady_clock::now();
   const fem::BatchReport report = batch_->evaluate(gradients_, stresses_, tangents_of(to.tangent));
@@ -81,7 +81,7 @@ Outcome GrainBatch::evaluate(std::span<const double> f_minus_i, const AnswerArra
 void GrainBatch::commit() {
   if (trial_ == Trial::none) throw std::logic_error("commit() needs an evaluation after the last commit or set_state");
   if (trial_ == Trial::unfinished)
-    throw std::logic_error("the last evaluation was interrupted and cannot be committed");
+    throw std::logic_error("the last evaluation was refused or interrupted and cannot be committed");
   if (trial_ == Trial::unusable) throw std::logic_error("the last evaluation cannot be committed: " + fault_);
   batch_->commit();
   begin_increment();

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voussoir.engine import running
-from voussoir.packings import Floats, Integers, Packing, as_dict, drawing, from_dict, load_packing
+from voussoir.notebook import packing_png
+from voussoir.packings import Floats, Integers, Packing, as_dict, from_dict, load_packing
 from voussoir.settings import Settings, as_texts, name, text_of, told_by_argument, whole_number
 
 _log = logging.getLogger("voussoir")
@@ -84,8 +85,8 @@ class Snapshot:
     branch: Floats  #: (c, 2) vector from i to j [m]
     force: Floats  #: (c, 2) force on grain i [N]
 
-    def _repr_svg_(self) -> str:
-        return drawing(self.radius, self.position, self.cell)
+    def _repr_png_(self) -> bytes | None:
+        return packing_png(self.radius, self.position, self.cell, self.contacts)
 
 
 class RveBatch:

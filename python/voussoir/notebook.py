@@ -51,14 +51,16 @@ def _cell(value: object) -> str:
 
 def packing_png(
     radius: np.ndarray, position: np.ndarray, cell: np.ndarray, contacts: np.ndarray | None = None, title: str = ""
-) -> bytes:
-    """The grains of a packing as a PNG; arguments: voussoir.figures.chains.draw_packing. Needs matplotlib."""
-    import matplotlib
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+) -> bytes | None:
+    """The grains of a packing as a PNG, or None without matplotlib; arguments: voussoir.figures.chains.draw_packing."""
+    try:
+        import matplotlib
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
 
-    from .figures.chains import draw_packing
-
+        from .figures.chains import draw_packing
+    except ImportError:
+        return None
     with matplotlib.rc_context():
         figure = Figure(figsize=(3.6, 3.8), layout="constrained")
         canvas = FigureCanvasAgg(figure)

@@ -69,7 +69,7 @@ class PackingFile:
         """Area of voids over area of grains [-], as the study's 2D void ratio; overlaps are not subtracted."""
         return float(self.numbers.get("void_ratio", np.linalg.det(self.cell) / np.sum(np.pi * self.radius**2) - 1))
 
-    def _repr_png_(self) -> bytes:
+    def _repr_png_(self) -> bytes | None:
         from .notebook import packing_png
 
         return packing_png(self.radius, self.position, self.cell, np.column_stack([self.contact_i, self.contact_j]))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from voussoir import packing_storage
 from voussoir.engine import core, running
 from voussoir.errors import NoEquilibrium, PackingWarning
+from voussoir.notebook import packing_png
 from voussoir.settings import Settings, flat, name, text_of, told_by_argument, whole_number
 
 _log = logging.getLogger("voussoir")
@@ -75,8 +76,8 @@ class Packing:
             f"{self.pressure / 1e3:.4g} kPa, coordination {self.coordination:.3f}>"
         )
 
-    def _repr_svg_(self) -> str:
-        return drawing(self.radius, self.position, self.cell)
+    def _repr_png_(self) -> bytes | None:
+        return packing_png(self.radius, self.position, self.cell, self.contacts)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a packing file, which `load_packing` and the program (packing.file of a probe) read.
@@ -212,30 +213,3 @@ def load_packing(path: str | os.PathLike[str], *, settings: Settings | None = No
         packing["labels"] = labels | core().soil_labels(text_of("pack", settings, ("soil",)), name)
     core().check_packing(packing)
     return from_dict(packing)
-
-
-def drawing(radius: Floats, position: Floats, cell: Floats, width: int = 320) -> str:
-    """Grains and cell as SVG. Grains that stick out of the cell are drawn on both sides."""
-    corners = np.array([[0.0, 0.0], cell[:, 0], cell[:, 0] + cell[:, 1], cell[:, 1]])
-    margin = float(radius.max())
-    low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
-    scale = width / (high[0] - low[0])
-    height = scale * (high[1] - low[1])
-
-    def at(points: Floats) -> Floats:
-        return np.stack([scale * (points[:, 0] - low[0]), height - scale * (points[:, 1] - low[1])], axis=1)
-
-    circles = []
-    for shift in [i * cell[:, 0] + j * cell[:, 1] for i in (-1, 0, 1) for j in (-1, 0, 1)]:
-        moved = position + shift
-        seen = np.all((moved > low + margin - radius[:, None]) & (moved < high - margin + radius[:, None]), axis=1)
-        circles += [
-            f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{scale * r:.2f}"/>'
-            for (x, y), r in zip(at(moved[seen]), radius[seen], strict=True)
-        ]
-    outline = " ".join(f"{x:.2f},{y:.2f}" for x, y in at(corners))
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height:.0f}">'
-        f'<g fill="#d9c7a3" stroke="#6b5836" stroke-width="0.5">{"".join(circles)}</g>'
-        f'<polygon points="{outline}" fill="none" stroke="#333" stroke-dasharray="4 3"/></svg>'
-    )

@@ -126,7 +126,7 @@ ABUSES = {
         print(stopped(lambda: [b.evaluate(strain(8192)) for _ in range(20)]) < 1.5, refusal(b.commit))
         print(b.state() == before, b.evaluate(strain(8192, 1e-7), tangent=False).usable)
         """,
-        "True the last evaluation was interrupted and cannot be committed\nTrue True",
+        "True the last evaluation was refused or interrupted and cannot be committed\nTrue True",
     ),
     "Ctrl-C in the evaluation of one large RVE": (
         """

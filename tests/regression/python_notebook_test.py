@@ -45,7 +45,9 @@ class Shown(unittest.TestCase):
     def test_a_packing_shows_its_grains(self):
         (file, *_) = sorted(Path("runs/packings").glob("*.h5"))
         packing = PackingFile(file)
-        self.assertEqual(packing._repr_png_()[:8], b"\x89PNG\r\n\x1a\n")
+        picture = packing._repr_png_()
+        assert picture is not None
+        self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
         bare = notebook.packing_png(packing.radius, packing.position, packing.cell)
         self.assertNotEqual(bare, packing._repr_png_())  # which has the contacts, too
 

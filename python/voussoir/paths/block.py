@@ -30,7 +30,7 @@ class Work:
 
 
 @dataclass(frozen=True)
-class Rows:
+class BlockRows:
     """What the rows of a block are; each array has one entry a row."""
 
     number: int  # of the block
@@ -59,7 +59,7 @@ def part_name(block: int, point: int) -> str:
 class Block:
     """A batch on its way: begun anew, or from the checkpoint that an earlier process left."""
 
-    def __init__(self, work: Work, rows: Rows, parts: Parts) -> None:
+    def __init__(self, work: Work, rows: BlockRows, parts: Parts) -> None:
         self.work, self.rows, self.parts = work, rows, parts
         self.batch = engine.make_batch(work.engine, work.packings, rows.packing, rows.mirrored)
         self.grains = np.array([len(one.radius) for one in work.packings])[rows.packing]

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import engine
-from .block import RATIO, Rows, Work
+from .block import RATIO, BlockRows, Work
 from .control import StressControl
 from .fields import chosen, microstructure
 from .parts import digest
-from .rows import Rows as TableRows
+from .rows import Rows
 from .schedule import Paths
 from .storage import FORMAT
 
@@ -28,7 +28,7 @@ class Job:
 
     file: Path
     paths: Paths
-    rows: TableRows
+    rows: Rows
     pressure: Array
     work: Work
     points_at_once: int
@@ -50,7 +50,7 @@ class Job:
             "points_at_once": self.points_at_once,
         }
 
-    def blocks(self) -> list[tuple[Array, Rows]]:
+    def blocks(self) -> list[tuple[Array, BlockRows]]:
         """Rows of one batch each, with their indices. Rows that hold stresses have blocks of their own, because each of
         their increments takes several evaluations of the whole batch."""
         holds: Array = self.paths.held[self.rows.path].any(axis=1)
@@ -59,9 +59,9 @@ class Job:
             pieces += [index[k : k + self.points_at_once] for k in range(0, len(index), self.points_at_once)]
         return [(index, self._block(number, index)) for number, index in enumerate(pieces)]
 
-    def _block(self, number: int, index: Array) -> Rows:
+    def _block(self, number: int, index: Array) -> BlockRows:
         path = self.rows.path[index]
-        return Rows(
+        return BlockRows(
             number,
             self.rows.packing[index],
             self.rows.mirrored[index],
@@ -84,7 +84,7 @@ def make_work(
     return Work(replace(how, microstructure=microstructure(wanted)), packings, wanted, control, 0, checkpoint_every)
 
 
-def consolidated(work: Work, rows: TableRows, wanted: ArrayLike | None) -> tuple[Work, Array]:
+def consolidated(work: Work, rows: Rows, wanted: ArrayLike | None) -> tuple[Work, Array]:
     """The work with the number of increments in which all rows come to their pressures, and these pressures [Pa]: those
     of the packings (None), or `wanted`, one number or one a path.
 
