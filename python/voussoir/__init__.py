@@ -12,7 +12,8 @@ __version__ = "0.2.0"
 _MODULES = {
     "engine": ("initialize", "threads"),
     "packings": ("Packing", "load_packing", "make_packings"),
-    "batch": ("Answer", "RveBatch", "Snapshot", "report_dtype", "status_names"),
+    "batch": ("RveBatch",),
+    "answers": ("Answer", "Snapshot", "report_dtype", "status_names"),
     "runs": ("ensemble", "run", "sweep"),
     "opening": ("open_ensemble", "open_result", "open_sweep"),
     "results": ("Result",),

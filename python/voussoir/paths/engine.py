@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from voussoir.batch import status_names
+from voussoir.answers import status_names
 
 Array = np.ndarray
 FIRST_FAILURE = status_names.index("neighbour_overflow")  # statuses from here on have no answer

@@ -9,7 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from voussoir.batch import status_names
+from voussoir.answers import status_names
 
 from .block import Work, part_name
 from .fields import BY_NAME, Field
