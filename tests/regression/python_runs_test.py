@@ -37,7 +37,7 @@ def interrupt_at(file):
     """Presses Ctrl-C as soon as a file is there."""
 
     def wait():
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 120
         while not Path(file).exists() and time.monotonic() < deadline:
             time.sleep(0.01)
         os.kill(os.getpid(), signal.SIGINT)
