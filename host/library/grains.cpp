@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "host/case/load_case.hpp"
 #include "host/case/made_with.hpp"
@@ -54,9 +56,12 @@ Grains grains_of(const io::Packing& file) {
   const host::KeyTexts keys = host::soil_keys_of(file);
   if (keys.empty()) throw std::invalid_argument("the packing does not say which soil it was made with");
   const host::SoilCase soil = host::case_of_text(case_with(keys), "soil of the packing").soil;
-  const std::string fault = host::fault_of_state(file);
-  if (!fault.empty()) throw std::invalid_argument("no complete packing of this program and its contact law: " + fault);
-  return {host::restored_packing(file, soil).value(), soil};
+  std::optional<host::PackedRve> rve = host::restored_packing(file, soil);
+  if (!rve) {
+    throw std::invalid_argument("no complete packing of this program and its contact law: " +
+                                host::fault_of_state(file));
+  }
+  return {*std::move(rve), soil};
 }
 
 io::Packing file_of(const Grains& grains, const std::string& recipe) {
