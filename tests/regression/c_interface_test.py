@@ -131,6 +131,9 @@ def main():
     if not LIBRARY.exists():
         print("this build has no library")
         return 77
+    if b"__asan_init" in LIBRARY.read_bytes():
+        print("skipped: a program without sanitizers cannot load a library with them")
+        return 77
     fresh(PACKINGS)
     check_names()
     check_c()

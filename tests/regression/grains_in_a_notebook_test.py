@@ -1,6 +1,7 @@
 """The lesson docs/tutorial/grains_in_a_notebook.md runs and says what it promises, and its picture is drawn."""
 
 import matplotlib as mpl
+import python_package  # noqa: F401 - it ends the test as skipped where there is no compiled module
 from program import ROOT, check, fresh
 from tutorial_pages import Reader, follow
 
