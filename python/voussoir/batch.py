@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from voussoir.answers import Answer, Snapshot, report_dtype
 from voussoir.engine import running
-from voussoir.packings import Floats, Integers, Packing, as_dict, from_dict, load_packing
+from voussoir.packings import Floats, Integers, Packing, as_dict, from_dict, grains_of, load_packing
 from voussoir.settings import Settings, as_texts, name, text_of, told_by_argument, whole_number
 
 _log = logging.getLogger("voussoir")
@@ -240,16 +240,7 @@ class RveBatch:
     def snapshot(self, point: int) -> Snapshot:
         """Grains and contact network of a point in the committed state, mirrored where the point is."""
         grains = self._core.snapshot(self._point(point))
-        return Snapshot(
-            radius=grains["radius"],
-            position=np.stack([grains["x"], grains["y"]], axis=1),
-            rotation=grains["rotation"],
-            cell=grains["cell"],
-            thickness=grains["thickness"],
-            contacts=np.stack([grains["contact_i"], grains["contact_j"]], axis=1),
-            branch=grains["branch"],
-            force=grains["force"],
-        )
+        return Snapshot(**grains_of(grains), branch=grains["branch"], force=grains["force"])
 
     def packing(self, point: int) -> Packing:
         """The grains of a point in the committed state, from which another batch may start. They are never mirrored:

@@ -8,6 +8,8 @@ import numpy as np
 from .errors import Unreadable
 from .files import Table, check_format, plain, reading
 
+FORMAT = "voussoir packing"  # attribute `format` of a packing file
+
 
 class PackingFile:
     """The grains of a packing file; lengths in m, grains as discs of the thickness.
@@ -21,7 +23,7 @@ class PackingFile:
     def __init__(self, path: Path | str) -> None:
         self.path = path = Path(path)
         with reading(path) as file:
-            check_format(file, path, "voussoir packing")
+            check_format(file, path, FORMAT)
             self.radius, self.x, self.y = (file[name][()] for name in ("radius", "x", "y"))
             self.rotation = file["rotation"][()] if "rotation" in file else np.zeros(len(self.radius))
             self.cell = file["cell"][()]

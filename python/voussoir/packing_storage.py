@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from voussoir.engine import core
-from voussoir.packing_files import PackingFile
+from voussoir.files import FORMAT_VERSION
+from voussoir.packing_files import FORMAT, PackingFile
 
-_columns = ("radius", "x", "y", "rotation", "contact_i", "contact_j")
 _units = {"radius": "m", "x": "m", "y": "m", "rotation": "rad", "cell": "m", "contact_i": "-", "contact_j": "-"}
-_format, _format_version = "voussoir packing", 1
 
 
 def _h5py() -> Any:
@@ -35,9 +34,7 @@ def read(path: str | os.PathLike[str]) -> dict[str, Any]:
     if not path.is_file():
         raise FileNotFoundError(f"{path}: " + ("it is no file" if path.exists() else "there is no such file"))
     file = PackingFile(path)
-    packing: dict[str, Any] = {
-        name: np.ascontiguousarray(getattr(file, name)) for name in (*_columns, "cell", "history")
-    }
+    packing: dict[str, Any] = {name: np.ascontiguousarray(getattr(file, name)) for name in (*_units, "history")}
     for name in ("thickness", "history_names", "numbers", "labels"):
         packing[name] = getattr(file, name)
     if file.content is not None and file.content != core().content_of(packing):
@@ -70,8 +67,8 @@ def _fill(file: Any, packing: dict[str, Any]) -> None:
         file[name] = packing[name]
         label(file[name], "unit", unit)
 
-    label(file, "format", _format)
-    file.attrs["format_version"] = np.int64(_format_version)
+    label(file, "format", FORMAT)
+    file.attrs["format_version"] = np.int64(FORMAT_VERSION)
     file.attrs["thickness"] = float(packing["thickness"])
     file.attrs["content"] = np.int64(core().content_of(packing))
     for name, unit in _units.items():

@@ -107,15 +107,22 @@ def as_dict(packing: Packing) -> dict[str, Any]:
     }
 
 
+def grains_of(grains: dict[str, Any]) -> dict[str, Any]:
+    """The members that a Packing and a Snapshot have in common, of grains as the compiled module gives them."""
+    return {
+        "radius": grains["radius"],
+        "position": np.stack([grains["x"], grains["y"]], axis=1),
+        "rotation": grains["rotation"],
+        "cell": grains["cell"],
+        "thickness": grains["thickness"],
+        "contacts": np.stack([grains["contact_i"], grains["contact_j"]], axis=1),
+    }
+
+
 def from_dict(packing: dict[str, Any]) -> Packing:
     """The reverse of as_dict."""
     return Packing(
-        radius=packing["radius"],
-        position=np.stack([packing["x"], packing["y"]], axis=1),
-        rotation=packing["rotation"],
-        cell=packing["cell"],
-        thickness=packing["thickness"],
-        contacts=np.stack([packing["contact_i"], packing["contact_j"]], axis=1),
+        **grains_of(packing),
         history=packing["history"],
         history_names=tuple(packing["history_names"]),
         numbers=dict(packing["numbers"]),

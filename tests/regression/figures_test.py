@@ -23,29 +23,12 @@ import h5py
 import numpy as np
 from figure_calls import call, copy
 from program import PROGRAM, check, run, start_and_signal
+from tiny_results import GROUND
 from voussoir.figures import __main__ as figures
 from voussoir.figures import source, trend_table
 from voussoir.figures.catalogue import FIGURES
 
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
-GROUND = """
-material = "linear_elastic"
-[ground]
-unit_weight = "20 kN/m3"
-surcharge = "1 kPa"
-width = "35 m"
-height = "35 m"
-diameter = "5 m"
-cover_ratio = 2
-mesh_size_opening = "2.4 m"
-mesh_size_far = "9 m"
-[gravity]
-ratio = 3
-uniform_step = 0.25
-[volume_loss]
-total = "10 %"
-increments = 4
-"""
 SPECIMEN = 'kind = "biaxial_bvp"\nmaterial = "linear_elastic"\n[biaxial_bvp]\nstrain = "1 %"\n'
 
 
@@ -57,7 +40,7 @@ def setUpModule():
     """Two whole runs, and one that was stopped within its gravity."""
     shutil.rmtree("runs", ignore_errors=True)
     Path("runs").mkdir()
-    Path("tunnel.toml").write_text('kind = "tunnel"\n' + GROUND)
+    Path("tunnel.toml").write_text(GROUND)
     Path("specimen.toml").write_text(SPECIMEN)
     run(command("tunnel.toml", "runs/coarse"))
     run(command("specimen.toml", "runs/specimen"))
