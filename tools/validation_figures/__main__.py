@@ -11,7 +11,16 @@ import matplotlib.pyplot as plt
 from voussoir.errors import Error
 from voussoir.figures import output, style
 
-from validation_figures import both_halves, budget, elastic_ground, ground_reaction, lattice, scenes, yade_test
+from validation_figures import (
+    both_halves,
+    budget,
+    elastic_ground,
+    ground_reaction,
+    lattice,
+    scenes,
+    trapdoor_bands,
+    yade_test,
+)
 from validation_figures.program import ROOT, Program
 
 FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
@@ -21,6 +30,7 @@ FIGURES: dict[str, Callable[[Program, Path], list[str]]] = {
     "error_budget": budget.draw,
     "scenes": scenes.draw,
     "scenes_trapdoor": ground_reaction.draw,
+    "scenes_trapdoor_bands": trapdoor_bands.draw,
     "scenes_full_tunnel": both_halves.draw,
 }
 

@@ -13,10 +13,10 @@ from voussoir.figures.style import CYCLE, save
 from .program import ROOT, Program
 
 Array = np.ndarray
-SHOWN = {0.01: CYCLE[0], 0.025: CYCLE[2], 0.05: CYCLE[3]}  # volume losses that are drawn and told
-MEMBERS, HALF_MEMBERS = 4, 3
-TO_FIVE = ("stage[1].steps=20", "stage[1].move[0].area=-5 %")  # increments as in the case, of half the volume loss
-HALF_TO_FIVE = ("volume_loss.increments=20", "volume_loss.total=5 %")
+SHOWN = {0.01: CYCLE[0], 0.025: CYCLE[2], 0.05: CYCLE[3], 0.1: CYCLE[1]}  # volume losses that are drawn
+TOLD = (0.01, 0.025, 0.05, 0.075, 0.1)  # volume losses whose numbers are told
+MEMBERS = 4  # of both ensembles
+HALF_TO_TEN = ("volume_loss.increments=40", "volume_loss.total=10 %")  # as in cases/full_tunnel
 SAME_MESH = ("ground.mesh_size_opening=1.2 m", "ground.mesh_size_far=6 m")  # as in cases/full_tunnel
 
 
@@ -78,7 +78,7 @@ def _troughs(axis: Axes, full: Surface, half: Path) -> None:
             x, mean, "k--", linewidth=1, label=f"half tunnel, mean of {len(members)}" if loss == max(SHOWN) else "_"
         )
         axis.plot(-x, mean, "k--", linewidth=1)
-    axis.set_ylim(85, 0)  # room for the legend
+    axis.set_ylim(135, 0)  # room for the legend
     axis.set_xlim(-25, 25)
     axis.set_xlabel("distance from the axis  $x$  [m]")
     axis.set_ylabel("settlement  [mm]")
@@ -117,7 +117,7 @@ def _growth(axis: Axes, full: Surface) -> None:
 
 def _told(full: Surface, half: Path) -> list[str]:
     lines = []
-    for loss in SHOWN:
+    for loss in TOLD:
         middle = 1e3 * full.at(loss)[:, len(full.x) // 2]
         left, right = full.sides(loss)
         largest = 1e3 * np.abs(right - left).max(axis=1)
@@ -136,8 +136,8 @@ def _told(full: Surface, half: Path) -> list[str]:
 
 
 def draw(program: Program, path: Path) -> list[str]:
-    full = Surface(program.ensemble("full", ROOT / "cases/full_tunnel/case.toml", MEMBERS, *TO_FIVE))
-    half = program.ensemble("half", ROOT / "cases/tunnel_quick/case.toml", HALF_MEMBERS, *SAME_MESH, *HALF_TO_FIVE)
+    full = Surface(program.ensemble("full", ROOT / "cases/full_tunnel/case.toml", MEMBERS))
+    half = program.ensemble("half", ROOT / "cases/tunnel_quick/case.toml", MEMBERS, *SAME_MESH, *HALF_TO_TEN)
     figure, axes = plt.subplots(1, 3, figsize=(12, 4), layout="constrained")
     _troughs(axes[0], full, half)
     _differences(axes[1], full)

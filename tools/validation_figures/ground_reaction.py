@@ -12,22 +12,43 @@ from voussoir.figures.study.bands import of_members
 from voussoir.figures.style import CYCLE, save
 
 from .program import Program
-from .scenes import HERE, PSI, SMOOTHED, terzaghi, wedge
+from .scenes import HERE, PSI, SMOOTHED, davis, terzaghi, wedge
 
 Array = np.ndarray
-MEMBERS = 8
+MEMBERS, MEDIUM_MEMBERS = 8, 4
+MEDIUM = (  # medium dense sand, its weight, and half of the displacement
+    "packing.consolidation_friction=0.45",
+    "region[0].unit_weight=18 kN/m3",
+    "stage[2].steps=30",
+    "stage[2].move[0].y=-49 mm",
+)
 ELEMENT_STRESS = 20  # lateral stress at which the packings' friction is measured [kPa], that of half the depth
 FIRST_SLOPE = 125.0  # of Iglesia's curve: fall of the load over its first value, over displacement over width
-WIDTHS = (1e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.014, 0.02, 0.05, 0.10)  # displacements over B whose loads are told
+MCNULTY = (2e-4, 0.5)  # McNulty's abstract: so small a displacement may change the load by as much as 50 %
+WIDTHS = (
+    1e-4,
+    2e-4,
+    5e-4,
+    1e-3,
+    2e-3,
+    5e-3,
+    0.01,
+    0.014,
+    0.02,
+    0.05,
+    0.10,
+)  # displacements over B whose loads are told
 
 
-def frictions(program: Program) -> Array:
-    """Friction angles [rad] of the members' packings in one element, means over 0.5 % of strain."""
+def frictions(program: Program) -> tuple[Array, Array]:
+    """Friction angles [rad] of the members' packings in one element, at the peak and at 6 % of strain: means over 0.5 %
+    of strain."""
     settings = [f"stage[0].press[{k}].pressure={ELEMENT_STRESS} kPa" for k in (0, 1)]
     ensemble = Ensemble(program.ensemble(f"element_{ELEMENT_STRESS}", HERE / "element.toml", MEMBERS, *settings))
     sheared = ensemble.curve("q_over_p_element").members[:, ensemble.stage == "shear"]
     angle = np.arcsin(sheared)  # q is half the difference of the principal stresses
-    return np.array([np.convolve(one, np.ones(SMOOTHED) / SMOOTHED, "valid").max() for one in angle])
+    smoothed = np.array([np.convolve(one, np.ones(SMOOTHED) / SMOOTHED, "valid") for one in angle])
+    return smoothed.max(axis=1), smoothed[:, -1]
 
 
 @dataclass
@@ -63,14 +84,18 @@ def members(folder: Path) -> Members:
     return found
 
 
-def published(friction: float) -> list[tuple[str, float]]:
-    """Closed forms of the load over its first value."""
+def published(friction: float, late: float) -> list[tuple[str, float]]:
+    """Closed forms of the load over its first value, with the friction at the peak and at large strain [rad].
+
+    The last form has the friction on planes that shear without dilating any more, which is Davis' angle for psi = 0.
+    """
     krynine = (1 - np.sin(friction) ** 2) / (1 + np.sin(friction) ** 2)
     return [
         (r"wedge with $\varphi$", wedge(friction)),
         (r"wedge with $\psi$", wedge(PSI)),
         ("Terzaghi, K = 1", terzaghi(friction, 1.0)),
         (f"Terzaghi, K = {krynine:.2f} (Krynine)", terzaghi(friction, krynine)),
+        ("Terzaghi, K = 1, large strain", terzaghi(davis(late, 0.0), 1.0)),
     ]
 
 
@@ -80,7 +105,7 @@ def three_lines(friction: float) -> tuple[Array, Array]:
     return np.array([0, (1 - least) / FIRST_SLOPE, 0.1]), np.array([1, least, terzaghi(friction, 1.0)])
 
 
-def _draw(axis: Axes, found: Members, friction: float) -> None:
+def _draw_members(axis: Axes, found: Members, medium: Members) -> None:
     bands, x = of_members(found.together()), 100 * found.down[0][: found.common]
     for half, colour, alpha, label in (
         (bands.prediction_half_width, CYCLE[1], 0.22, "95 % band of one further member"),
@@ -90,39 +115,42 @@ def _draw(axis: Axes, found: Members, friction: float) -> None:
     for k, (down, load) in enumerate(zip(found.down, found.load)):
         label = f"the {len(found.load)} members" if k == 0 else "_"
         axis.plot(100 * down, load, color="0.45", linewidth=0.7, label=label)
-    axis.plot(x, bands.mean, color=CYCLE[0], linewidth=2.2, label=f"mean of {len(found.load)}")
-    for k, (name, value) in enumerate(published(friction)):
-        axis.axhline(value, color=CYCLE[(2, 4, 3, 7)[k]], linestyle="--", linewidth=1.2, label=name)
-    down = np.concatenate([[0.0], np.logspace(-4, -1, 301)])  # close together: the lines are curved over a logarithm
+    axis.plot(x, bands.mean, color=CYCLE[0], linewidth=2.2, label=f"mean of {len(found.load)}, dense")
     axis.plot(
-        100 * down,
-        np.interp(down, *three_lines(friction)),
+        100 * medium.down[0][: medium.common],
+        medium.together().mean(axis=0),
         color="black",
-        linestyle=":",
-        linewidth=1.6,
-        label="three straight lines",
+        linewidth=1.3,
+        label=f"mean of {len(medium.load)}, medium dense",
     )
+
+
+def _draw_published(axis: Axes, forms: list[tuple[str, float]], friction: float) -> None:
+    for k, (name, value) in enumerate(forms):
+        axis.axhline(value, color=CYCLE[(2, 4, 3, 7, 5)[k]], linestyle="--", linewidth=1.2, label=name)
+    down = np.concatenate([[0.0], np.logspace(-4, -1, 301)])  # close together: the lines are curved over a logarithm
+    lines = np.interp(down, *three_lines(friction))
+    axis.plot(100 * down, lines, "k:", linewidth=1.6, label="three lines, fall of 125 (from memory)")
+    axis.plot(100 * MCNULTY[0], MCNULTY[1], "k^", markersize=7, label="McNulty, round doors: as low as this")
     axis.set_xlabel("displacement of the door over its width  [%]")
     axis.set_ylabel("load on the door over its first value  [-]")
 
 
-def told(found: Members, friction: Array) -> list[str]:
+def told(found: Members, forms: list[tuple[str, float]]) -> list[str]:
     """The numbers of the page."""
-    degrees, loads, down = np.degrees(friction), found.together(), 100 * found.down[0]
+    loads, down = found.together(), 100 * found.down[0]
     least = np.array([one.min() for one in found.load])
     at = ", ".join(f"{100 * d[one.argmin()]:.2f}" for d, one in zip(found.down, found.load))
     lines = [
-        f"friction angles of the members: {_listed(degrees, 1)}; {_mean(degrees, 1)} deg",
-        f"all members reach {down[found.common - 1]:.2f} % of B, single ones {100 * max(map(max, found.down)):.2f} %",
+        f"all members reach {down[found.common - 1]:.2f} % of B",
         f"least load: {_listed(least, 3)}; {_mean(least, 3)}; at {at} % of B",
         f"least of the mean: {loads.mean(axis=0).min():.3f} at {down[loads.mean(axis=0).argmin()]:.2f} %",
     ]
     for width in WIDTHS:
-        near = np.array([np.interp(width, d, one) for d, one in zip(found.down, found.load) if d[-1] >= width])
+        near = np.array([np.interp(width, d, one) for d, one in zip(found.down, found.load) if d[-1] > width - 1e-6])
         if len(near) > 1:
             lines.append(f"load at {100 * width:g} % of B: {_mean(near, 3)} of {len(near)}: {_listed(near, 3)}")
-    lines += [f"{name}: {value:.3f}" for name, value in published(float(friction.mean()))]
-    return lines
+    return lines + [f"{name}: {value:.3f}" for name, value in forms]
 
 
 def _listed(values: Array, digits: int) -> str:
@@ -133,12 +161,20 @@ def _mean(values: Array, digits: int) -> str:
     return f"{values.mean():.{digits}f} +- {values.std(ddof=1):.{digits}f}"
 
 
+def trapdoors(program: Program) -> Path:
+    """The folder of the ensemble with dense sand."""
+    return program.ensemble("trapdoor_8", HERE / "trapdoor.toml", MEMBERS)
+
+
 def draw(program: Program, path: Path) -> list[str]:
-    friction = frictions(program)
-    found = members(program.ensemble("trapdoor_8", HERE / "trapdoor.toml", MEMBERS))
-    figure, axes = plt.subplots(1, 2, figsize=(12, 5.4), layout="constrained")
+    peak, late = frictions(program)
+    forms = published(float(peak.mean()), float(late.mean()))
+    found = members(trapdoors(program))
+    medium = members(program.ensemble("trapdoor_md", HERE / "trapdoor.toml", MEDIUM_MEMBERS, *MEDIUM))
+    figure, axes = plt.subplots(1, 2, figsize=(12, 5.8), layout="constrained")
     for axis in axes:
-        _draw(axis, found, float(friction.mean()))
+        _draw_members(axis, found, medium)
+        _draw_published(axis, forms, float(peak.mean()))
     axes[0].set_xlim(0, 10)
     axes[0].set_ylim(0, 0.65)
     axes[0].set_title("to a tenth of the width")
@@ -149,6 +185,10 @@ def draw(program: Program, path: Path) -> list[str]:
     axes[1].set_title("the first part")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, fontsize=9, ncols=4, loc="outside lower center")
-    figure.suptitle(f"Trapdoor, H/B = 2, dense coarse sand: {len(found.load)} draws of the packing", fontsize=12)
+    figure.suptitle("Trapdoor, H/B = 2, coarse sand: draws of the packing", fontsize=12)
     save(figure, path)
-    return told(found, friction)
+    angles = [
+        f"friction {when}: {_listed(np.degrees(angle), 1)}; {_mean(np.degrees(angle), 1)} deg"
+        for when, angle in (("at the peak", peak), ("at 6 % of strain", late))
+    ]
+    return angles + told(found, forms) + [f"medium dense: {line}" for line in told(medium, [])]

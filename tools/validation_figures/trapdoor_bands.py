@@ -1,0 +1,117 @@
+"""Where the ground above the trapdoor shears, range by range of the door's displacement: mean of eight packings."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from voussoir.figures import q8
+from voussoir.figures.style import save
+from voussoir.results import Result
+
+from .ground_reaction import frictions, trapdoors
+from .program import Program
+
+Array = np.ndarray
+WIDTH = 1.0  # of the door [m]
+EDGES = (2.0, 3.0)  # x of the door's edges [m]
+RANGES = ((0.0, 0.0043), (0.0043, 0.016), (0.016, 0.05), (0.05, 0.10))  # displacements over the width
+HEIGHTS = (0.15, 0.85)  # between which a band's inclination is measured [m]
+
+
+def deviatoric(strain: Array) -> Array:
+    """eps_q of strains (xx, yy, xy), eq. (11) [-]."""
+    return 2 * np.hypot(0.5 * (strain[..., 0] - strain[..., 1]), strain[..., 2])
+
+
+@dataclass
+class Sheared:
+    """Strain gained in a range, over the range of the displacement over the width: mean of the members."""
+
+    first: float  # mean displacement over the width, from which
+    last: float  # and to which
+    rate: Array  # (element, 4) [-]
+
+
+def gained(run: Result, first: float, last: float) -> tuple[float, float, Array]:
+    """Displacements over the width nearest to these two, and the deviatoric strain gained between them."""
+    increments = run.stage("first") + run.stage("lowering")
+    down = np.array([-one["displacement_door_y"] / WIDTH for one in increments])
+    begin, end = (int(np.argmin(np.abs(down - at))) for at in (first, last))
+    strain = increments[end].field("gauss/strain")
+    if first == 0:
+        return 0.0, down[end], deviatoric(strain)
+    return down[begin], down[end], deviatoric(strain - increments[begin].field("gauss/strain"))
+
+
+def sheared(runs: list[Result]) -> list[Sheared]:
+    """The strain gained in each of RANGES."""
+    found = []
+    for first, last in RANGES:
+        members = [gained(run, first, last) for run in runs]
+        begin, end = (float(np.mean([one[k] for one in members])) for k in (0, 1))
+        rate = np.mean([strain / (to - since) for since, to, strain in members], axis=0)
+        found.append(Sheared(begin, end, rate))
+    return found
+
+
+def inclinations(places: Array, rate: Array) -> Array:
+    """Angles from the vertical [deg] of the left and the right band, positive towards the door's middle.
+
+    The band's place at a height is the mean x of one half of the ground there, weighted with the square of the rate, so
+    that the band counts and not what is strained a little everywhere. A straight line goes through these places."""
+    x, y, weight = places[..., 0].ravel(), places[..., 1].ravel(), rate.ravel() ** 2
+    middle, found = sum(EDGES) / 2, []
+    rows = np.unique(np.round(y[(y > HEIGHTS[0]) & (y < HEIGHTS[1])], 6))
+    for side in (-1, 1):
+        at = []
+        for row in rows:
+            here = (np.abs(y - row) < 1e-5) & (side * (x - middle) > 0)
+            at.append(np.average(x[here], weights=weight[here]))
+        found.append(np.degrees(np.arctan(-side * np.polyfit(rows, at, 1)[0])))
+    return np.array(found)
+
+
+def _draw(axis: Axes, run: Result, one: Sheared, friction: float) -> PolyCollection:
+    patches = q8.gauss_patches(run.coordinates, run.connectivity).reshape(-1, 4, 2)
+    drawn = PolyCollection(list(patches), array=one.rate.ravel(), cmap="magma_r", edgecolors="face", linewidths=0.4)
+    drawn.set_clim(0, np.quantile(one.rate, 0.985))
+    axis.add_collection(drawn)
+    rise = np.array([0.0, 0.5 * WIDTH / np.tan(np.pi / 4 - friction / 2)])
+    names = ("triangle, 45° $-$ $\\varphi$/2 from the vertical", "prism above the door")
+    for edge, side, (triangle, prism) in zip(EDGES, (1, -1), (names, ("_", "_"))):
+        axis.plot(edge + side * np.array([0, WIDTH / 2]), rise, color="#0072b2", linewidth=1.2, label=triangle)
+        axis.plot([edge, edge], [0, 2], color="#009e73", linestyle="--", linewidth=1.2, label=prism)
+    axis.set_xlim(1, 4)
+    axis.set_ylim(0, 2)
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.set_xlabel("$x$  [m]")
+    axis.set_title(f"{100 * one.first:.2g} to {100 * one.last:.2g} % of the width")
+    return drawn
+
+
+def draw(program: Program, path: Path) -> list[str]:
+    friction = float(frictions(program)[0].mean())
+    runs = [Result(folder) for folder in sorted(trapdoors(program).glob("member_*"))]
+    found, places = sheared(runs), runs[0].gauss_points
+    figure, axes = plt.subplots(1, len(found), figsize=(14, 3.8), layout="constrained", sharey=True)
+    for axis, one in zip(axes, found):
+        drawn = _draw(axis, runs[0], one, friction)
+        figure.colorbar(drawn, ax=axis, orientation="horizontal", shrink=0.9, extend="max")
+    axes[0].set_ylabel("$y$  [m]")
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, fontsize=9, ncols=2, loc="outside lower center")
+    figure.suptitle(
+        rf"Trapdoor: deviatoric strain $\varepsilon_q$ gained per displacement over the width, mean of {len(runs)}",
+        fontsize=12,
+    )
+    save(figure, path)
+    # the first range has no bands yet
+    return [
+        f"{100 * one.first:.2f} to {100 * one.last:.2f} % of the width: bands lean "
+        f"{', '.join(f'{angle:.0f}' for angle in inclinations(places, one.rate))} deg to the middle"
+        for one in found[1:]
+    ] + [f"45 deg - phi/2 = {np.degrees(np.pi / 4 - friction / 2):.1f} deg"]
