@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/material_batch.hpp"
+#include "host/library/grain_batch.hpp"
 #include "host/library/rves.hpp"
 #include "host/library/voussoir.h"
 
@@ -23,12 +23,9 @@ class Misuse : public std::logic_error {
 
 /// The RVEs of a handle, and what its calls need from one call to the next.
 struct CRves {
-  std::unique_ptr<fem::MaterialBatch> batch;
-  std::vector<fem::Gradient> gradients;
-  std::vector<fem::Stress> stress;
-  std::vector<fem::Tangent> tangent;
+  std::unique_ptr<GrainBatch> batch;
+  std::vector<PointReport> points;       ///< (RVE) of the last answers
   std::optional<VoussoirReport> report;  ///< of the last evaluation
-  bool may_commit = false;               ///< the trial state is that of an evaluation whose points all have answers
   std::vector<fem::PointField> fields;   ///< of the committed state; empty: to be computed
 };
 

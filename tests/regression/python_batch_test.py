@@ -257,7 +257,7 @@ def check_errors(packings):
     with batch() as open_one:
         raises(ValueError, lambda: open_one.evaluate(np.zeros((3, 2, 2))), "(2, 2, 2)")
         open_one.evaluate(np.zeros((2, 2, 2)))
-        raises(ValueError, lambda: open_one.evaluate(np.full((2, 2, 2), np.nan)), "point 0 is not finite")
+        raises(ValueError, lambda: open_one.evaluate(np.full((2, 2, 2), np.nan)), "RVE 0 is not finite")
         raises(RuntimeError, open_one.commit, "refused or interrupted")
         raises(IndexError, lambda: open_one.snapshot(2), "2")
     raises(RuntimeError, lambda: open_one.evaluate(np.zeros((2, 2, 2))), "closed")
