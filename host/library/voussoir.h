@@ -139,7 +139,7 @@ int voussoir_state_size(VoussoirRves* rves, int64_t* size);
 int voussoir_get_state(VoussoirRves* rves, void* bytes, int64_t size);
 
 /// Makes a state that RVEs of the same case, settings, n and version wrote the committed one; the same gradients then
-/// give the same bits. wrong_input for other bytes.
+/// give the same bits. wrong_input for other bytes, also where a single bit has changed.
 int voussoir_set_state(VoussoirRves* rves, const void* bytes, int64_t size);
 
 /// Number of the named quantities of the committed state (docs/reference/files.md).

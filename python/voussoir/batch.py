@@ -210,7 +210,8 @@ class RveBatch:
         part of it.
 
         Raises:
-            ValueError: the bytes are no state of such points, which keep the state that they have
+            ValueError: the bytes are no state of such points, or a bit of them is wrong; the points keep the state that
+                they have
             TypeError: the state is no bytes
             IndexError: there is no such point
         """
