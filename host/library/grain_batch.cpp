@@ -29,6 +29,15 @@ host::PackingMix mix_of(std::vector<Grains>& packings, const std::vector<int>& p
   return mix;
 }
 
+/// All gradients are within 0.1 of the identity matrix, as deformation gradients F are. As displacement gradients they
+/// would double both sides of every cell within one increment, so that all grains part; no honest call asks for this,
+/// not even a Newton iterate that diverges, because this one is not near the same matrix everywhere.
+bool look_like_f(std::span<const fem::Gradient> gradients) {
+  return std::all_of(gradients.begin(), gradients.end(), [](const fem::Gradient& h) {
+    return (h - fem::Gradient::Identity()).cwiseAbs().maxCoeff() <= 0.1;
+  });
+}
+
 /// The symmetric matrices of fem are the same row by row and column by column.
 std::span<fem::Tangent> tangents_of(std::span<double> numbers) {
   static_assert(sizeof(fem::Tangent) == 9 * sizeof(double) && alignof(fem::Tangent) == alignof(double));
@@ -57,6 +66,10 @@ void GrainBatch::take_gradients(std::span<const double> f_minus_i) {
     const double* h = f_minus_i.data() + 4 * k;
     gradients_[k] << h[0], h[1], h[2], h[3];
     if (!gradients_[k].allFinite()) throw std::invalid_argument(fmt::format("the gradient of RVE {} is not finite", k));
+  }
+  if (look_like_f(gradients_)) {
+    throw std::invalid_argument(
+        "all gradients are near the identity matrix, as F is: H is the displacement gradient (F minus identity)");
   }
 }
 

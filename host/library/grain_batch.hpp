@@ -66,7 +66,7 @@ class GrainBatch {
   /// Answers to displacement gradients (n, 2, 2) that count from the committed state [-]. The numbers of steps follow
   /// the first evaluation of an increment and stay until `commit` or `begin_increment`. A point that has failed answers
   /// with NaN.
-  /// @throws std::invalid_argument where a gradient is not finite; what a pause throws
+  /// @throws std::invalid_argument where a gradient is not finite, or all gradients look like F; what a pause throws
   fem::BatchReport evaluate(std::span<const double> f_minus_i, const AnswerArrays& to);
 
   /// Wall time of the last evaluation without what this class adds to the pool's own [s].

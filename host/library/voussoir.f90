@@ -1,6 +1,6 @@
 ! The functions of voussoir.h for Fortran. Compile this file with your program and link libvoussoir.so. voussoir.h
 ! states units, shapes and codes. C has the last index fastest and Fortran the first one, so that the arrays are here
-!   gradients(2, 2, n): gradients(j, i, k) = F_ij - delta_ij of RVE k
+!   gradients(2, 2, n): gradients(j, i, k) = F_ij - delta_ij of RVE k, so F minus identity and not F
 !   stress(3, n), tangent(3, 3, n): the tangent is symmetric
 ! A text for C ends with c_null_char. An array that may be NULL is a pointer: c_loc(array), or c_null_ptr.
 module voussoir

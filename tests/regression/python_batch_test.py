@@ -258,6 +258,11 @@ def check_errors(packings):
         open_one.evaluate(np.zeros((2, 2, 2)))
         raises(ValueError, lambda: open_one.evaluate(np.full((2, 2, 2), np.nan)), "RVE 0 is not finite")
         raises(RuntimeError, open_one.commit, "refused or interrupted")
+        mistaken = np.eye(2) + 0.09 * np.ones((2, 2, 2))
+        raises(ValueError, lambda: open_one.evaluate(mistaken), "F minus identity")
+        mistaken[1] = 0  # one point that is right: no mistake of all points
+        answer = open_one.evaluate(mistaken)
+        check(voussoir.status_names[answer.report["status"][0]] == "open", str(answer.report))
         raises(IndexError, lambda: open_one.snapshot(2), "2")
     raises(RuntimeError, lambda: open_one.evaluate(np.zeros((2, 2, 2))), "closed")
     raises(RuntimeError, open_one.fields, "closed")
