@@ -117,8 +117,8 @@ int voussoir_begin_increment(VoussoirRves* rves);
 /// @param status (n): how each RVE ended; or NULL
 /// Codes: no_equilibrium where at least one RVE has no answer: its stress and tangent are NaN, those of the others are
 /// right. With every other code but voussoir_ok, where n is right, all stresses and tangents are NaN, all statuses -1.
-/// misuse: a gradient that is not finite, or one that turns the cell inside out (det F <= 0); or all gradients are within
-/// 0.1 of the identity matrix, as F is. An earlier evaluation cannot be committed then.
+/// misuse: a gradient that is not finite, or one that turns the cell inside out (det F <= 0); or all gradients are
+/// within 0.1 of the identity matrix, as F is. An earlier evaluation cannot be committed then.
 int voussoir_evaluate(VoussoirRves* rves, int64_t n, const double* gradients, double* stress, double* tangent,
                       int32_t* status);
 
