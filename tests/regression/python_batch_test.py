@@ -6,6 +6,7 @@ import pickle
 import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -273,6 +274,12 @@ def check_errors(packings):
         voussoir.NoEquilibrium, lambda: voussoir.make_packings(1, grains=30, settings=flat), "none of the 1 packings"
     )
     check("out of reach" in error.__notes__[0], str(error.__notes__))
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        (dense,) = voussoir.make_packings(2, grains=30, settings={"packing.void_ratio": 0.18})
+    check(dense.seed == 1 and len(told) == 1 and told[0].category is voussoir.PackingWarning, str(told))
+    reason = "packing of seed 2 does not come to rest (step_limit) and is left out"
+    check(str(told[0].message) == f"1 of 2 packings are missing: {reason}", str(told[0].message))
 
 
 def check_arguments(packings):
