@@ -33,30 +33,12 @@ module voussoir
       integer(c_int) :: code
     end function
 
-    function voussoir_destroy(rves) bind(c) result(code)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: rves
-      integer(c_int) :: code
-    end function
-
-    function voussoir_begin_increment(rves) bind(c) result(code)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: rves
-      integer(c_int) :: code
-    end function
-
     function voussoir_evaluate(rves, n, gradients, stress, tangent, status) bind(c) result(code)
       import :: c_int, c_int64_t, c_double, c_ptr
       type(c_ptr), value :: rves, tangent, status
       integer(c_int64_t), value :: n
       real(c_double), intent(in) :: gradients(2, 2, *)
       real(c_double), intent(out) :: stress(3, *)
-      integer(c_int) :: code
-    end function
-
-    function voussoir_commit(rves) bind(c) result(code)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: rves
       integer(c_int) :: code
     end function
 
@@ -105,6 +87,15 @@ module voussoir
       type(c_ptr) :: text
     end function
   end interface
+
+  abstract interface
+    function call_with_rves(rves) bind(c) result(code)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: rves
+      integer(c_int) :: code
+    end function
+  end interface
+  procedure(call_with_rves), bind(c) :: voussoir_destroy, voussoir_begin_increment, voussoir_commit
 
 contains
 
