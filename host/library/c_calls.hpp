@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "host/library/grain_batch.hpp"
@@ -57,15 +58,27 @@ int remember(const char* function, const std::exception_ptr& exception) noexcept
 void remember(const std::string& sentence) noexcept;
 [[nodiscard]] const char* last_error() noexcept;
 
-/// Runs the body of a C function, which returns a code, under the lock. No exception leaves it.
+/// Runs the body of a C function under the lock. It returns a code, or nothing where it is right whenever it ends. No
+/// exception leaves this function.
 template <class Body>
 int guarded(const char* function, Body&& body) noexcept {
   try {
     const Call call;
-    return body();
+    if constexpr (std::is_void_v<decltype(body())>) {
+      body();
+      return voussoir_ok;
+    } else {
+      return body();
+    }
   } catch (...) {
     return remember(function, std::current_exception());
   }
+}
+
+/// The same for a function that needs the RVEs of a handle.
+template <class Body>
+int guarded(const char* function, const VoussoirRves* handle, Body&& body) noexcept {
+  return guarded(function, [&] { return body(rves_of(handle)); });
 }
 
 }  // namespace voussoir::library

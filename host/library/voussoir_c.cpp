@@ -144,25 +144,16 @@ const char* voussoir_status_name(int32_t status) {
 }
 
 int voussoir_start(int32_t threads) {
-  return library::guarded(__func__, [&] {
-    library::start_threads(threads);
-    return voussoir_ok;
-  });
+  return library::guarded(__func__, [&] { library::start_threads(threads); });
 }
 
 int voussoir_stop(void) {
-  return library::guarded(__func__, [] {
-    library::stop_threads();
-    return voussoir_ok;
-  });
+  return library::guarded(__func__, [] { library::stop_threads(); });
 }
 
 int32_t voussoir_threads(void) {
   std::int32_t threads = 0;
-  library::guarded(__func__, [&] {
-    threads = library::running_threads();
-    return voussoir_ok;
-  });
+  library::guarded(__func__, [&] { threads = library::running_threads(); });
   return threads;
 }
 
@@ -182,14 +173,12 @@ int voussoir_create(const char* case_file, int64_t n, const char* settings, Vous
     ours->batch = library::make_batch(input, library::mix_of(input, size, lines));
     if (const std::string device = ours->batch->device_sentence(); lines && !device.empty()) lines(device);
     *rves = library::new_handle(std::move(ours));
-    return voussoir_ok;
   });
 }
 
 int voussoir_destroy(VoussoirRves* rves) {
   return library::guarded(__func__, [&] {
     if (rves != nullptr) library::free_rves(rves);
-    return voussoir_ok;
   });
 }
 
@@ -197,24 +186,20 @@ int64_t voussoir_size(const VoussoirRves* rves) {
   std::int64_t size = 0;
   library::guarded(__func__, [&] {
     if (const library::CRves* ours = library::find_rves(rves)) size = static_cast<std::int64_t>(ours->batch->size());
-    return voussoir_ok;
   });
   return size;
 }
 
 int voussoir_begin_increment(VoussoirRves* rves) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     ours.batch->forget_trial();
     ours.batch->begin_increment();
-    return voussoir_ok;
   });
 }
 
 int voussoir_evaluate(VoussoirRves* rves, int64_t n, const double* gradients, double* stress, double* tangent,
                       int32_t* status) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require_equal(n, ours.batch->size(), "n");
     library::require(gradients, "gradients");
     library::require(stress, "stress");
@@ -225,60 +210,49 @@ int voussoir_evaluate(VoussoirRves* rves, int64_t n, const double* gradients, do
 }
 
 int voussoir_commit(VoussoirRves* rves) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     if (!ours.batch->may_commit())
       throw Misuse("there is no evaluation since the last commit of which all RVEs have answers");
     ours.fields.clear();
     ours.batch->commit();
-    return voussoir_ok;
   });
 }
 
 int voussoir_committed(VoussoirRves* rves, int64_t n, double* stress, double* tangent) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require_equal(n, ours.batch->size(), "n");
     library::require(stress, "stress");
     ours.batch->committed(library::answers_in(ours, stress, tangent));
-    return voussoir_ok;
   });
 }
 
 int voussoir_report(VoussoirRves* rves, VoussoirReport* report) {
-  return library::guarded(__func__, [&] {
-    const library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(report, "report");
     if (!ours.report) throw Misuse("there is no evaluation yet");
     *report = *ours.report;
-    return voussoir_ok;
   });
 }
 
 int voussoir_state_size(VoussoirRves* rves, int64_t* size) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(size, "size");
     *size = static_cast<std::int64_t>(ours.batch->hold()->size());
-    return voussoir_ok;
   });
 }
 
 int voussoir_get_state(VoussoirRves* rves, void* bytes, int64_t size) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(bytes, "bytes");
     const auto held = ours.batch->hold();
     library::require_equal(size, held->size(), "size");
     auto* to = static_cast<std::byte*>(bytes);
     held->write([&](std::span<const std::byte> piece) { to = std::copy(piece.begin(), piece.end(), to); });
-    return voussoir_ok;
   });
 }
 
 int voussoir_set_state(VoussoirRves* rves, const void* bytes, int64_t size) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(bytes, "bytes");
     if (size < 0) throw Misuse("size is negative");
     try {
@@ -295,17 +269,15 @@ int voussoir_set_state(VoussoirRves* rves, const void* bytes, int64_t size) {
 }
 
 int voussoir_field_count(VoussoirRves* rves, int64_t* count) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(count, "count");
     *count = static_cast<std::int64_t>(library::fields_of(ours).size());
-    return voussoir_ok;
   });
 }
 
 int voussoir_field(VoussoirRves* rves, int64_t index, const char** name, const char** unit, int32_t* components) {
-  return library::guarded(__func__, [&] {
-    const auto& fields = library::fields_of(library::rves_of(rves));
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
+    const auto& fields = library::fields_of(ours);
     if (index < 0 || index >= static_cast<std::int64_t>(fields.size())) {
       throw Misuse("there is no field " + std::to_string(index) + " of " + std::to_string(fields.size()));
     }
@@ -313,20 +285,18 @@ int voussoir_field(VoussoirRves* rves, int64_t index, const char** name, const c
     if (name != nullptr) *name = library::kept(field.name);
     if (unit != nullptr) *unit = library::kept(field.unit);
     if (components != nullptr) *components = field.components;
-    return voussoir_ok;
   });
 }
 
 int voussoir_field_values(VoussoirRves* rves, const char* name, double* values, int64_t size) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(name, "name");
     library::require(values, "values");
     for (const fem::PointField& field : library::fields_of(ours)) {
       if (field.name != name) continue;
       library::require_equal(size, field.values.size(), "size");
       std::copy(field.values.begin(), field.values.end(), values);
-      return voussoir_ok;
+      return;
     }
     throw Misuse("there is no field " + std::string(name));
   });
