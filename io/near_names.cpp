@@ -24,11 +24,29 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+namespace {
+
+/// One name is the beginning of the other one, as of "friction" and "friction_angle", within the same table.
+bool continues(std::string_view longer, std::string_view shorter) {
+  constexpr std::size_t least = 4;
+  if (longer.size() < shorter.size()) std::swap(longer, shorter);
+  return shorter.size() >= least && longer.starts_with(shorter) &&
+         longer.find('.', shorter.size()) == std::string_view::npos;
+}
+
+/// The edit distance, or half of the largest one where one name continues the other.
+std::size_t distance_of(std::string_view name, std::string_view wanted) {
+  const std::size_t distance = edit_distance(name, wanted);
+  return continues(name, wanted) ? std::min(distance, most_distance(wanted) / 2) : distance;
+}
+
+}  // namespace
+
 std::string nearest_name(const std::vector<std::string>& names, std::string_view wanted) {
   std::size_t best = most_distance(wanted);
   std::string nearest;
   for (const std::string& name : names) {
-    const std::size_t distance = edit_distance(name, wanted);
+    const std::size_t distance = distance_of(name, wanted);
     if (distance <= best) {
       best = distance;
       nearest = name;
@@ -43,8 +61,8 @@ std::vector<std::string> near_names(const std::string& wanted, const std::vector
   const bool has_table = wanted.find('.') != std::string::npos;
   std::vector<std::pair<std::size_t, std::string>> found;
   for (const std::string& name : known) {
-    std::size_t distance = edit_distance(wanted, name);
-    if (!has_table) distance = std::min(distance, edit_distance(wanted, last_part(name)));
+    std::size_t distance = distance_of(name, wanted);
+    if (!has_table) distance = std::min(distance, distance_of(last_part(name), wanted));
     if (distance <= most_distance(wanted)) found.emplace_back(distance, name);
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -15,12 +15,13 @@ namespace voussoir::io {
 /// time goes as the product of both lengths.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The last of the names that are nearest to `wanted`; empty where all are farther than most_distance.
+/// The last of the names that are nearest to `wanted`, by letters or because one continues the other ("friction" and
+/// "friction_angle"); empty where all are farther than most_distance.
 [[nodiscard]] std::string nearest_name(const std::vector<std::string>& names, std::string_view wanted);
 
 /// The known keys, "soil.thickness", that are meant by an unknown name perhaps, the nearest first and five at the most:
-/// those of nearly this name, or, for a name without a table, those whose last part nearly is this name. None for names
-/// of more than 100 bytes.
+/// those near to this name as above, or, for a name without a table, those whose last part nearly is this name. None
+/// for names of more than 100 bytes.
 [[nodiscard]] std::vector<std::string> near_names(const std::string& wanted, const std::vector<std::string>& known);
 
 }  // namespace voussoir::io

@@ -74,7 +74,7 @@ std::vector<PackedRve> packings_of(const SoilCase& soil, PackingCase recipe, std
         all.push_back(std::move(rve));
     } catch (const NoEquilibrium& none) {
       if (pressures.size() == 1) throw;
-      note(none.what());
+      note(std::string(none.what()));
     }
   }
   if (all.empty()) throw NoEquilibrium("no packing comes to rest at any of the pressures of biaxial.pressures");

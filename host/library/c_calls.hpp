@@ -7,9 +7,10 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
-#include "fem/material_batch.hpp"
+#include "host/library/grain_batch.hpp"
 #include "host/library/rves.hpp"
 #include "host/library/voussoir.h"
 
@@ -23,12 +24,9 @@ class Misuse : public std::logic_error {
 
 /// The RVEs of a handle, and what its calls need from one call to the next.
 struct CRves {
-  std::unique_ptr<fem::MaterialBatch> batch;
-  std::vector<fem::Gradient> gradients;
-  std::vector<fem::Stress> stress;
-  std::vector<fem::Tangent> tangent;
+  std::unique_ptr<GrainBatch> batch;
+  std::vector<PointReport> points;       ///< (RVE) of the last answers
   std::optional<VoussoirReport> report;  ///< of the last evaluation
-  bool may_commit = false;               ///< the trial state is that of an evaluation whose points all have answers
   std::vector<fem::PointField> fields;   ///< of the committed state; empty: to be computed
 };
 
@@ -60,15 +58,27 @@ int remember(const char* function, const std::exception_ptr& exception) noexcept
 void remember(const std::string& sentence) noexcept;
 [[nodiscard]] const char* last_error() noexcept;
 
-/// Runs the body of a C function, which returns a code, under the lock. No exception leaves it.
+/// Runs the body of a C function under the lock. It returns a code, or nothing where it is right whenever it ends. No
+/// exception leaves this function.
 template <class Body>
 int guarded(const char* function, Body&& body) noexcept {
   try {
     const Call call;
-    return body();
+    if constexpr (std::is_void_v<decltype(body())>) {
+      body();
+      return voussoir_ok;
+    } else {
+      return body();
+    }
   } catch (...) {
     return remember(function, std::current_exception());
   }
+}
+
+/// The same for a function that needs the RVEs of a handle.
+template <class Body>
+int guarded(const char* function, const VoussoirRves* handle, Body&& body) noexcept {
+  return guarded(function, [&] { return body(rves_of(handle)); });
 }
 
 }  // namespace voussoir::library

@@ -9,12 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "host/case/load_case.hpp"
-#include "host/case/made_with.hpp"
+#include "host/library/accepted_case.hpp"
 #include "host/material/mirrored_batch.hpp"
-#include "host/packing/stored_packing.hpp"
-#include "io/hash.hpp"
-#include "io/input_error.hpp"
 
 namespace voussoir::library {
 namespace {
@@ -31,6 +27,15 @@ host::PackingMix mix_of(std::vector<Grains>& packings, const std::vector<int>& p
   host::PackingMix mix{{}, packing_of};
   for (Grains& grains : packings) mix.packings.push_back(std::move(grains.rve));
   return mix;
+}
+
+/// All gradients are within 0.1 of the identity matrix, as deformation gradients F are. As displacement gradients they
+/// would double both sides of every cell within one increment, so that all grains part; no honest call asks for this,
+/// not even a Newton iterate that diverges, because this one is not near the same matrix everywhere.
+bool look_like_f(std::span<const fem::Gradient> gradients) {
+  return std::all_of(gradients.begin(), gradients.end(), [](const fem::Gradient& h) {
+    return (h - fem::Gradient::Identity()).cwiseAbs().maxCoeff() <= 0.1;
+  });
 }
 
 /// The symmetric matrices of fem are the same row by row and column by column.
@@ -59,13 +64,16 @@ GrainBatch::GrainBatch(std::vector<Grains> packings, std::vector<int> packing_of
 void GrainBatch::take_gradients(std::span<const double> f_minus_i) {
   for (std::size_t k = 0; k < size(); ++k) {
     const double* h = f_minus_i.data() + 4 * k;
-    if (!std::isfinite(h[0] + h[1] + h[2] + h[3]))
-      throw std::invalid_argument(fmt::format("the displacement gradient of point {} is not finite", k));
     gradients_[k] << h[0], h[1], h[2], h[3];
+    if (!gradients_[k].allFinite()) throw std::invalid_argument(fmt::format("the gradient of RVE {} is not finite", k));
+  }
+  if (look_like_f(gradients_)) {
+    throw std::invalid_argument(
+        "all gradients are near the identity matrix, as F is: H is the displacement gradient (F minus identity)");
   }
 }
 
-Outcome GrainBatch::evaluate(std::span<const double> f_minus_i, const AnswerArrays& to) {
+fem::BatchReport GrainBatch::evaluate(std::span<const double> f_minus_i, const AnswerArrays& to) {
   trial_ = Trial::unfinished;
   take_gradients(f_minus_i);
   if (std::exchange(increment_begins_, false)) batch_->begin_increment();
@@ -75,7 +83,7 @@ Outcome GrainBatch::evaluate(std::span<const double> f_minus_i, const AnswerArra
   give(to, pool_->trial_reports());
   trial_ = report.usable ? Trial::usable : Trial::unusable;
   fault_ = report.message;
-  return {report.usable, report.message};
+  return report;
 }
 
 void GrainBatch::commit() {
@@ -100,8 +108,12 @@ void GrainBatch::give(const AnswerArrays& to, std::span<const kernels::RveReport
     const kernels::RveReport& r = reports[k];
     const bool failed = kernels::is_failure(r.status);
     const fem::Stress s = failed ? fem::Stress(nan, nan, nan) : stresses_[k];
-    const double row[4] = {s[0], s[2], s[2], s[1]};
-    std::copy(std::begin(row), std::end(row), to.stress.data() + 4 * k);
+    if (to.stress.size() == 3 * size()) {
+      std::copy_n(s.data(), 3, to.stress.data() + 3 * k);
+    } else {
+      const double row[4] = {s[0], s[2], s[2], s[1]};
+      std::copy(std::begin(row), std::end(row), to.stress.data() + 4 * k);
+    }
     if (failed && !to.tangent.empty()) std::fill_n(to.tangent.data() + 9 * k, 9, nan);
     to.reports[k] = {.status = static_cast<std::int32_t>(r.status),
                      .steps = r.steps,
@@ -139,13 +151,7 @@ void GrainBatch::set_state(std::span<const std::byte> bytes, std::span<const std
   std::sort(ascending.begin(), ascending.end());
   if (std::adjacent_find(ascending.begin(), ascending.end()) != ascending.end())
     throw std::invalid_argument("a point occurs twice, but has one state");
-  try {
-    pool_->set_states(points, host::split_state(bytes, pool_->identity(packings_of(points)), points.size()));
-  } catch (const io::InputError& fault) {
-    throw std::invalid_argument("the bytes are no state of these points: " + fault.sentence());
-  } catch (const std::runtime_error& fault) {
-    throw std::invalid_argument(std::string("the bytes are no state of these points: ") + fault.what());
-  }
+  pool_->set_states(points, host::split_state(bytes, pool_->identity(packings_of(points)), points.size()));
   trial_ = Trial::none;
   begin_increment();
 }
@@ -168,6 +174,13 @@ io::Packing GrainBatch::packing(std::size_t point) const {
   Grains grains{pool_->packed(point), soils_[k]};
   grains.rve.seed = seeds_[k];
   return file_of(grains);
+}
+
+std::unique_ptr<GrainBatch> make_batch(const host::Case& input, host::PackingMix mix, std::vector<bool> mirrored) {
+  std::vector<Grains> grains;
+  for (host::PackedRve& rve : mix.packings) grains.push_back({std::move(rve), input.soil});
+  return std::make_unique<GrainBatch>(std::move(grains), std::move(mix.of_point), options_of(input),
+                                      std::move(mirrored));
 }
 
 }  // namespace voussoir::library

@@ -1,7 +1,7 @@
 #pragma once
-/// RVEs behind plain arrays, for bindings to other languages. A GrainBatch adds to the pool what a stranger's loop
-/// needs: points that answer as mirror images, states of single points, answers that are NaN where a point has failed,
-/// and a refusal to commit what is not fit for it. It contains no physics of its own.
+/// RVEs behind plain arrays, for bindings to other languages: Python and C call this one class. A GrainBatch adds to
+/// the pool what a stranger's loop needs: points that answer as mirror images, states of single points, answers that
+/// are NaN where a point has failed, and a refusal to commit what is not fit for it. It contains no physics of its own.
 
 #include <cstdint>
 #include <memory>
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "host/case/case.hpp"
 #include "host/material/rve_pool.hpp"
 #include "io/packing_file.hpp"
 #include "io/result_data.hpp"
@@ -43,15 +44,9 @@ struct PointReport {
 
 /// Where the answers of all points go, row by row.
 struct AnswerArrays {
-  std::span<double> stress;        ///< (n, 2, 2) Cauchy stress, tension positive [Pa]
+  std::span<double> stress;        ///< (n, 2, 2), or (n, 3) as (xx, yy, xy): Cauchy stress, tension positive [Pa]
   std::span<double> tangent;       ///< (n, 3, 3) d stress / d strain in (xx, yy, gamma_xy) [Pa]; empty: not wanted
   std::span<PointReport> reports;  ///< (n)
-};
-
-/// Whether the answers of all points count.
-struct Outcome {
-  bool usable = true;
-  std::string message;  ///< which points have failed, and why; empty where usable
 };
 
 class GrainBatch {
@@ -71,8 +66,8 @@ class GrainBatch {
   /// Answers to displacement gradients (n, 2, 2) that count from the committed state [-]. The numbers of steps follow
   /// the first evaluation of an increment and stay until `commit` or `begin_increment`. A point that has failed answers
   /// with NaN.
-  /// @throws std::invalid_argument where a gradient is not finite; what a pause throws
-  Outcome evaluate(std::span<const double> f_minus_i, const AnswerArrays& to);
+  /// @throws std::invalid_argument where a gradient is not finite, or all gradients look like F; what a pause throws
+  fem::BatchReport evaluate(std::span<const double> f_minus_i, const AnswerArrays& to);
 
   /// Wall time of the last evaluation without what this class adds to the pool's own [s].
   [[nodiscard]] double engine_seconds() const { return engine_seconds_; }
@@ -81,6 +76,9 @@ class GrainBatch {
   /// @throws std::logic_error where there is no evaluation since the last commit, or the last one was not usable or did
   /// not end
   void commit();
+  [[nodiscard]] bool may_commit() const { return trial_ == Trial::usable; }
+  /// The last evaluation cannot be committed any more.
+  void forget_trial() { trial_ = Trial::unfinished; }
   /// The next evaluation chooses the numbers of steps anew.
   void begin_increment();
   /// The answers of the committed state. The tangent is the one that the committed evaluation has found.
@@ -89,9 +87,11 @@ class GrainBatch {
   /// The committed state of these points as bytes; of all points, in their order, those of fem::MaterialBatch::state.
   /// @throws std::out_of_range where there is no such point
   [[nodiscard]] std::vector<std::byte> state(std::span<const std::size_t> points) const;
+  /// The state of all points, which its owner writes piece by piece.
+  [[nodiscard]] std::shared_ptr<const fem::HeldState> hold() const { return pool_->hold(); }
   /// Gives a state to these points, which must have the packings of the points that it was taken from; begins an
-  /// increment. @throws std::invalid_argument where the bytes are no state of such points, or a point occurs twice;
-  /// nothing has changed then
+  /// increment. @throws std::runtime_error where the bytes are no state of such points, std::invalid_argument where a
+  /// point occurs twice; nothing has changed then
   void set_state(std::span<const std::byte> bytes, std::span<const std::size_t> points);
 
   [[nodiscard]] std::vector<fem::PointField> fields() const { return batch_->fields(); }
@@ -119,5 +119,10 @@ class GrainBatch {
   std::vector<fem::Gradient> gradients_;
   mutable std::vector<fem::Stress> stresses_;
 };
+
+/// RVEs as a case describes them by [engine], the kind of tangent and output.microstructure.
+/// @param input an accepted case (accepted_case.hpp) @param mix its packings, mix_of(input, n)
+[[nodiscard]] std::unique_ptr<GrainBatch> make_batch(const host::Case& input, host::PackingMix mix,
+                                                     std::vector<bool> mirrored = {});
 
 }  // namespace voussoir::library

@@ -1,6 +1,6 @@
 ! The functions of voussoir.h for Fortran. Compile this file with your program and link libvoussoir.so. voussoir.h
 ! states units, shapes and codes. C has the last index fastest and Fortran the first one, so that the arrays are here
-!   gradients(2, 2, n): gradients(j, i, k) = F_ij - delta_ij of RVE k
+!   gradients(2, 2, n): gradients(j, i, k) = F_ij - delta_ij of RVE k, so F minus identity and not F
 !   stress(3, n), tangent(3, 3, n): the tangent is symmetric
 ! A text for C ends with c_null_char. An array that may be NULL is a pointer: c_loc(array), or c_null_ptr.
 module voussoir
@@ -33,30 +33,12 @@ module voussoir
       integer(c_int) :: code
     end function
 
-    function voussoir_destroy(rves) bind(c) result(code)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: rves
-      integer(c_int) :: code
-    end function
-
-    function voussoir_begin_increment(rves) bind(c) result(code)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: rves
-      integer(c_int) :: code
-    end function
-
     function voussoir_evaluate(rves, n, gradients, stress, tangent, status) bind(c) result(code)
       import :: c_int, c_int64_t, c_double, c_ptr
       type(c_ptr), value :: rves, tangent, status
       integer(c_int64_t), value :: n
       real(c_double), intent(in) :: gradients(2, 2, *)
       real(c_double), intent(out) :: stress(3, *)
-      integer(c_int) :: code
-    end function
-
-    function voussoir_commit(rves) bind(c) result(code)
-      import :: c_int, c_ptr
-      type(c_ptr), value :: rves
       integer(c_int) :: code
     end function
 
@@ -105,6 +87,15 @@ module voussoir
       type(c_ptr) :: text
     end function
   end interface
+
+  abstract interface
+    function call_with_rves(rves) bind(c) result(code)
+      import :: c_int, c_ptr
+      type(c_ptr), value :: rves
+      integer(c_int) :: code
+    end function
+  end interface
+  procedure(call_with_rves), bind(c) :: voussoir_destroy, voussoir_begin_increment, voussoir_commit
 
 contains
 

@@ -34,7 +34,7 @@ enum {
 enum {
   voussoir_converged = 0,
   voussoir_step_limit = 1,          ///< not at rest after engine.hold_cap steps; the stress counts
-  voussoir_open = 2,                ///< no contacts, stress 0
+  voussoir_open = 2,                ///< no contacts, stress 0; where it comes unexpected: were gradients H, not F?
   voussoir_neighbour_overflow = 3,  ///< too many neighbours, or a cell too narrow for its largest grains
   voussoir_overlap_limit = 4,       ///< grains overlap more than the law of the contacts allows
   voussoir_not_finite = 5           ///< a number became infinite
@@ -110,14 +110,15 @@ int voussoir_begin_increment(VoussoirRves* rves);
 
 /// Moves the RVEs from the committed state; it may be called as often as needed before a commit.
 /// @param n number of RVEs, as it was created: it guards against arrays of another size
-/// @param gradients (n, 2, 2): F - I [-], F maps the committed configuration to the wanted one; with the rotation
+/// @param gradients (n, 2, 2): the displacement gradient H = F - I [-] (F minus identity, and not F), where F maps the
+/// committed configuration to the wanted one; with the rotation
 /// @param stress (n, 3): Cauchy stress [Pa]
 /// @param tangent (n, 3, 3), symmetric [Pa]; or NULL, which saves the cost of the tangents
 /// @param status (n): how each RVE ended; or NULL
 /// Codes: no_equilibrium where at least one RVE has no answer: its stress and tangent are NaN, those of the others are
 /// right. With every other code but voussoir_ok, where n is right, all stresses and tangents are NaN, all statuses -1.
-/// misuse: a gradient that is not finite, or one that turns the cell inside out (det F <= 0). An earlier evaluation
-/// cannot be committed then.
+/// misuse: a gradient that is not finite, or one that turns the cell inside out (det F <= 0); or all gradients are
+/// within 0.1 of the identity matrix, as F is. An earlier evaluation cannot be committed then.
 int voussoir_evaluate(VoussoirRves* rves, int64_t n, const double* gradients, double* stress, double* tangent,
                       int32_t* status);
 
@@ -139,7 +140,7 @@ int voussoir_state_size(VoussoirRves* rves, int64_t* size);
 int voussoir_get_state(VoussoirRves* rves, void* bytes, int64_t size);
 
 /// Makes a state that RVEs of the same case, settings, n and version wrote the committed one; the same gradients then
-/// give the same bits. wrong_input for other bytes.
+/// give the same bits. wrong_input for other bytes, also where a single bit has changed.
 int voussoir_set_state(VoussoirRves* rves, const void* bytes, int64_t size);
 
 /// Number of the named quantities of the committed state (docs/reference/files.md).

@@ -1,13 +1,15 @@
 #include "host/library/voussoir.h"
 
-#include <cmath>
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <span>
 #include <sstream>
 
+#include "host/case/load_case.hpp"
+#include "host/library/accepted_case.hpp"
 #include "host/library/c_calls.hpp"
-#include "host/material/rve_pool.hpp"
 #include "host/process/build_info.hpp"
 #include "host/process/exit_code.hpp"
 
@@ -49,41 +51,21 @@ std::vector<std::string> lines_of(const char* text) {
   return lines;
 }
 
-/// The arrays of a caller, in which an evaluation writes its answers.
-struct Answers {
-  std::span<double> stress, tangent;    ///< (n, 3), and (n, 3, 3) or empty
-  std::span<std::int32_t> status = {};  ///< (n) or empty
-};
-
-Answers answers_in(std::size_t n, double* stress, double* tangent, std::int32_t* status) {
-  Answers out{{stress, 3 * n}, {}};
-  if (tangent != nullptr) out.tangent = {tangent, 9 * n};
-  if (status != nullptr) out.status = {status, n};
-  return out;
+/// The arrays of a caller, in which its RVEs write their answers. @param tangent may be NULL
+AnswerArrays answers_in(CRves& rves, double* stress, double* tangent) {
+  const std::size_t n = rves.batch->size();
+  rves.points.resize(n);
+  return {{stress, 3 * n}, {tangent, tangent == nullptr ? 0 : 9 * n}, rves.points};
 }
 
-void clear(const Answers& out) {
-  std::fill(out.stress.begin(), out.stress.end(), nan);
-  std::fill(out.tangent.begin(), out.tangent.end(), nan);
-  std::fill(out.status.begin(), out.status.end(), -1);
-}
-
-/// The tangents are symmetric, so that the order of Eigen's numbers is no question.
-void copy_point(const CRves& rves, std::size_t k, const Answers& out) {
-  std::copy_n(rves.stress[k].data(), 3, &out.stress[3 * k]);
-  if (!out.tangent.empty()) std::copy_n(rves.tangent[k].data(), 9, &out.tangent[9 * k]);
-}
-
-/// Takes the gradients (n, 2, 2) of a caller.
-void take_gradients(const double* gradients, CRves& rves) {
-  for (std::size_t k = 0; k < rves.gradients.size(); ++k) {
-    const double* h = gradients + 4 * k;
-    fem::Gradient& ours = rves.gradients[k];
-    ours << h[0], h[1], h[2], h[3];
-    const char* fault = nullptr;
-    if (!ours.allFinite()) fault = " is not finite";
-    if (!fault && (1 + h[0]) * (1 + h[3]) - h[1] * h[2] <= 0) fault = " turns the cell inside out (det F <= 0)";
-    if (fault) throw Misuse("the gradient of RVE " + std::to_string(k) + fault);
+/// @param gradients (n, 2, 2)
+void refuse_inside_out(std::span<const double> gradients) {
+  for (std::size_t k = 0; k < gradients.size() / 4; ++k) {
+    const double* h = &gradients[4 * k];
+    if ((1 + h[0]) * (1 + h[3]) - h[1] * h[2] <= 0) {
+      throw std::invalid_argument("the gradient of RVE " + std::to_string(k) +
+                                  " turns the cell inside out (det F <= 0)");
+    }
   }
 }
 
@@ -103,34 +85,36 @@ VoussoirReport report_of(const fem::BatchReport& from, std::int64_t failed) {
   return out;
 }
 
-int evaluate(CRves& rves, const double* gradients, const Answers& out) {
-  rves.may_commit = false;
-  clear(out);
-  take_gradients(gradients, rves);
-  const std::span<fem::Tangent> tangents(rves.tangent.data(), out.tangent.empty() ? 0 : rves.tangent.size());
-  const fem::BatchReport report = rves.batch->evaluate(rves.gradients, rves.stress, tangents);
-  // make_rves makes a pool, which alone knows how each of its RVEs ended.
-  const auto& ended = dynamic_cast<const host::RvePool&>(*rves.batch).trial_reports();
-  std::int64_t failed = 0;
-  for (std::size_t k = 0; k < ended.size(); ++k) {
-    if (!out.status.empty()) out.status[k] = static_cast<std::int32_t>(ended[k].status);
-    if (kernels::is_failure(ended[k].status)) {
-      ++failed;
-    } else {
-      copy_point(rves, k, out);
-    }
-  }
-  rves.report = report_of(report, failed);
-  rves.may_commit = report.usable;
+int evaluate(CRves& rves, std::span<const double> gradients, const AnswerArrays& to) {
+  rves.batch->forget_trial();
+  refuse_inside_out(gradients);
+  const fem::BatchReport report = rves.batch->evaluate(gradients, to);
+  rves.report = report_of(report, std::count_if(rves.points.begin(), rves.points.end(), [](const PointReport& point) {
+                            return kernels::is_failure(static_cast<RveStatus>(point.status));
+                          }));
   if (report.usable) return voussoir_ok;
   remember(report.message);
   return voussoir_no_equilibrium;
 }
 
-void set_state(CRves& rves, std::span<const std::byte> bytes) {
-  rves.batch->set_state(bytes);
-  rves.may_commit = false;
-  rves.fields.clear();
+/// @param status (n) or empty. All answers are NaN and all statuses -1 where an exception leaves this function.
+int evaluate(CRves& rves, std::span<const double> gradients, const AnswerArrays& to, std::span<std::int32_t> status) {
+  const auto clear = [&] {
+    std::fill(to.stress.begin(), to.stress.end(), nan);
+    std::fill(to.tangent.begin(), to.tangent.end(), nan);
+    std::fill(status.begin(), status.end(), -1);
+  };
+  try {
+    const int code = evaluate(rves, gradients, to);
+    for (std::size_t k = 0; k < status.size(); ++k) status[k] = rves.points[k].status;
+    return code;
+  } catch (const std::invalid_argument& fault) {
+    clear();
+    throw Misuse(fault.what());
+  } catch (...) {
+    clear();
+    throw;
+  }
 }
 
 const std::vector<fem::PointField>& fields_of(CRves& rves) {
@@ -160,25 +144,16 @@ const char* voussoir_status_name(int32_t status) {
 }
 
 int voussoir_start(int32_t threads) {
-  return library::guarded(__func__, [&] {
-    library::start_threads(threads);
-    return voussoir_ok;
-  });
+  return library::guarded(__func__, [&] { library::start_threads(threads); });
 }
 
 int voussoir_stop(void) {
-  return library::guarded(__func__, [] {
-    library::stop_threads();
-    return voussoir_ok;
-  });
+  return library::guarded(__func__, [] { library::stop_threads(); });
 }
 
 int32_t voussoir_threads(void) {
   std::int32_t threads = 0;
-  library::guarded(__func__, [&] {
-    threads = library::running_threads();
-    return voussoir_ok;
-  });
+  library::guarded(__func__, [&] { threads = library::running_threads(); });
   return threads;
 }
 
@@ -193,20 +168,17 @@ int voussoir_create(const char* case_file, int64_t n, const char* settings, Vous
     library::Note lines;
     if (note != nullptr) lines = [&](const std::string& line) { note(line.c_str(), context); };
     const auto size = static_cast<std::size_t>(n);
+    const host::Case input = library::accepted(host::load_case(case_file, library::lines_of(settings)));
     auto ours = std::make_unique<library::CRves>();
-    ours->batch = library::make_rves(case_file, size, library::lines_of(settings), lines);
-    ours->gradients.resize(size);
-    ours->stress.resize(size);
-    ours->tangent.resize(size);
+    ours->batch = library::make_batch(input, library::mix_of(input, size, lines));
+    if (const std::string device = ours->batch->device_sentence(); lines && !device.empty()) lines(device);
     *rves = library::new_handle(std::move(ours));
-    return voussoir_ok;
   });
 }
 
 int voussoir_destroy(VoussoirRves* rves) {
   return library::guarded(__func__, [&] {
     if (rves != nullptr) library::free_rves(rves);
-    return voussoir_ok;
   });
 }
 
@@ -214,94 +186,80 @@ int64_t voussoir_size(const VoussoirRves* rves) {
   std::int64_t size = 0;
   library::guarded(__func__, [&] {
     if (const library::CRves* ours = library::find_rves(rves)) size = static_cast<std::int64_t>(ours->batch->size());
-    return voussoir_ok;
   });
   return size;
 }
 
 int voussoir_begin_increment(VoussoirRves* rves) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
-    ours.may_commit = false;
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
+    ours.batch->forget_trial();
     ours.batch->begin_increment();
-    return voussoir_ok;
   });
 }
 
 int voussoir_evaluate(VoussoirRves* rves, int64_t n, const double* gradients, double* stress, double* tangent,
                       int32_t* status) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require_equal(n, ours.batch->size(), "n");
     library::require(gradients, "gradients");
     library::require(stress, "stress");
-    return library::evaluate(ours, gradients, library::answers_in(ours.batch->size(), stress, tangent, status));
+    const std::size_t size = ours.batch->size();
+    return library::evaluate(ours, {gradients, 4 * size}, library::answers_in(ours, stress, tangent),
+                             {status, status == nullptr ? 0 : size});
   });
 }
 
 int voussoir_commit(VoussoirRves* rves) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
-    if (!ours.may_commit) throw Misuse("there is no evaluation since the last commit of which all RVEs have answers");
-    ours.may_commit = false;
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
+    if (!ours.batch->may_commit())
+      throw Misuse("there is no evaluation since the last commit of which all RVEs have answers");
     ours.fields.clear();
     ours.batch->commit();
-    ours.batch->begin_increment();
-    return voussoir_ok;
   });
 }
 
 int voussoir_committed(VoussoirRves* rves, int64_t n, double* stress, double* tangent) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require_equal(n, ours.batch->size(), "n");
     library::require(stress, "stress");
-    const library::Answers out = library::answers_in(ours.batch->size(), stress, tangent, nullptr);
-    const std::span<fem::Tangent> tangents(ours.tangent.data(), out.tangent.empty() ? 0 : ours.tangent.size());
-    ours.batch->committed(ours.stress, tangents);
-    for (std::size_t k = 0; k < ours.stress.size(); ++k) library::copy_point(ours, k, out);
-    return voussoir_ok;
+    ours.batch->committed(library::answers_in(ours, stress, tangent));
   });
 }
 
 int voussoir_report(VoussoirRves* rves, VoussoirReport* report) {
-  return library::guarded(__func__, [&] {
-    const library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(report, "report");
     if (!ours.report) throw Misuse("there is no evaluation yet");
     *report = *ours.report;
-    return voussoir_ok;
   });
 }
 
 int voussoir_state_size(VoussoirRves* rves, int64_t* size) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(size, "size");
     *size = static_cast<std::int64_t>(ours.batch->hold()->size());
-    return voussoir_ok;
   });
 }
 
 int voussoir_get_state(VoussoirRves* rves, void* bytes, int64_t size) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(bytes, "bytes");
     const auto held = ours.batch->hold();
     library::require_equal(size, held->size(), "size");
     auto* to = static_cast<std::byte*>(bytes);
     held->write([&](std::span<const std::byte> piece) { to = std::copy(piece.begin(), piece.end(), to); });
-    return voussoir_ok;
   });
 }
 
 int voussoir_set_state(VoussoirRves* rves, const void* bytes, int64_t size) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(bytes, "bytes");
     if (size < 0) throw Misuse("size is negative");
     try {
-      library::set_state(ours, {static_cast<const std::byte*>(bytes), static_cast<std::size_t>(size)});
+      std::vector<std::size_t> all(ours.batch->size());
+      std::iota(all.begin(), all.end(), std::size_t{0});
+      ours.batch->set_state({static_cast<const std::byte*>(bytes), static_cast<std::size_t>(size)}, all);
+      ours.fields.clear();
     } catch (const std::runtime_error& fault) {
       library::remember(std::string("the state cannot be set: ") + fault.what());
       return static_cast<int>(voussoir_wrong_input);
@@ -311,17 +269,15 @@ int voussoir_set_state(VoussoirRves* rves, const void* bytes, int64_t size) {
 }
 
 int voussoir_field_count(VoussoirRves* rves, int64_t* count) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(count, "count");
     *count = static_cast<std::int64_t>(library::fields_of(ours).size());
-    return voussoir_ok;
   });
 }
 
 int voussoir_field(VoussoirRves* rves, int64_t index, const char** name, const char** unit, int32_t* components) {
-  return library::guarded(__func__, [&] {
-    const auto& fields = library::fields_of(library::rves_of(rves));
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
+    const auto& fields = library::fields_of(ours);
     if (index < 0 || index >= static_cast<std::int64_t>(fields.size())) {
       throw Misuse("there is no field " + std::to_string(index) + " of " + std::to_string(fields.size()));
     }
@@ -329,20 +285,18 @@ int voussoir_field(VoussoirRves* rves, int64_t index, const char** name, const c
     if (name != nullptr) *name = library::kept(field.name);
     if (unit != nullptr) *unit = library::kept(field.unit);
     if (components != nullptr) *components = field.components;
-    return voussoir_ok;
   });
 }
 
 int voussoir_field_values(VoussoirRves* rves, const char* name, double* values, int64_t size) {
-  return library::guarded(__func__, [&] {
-    library::CRves& ours = library::rves_of(rves);
+  return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(name, "name");
     library::require(values, "values");
     for (const fem::PointField& field : library::fields_of(ours)) {
       if (field.name != name) continue;
       library::require_equal(size, field.values.size(), "size");
       std::copy(field.values.begin(), field.values.end(), values);
-      return voussoir_ok;
+      return;
     }
     throw Misuse("there is no field " + std::string(name));
   });

@@ -122,7 +122,7 @@ std::size_t HeldRves::size() const {
   wait();
   std::vector<std::byte> head;
   write_head(head, identity, grains.size());
-  ByteCounter count{head.size() + grains.size() * sizeof(std::uint64_t)};
+  ByteCounter count{head.size() + grains.size() * sizeof(RecordHead)};
   for (std::size_t k = 0; k < grains.size(); ++k) transfer_record(count, *this, k);
   return count.bytes;
 }
@@ -135,8 +135,8 @@ void HeldRves::write(const Sink& sink) const {
   for (std::size_t k = 0; k < grains.size(); ++k) {
     bytes.clear();
     write_record(k, bytes);
-    const std::uint64_t length = bytes.size();
-    sink(std::as_bytes(std::span(&length, 1)));
+    const RecordHead head_of_record = head_of(bytes);
+    sink(std::as_bytes(std::span(head_of_record)));
     sink(bytes);
   }
 }

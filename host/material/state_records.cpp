@@ -5,6 +5,7 @@
 #include <string>
 
 #include "io/byte_stream.hpp"
+#include "io/checksum.hpp"
 #include "io/input_error.hpp"
 
 namespace voussoir::host {
@@ -27,14 +28,23 @@ void write_head(std::vector<std::byte>& bytes, std::uint64_t identity, std::size
   write.value(identity);
 }
 
+RecordHead head_of(StateRecord record) {
+  io::Checksum sum;
+  sum.add(record);
+  return {record.size(), sum.value()};
+}
+
 std::vector<std::byte> join_state(std::uint64_t identity, std::span<const StateRecord> records) {
   std::size_t size = 3 * sizeof(std::uint64_t);
-  for (const StateRecord& record : records) size += sizeof(std::uint64_t) + record.size();
+  for (const StateRecord& record : records) size += sizeof(RecordHead) + record.size();
   std::vector<std::byte> bytes;
   bytes.reserve(size);
   write_head(bytes, identity, records.size());
   io::ByteWriter write(bytes);
-  for (const StateRecord& record : records) write.list(record);
+  for (const StateRecord& record : records) {
+    write.value(head_of(record));
+    write(record.data(), record.size());
+  }
   return bytes;
 }
 
@@ -59,7 +69,12 @@ std::vector<StateRecord> split_state(std::span<const std::byte> bytes, std::uint
            "machine chooses: take the folder of packings along with the run");
   }
   std::vector<StateRecord> records(n);
-  for (StateRecord& record : records) record = read.take(read.value<std::uint64_t>());
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto head = read.value<RecordHead>();
+    records[k] = read.take(head[0]);
+    if (head_of(records[k]) != head)
+      throw std::runtime_error("the state of RVE " + std::to_string(k) + " is damaged: its checksum is wrong");
+  }
   if (!read.at_end()) throw std::runtime_error(not_of_this_case);
   return records;
 }

@@ -60,7 +60,8 @@ PackingLock lock_of(const SoilCase& soil, const PackingCase& recipe, std::int64_
 /// True for a packing that cannot be one of grains. An older version may have stored such packings.
 bool is_refused(const PackedRve& rve, const PackingNote& note) {
   const std::string fault = interpenetration(rve);
-  if (!fault.empty() && note) note(fmt::format("packing of seed {} is refused and left out: {}", rve.seed, fault));
+  if (!fault.empty() && note)
+    note({fmt::format("packing of seed {} is refused and left out: {}", rve.seed, fault), true});
   return !fault.empty();
 }
 
@@ -71,8 +72,9 @@ std::vector<PackedRve> make_resting(const SoilCase& soil, const PackingCase& rec
   for (PackedRve& rve : make_packings(soil, recipe, seeds)) {
     if (rve.status != kernels::RveStatus::converged) {
       if (note)
-        note(fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
-                         kernels::name_of(rve.status)));
+        note({fmt::format("packing of seed {} does not come to rest ({}) and is left out", rve.seed,
+                          kernels::name_of(rve.status)),
+              true});
     } else if (!is_refused(rve, note)) {
       out.push_back(std::move(rve));
     }

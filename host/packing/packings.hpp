@@ -4,14 +4,26 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/packing/variety.hpp"
 
 namespace voussoir::host {
 
-/// A function that receives a line for the log for each packing that is made or found; it may be empty.
-using PackingNote = std::function<void(const std::string&)>;
+/// A line for the log. It is made of a text and used as one.
+struct PackingLine {
+  // NOLINTNEXTLINE(google-explicit-constructor): most lines are a text and nothing else
+  PackingLine(std::string line, bool is_left_out = false) : text(std::move(line)), left_out(is_left_out) {}
+  // NOLINTNEXTLINE(google-explicit-constructor): receivers may take a text
+  operator const std::string&() const { return text; }
+
+  std::string text;
+  bool left_out = false;  ///< the line is the reason why a packing is left out
+};
+
+/// A function that receives a line for each packing that is made or found; it may be empty.
+using PackingNote = std::function<void(const PackingLine&)>;
 
 /// Says whether the bias of packings is measured, which costs as much as a biaxial test.
 enum class Bias { measured, left };

@@ -14,6 +14,7 @@
 #include "host/case/load_case.hpp"
 #include "host/library/accepted_case.hpp"
 #include "host/library/grain_batch.hpp"
+#include "io/input_error.hpp"
 #include "kernels/isa/choose_lanes.hpp"
 #include "python/src/arrays.hpp"
 #include "python/src/engine.hpp"
@@ -104,7 +105,7 @@ class NewAnswer {
   NewAnswer(std::size_t n, bool with_tangent) : n_(n), stress_(4 * n), tangent_(with_tangent ? 9 * n : 0), report_(n) {}
   [[nodiscard]] library::AnswerArrays arrays() { return {stress_.values(), tangent_.values(), report_.values()}; }
   /// Stress, tangent or None, bytes of the reports, and the outcome.
-  [[nodiscard]] nb::tuple give(const library::Outcome& outcome) {
+  [[nodiscard]] nb::tuple give(const fem::BatchReport& outcome) {
     const bool with_tangent = !tangent_.values().empty();
     return nb::make_tuple(stress_.give({n_, 2, 2}), with_tangent ? tangent_.give({n_, 3, 3}) : nb::none(),
                           bytes_of_reports(), outcome.usable, outcome.message);
@@ -128,7 +129,7 @@ nb::tuple evaluate(Batch& batch, const Gradients& f_minus_i, bool with_tangent) 
   if (f_minus_i.shape(0) != n || f_minus_i.shape(1) != 2 || f_minus_i.shape(2) != 2)
     throw nb::value_error("f_minus_i needs the shape (n, 2, 2), with the n of the batch");
   NewAnswer answer(n, with_tangent);
-  const library::Outcome outcome = batch.run(
+  const fem::BatchReport outcome = batch.run(
       [&](GrainBatch& grains) { return grains.evaluate({f_minus_i.data(), f_minus_i.size()}, answer.arrays()); });
   return answer.give(outcome);
 }
@@ -146,7 +147,18 @@ nb::bytes state(Batch& batch, const Points& points) {
 
 void set_state(Batch& batch, const nb::bytes& bytes, const Points& points) {
   const std::span<const std::byte> span(static_cast<const std::byte*>(bytes.data()), bytes.size());
-  batch.run([&](GrainBatch& grains) { grains.set_state(span, points); });
+  const auto refuse = [](const std::string& reason) {
+    throw std::invalid_argument("the bytes are no state of these points: " + reason);
+  };
+  batch.run([&](GrainBatch& grains) {
+    try {
+      grains.set_state(span, points);
+    } catch (const io::InputError& fault) {
+      refuse(fault.sentence());
+    } catch (const std::runtime_error& fault) {
+      refuse(fault.what());
+    }
+  });
 }
 
 /// Name, unit and values of each field.
@@ -205,10 +217,7 @@ nb::tuple batch_of_case(const std::string& file, const std::vector<std::string>&
     host::PackingMix mix;
     engine::run_stoppable(
         [&] { mix = library::mix_of(input, n, [&](const std::string& line) { notes.push_back(line); }); });
-    std::vector<library::Grains> grains;
-    for (host::PackedRve& rve : mix.packings) grains.push_back({std::move(rve), input.soil});
-    batch = std::make_unique<Batch>(
-        std::make_unique<GrainBatch>(std::move(grains), mix.of_point, library::options_of(input), mirrored));
+    batch = std::make_unique<Batch>(library::make_batch(input, std::move(mix), mirrored));
   }
   return nb::make_tuple(nb::cast(batch.release(), nb::rv_policy::take_ownership), notes);
 }

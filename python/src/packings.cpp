@@ -29,16 +29,20 @@ std::vector<T> column(const nb::dict& dict, const char* name) {
   return {array.data(), array.data() + array.size()};
 }
 
-/// The packings of these seeds with the lines of the log that tell of them.
+/// The packings of these seeds, the lines of the log that tell of them, and those of them that say why a packing is
+/// left out.
 nb::tuple make_packings(const std::string& settings, const std::string& name, const std::vector<std::int64_t>& seeds,
                         bool stored) {
   std::vector<io::Packing> files;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, left_out;
   {
     const engine::Call call;
     const nb::gil_scoped_release free;
     const host::Case input = library::accepted(host::case_of_text(settings, name));
-    const auto note = [&](const std::string& line) { notes.push_back(line); };
+    const auto note = [&](const host::PackingLine& line) {
+      notes.push_back(line);
+      if (line.left_out) left_out.push_back(line);
+    };
     std::vector<host::PackedRve> rves;
     engine::run_stoppable([&] {
       rves = stored ? host::obtain_packings(input.soil, input.packing, seeds, note, host::Bias::left)
@@ -51,7 +55,7 @@ nb::tuple make_packings(const std::string& settings, const std::string& name, co
   }
   nb::list out;
   for (const io::Packing& file : files) out.append(dict_of(file));
-  return nb::make_tuple(out, notes);
+  return nb::make_tuple(out, notes, left_out);
 }
 
 /// The labels "soil.*" of a packing that is made with these settings.
@@ -100,8 +104,10 @@ io::Packing packing_of(const nb::dict& dict) {
 }
 
 void bind_packings(nb::module_& module) {
-  module.def("make_packings", &make_packings, nb::arg("settings"), nb::arg("name"), nb::arg("seeds"), nb::arg("stored"),
-             "Packings of a case of the kind pack as dictionaries, and the lines of its log.");
+  module.def(
+      "make_packings", &make_packings, nb::arg("settings"), nb::arg("name"), nb::arg("seeds"), nb::arg("stored"),
+      "Packings of a case of the kind pack as dictionaries, the lines of its log, and those of them that say why a "
+      "packing is left out.");
   module.def("soil_labels", &soil_labels, nb::arg("settings"), nb::arg("name"),
              "The labels soil.* of a packing that is made with these settings.");
   module.def(

@@ -33,7 +33,8 @@ report_dtype = np.dtype(
 #:
 #: - `converged`: the grains are at rest
 #: - `step_limit`: the grains still move; the stress is that of the last step
-#: - `open`: no contacts are left, and the stress is zero
+#: - `open`: no contacts are left, and the stress is zero. Where this comes unexpected, look whether the gradients are
+#:   F - I and count from the committed state.
 #: - `neighbour_overflow`: a failure: the cell is too narrow for its largest grains, or grains have too many neighbours
 #: - `overlap_limit`: a failure: grains overlap too much; take smaller increments
 #: - `not_finite`: a failure: a number grew beyond all bounds, or the cell was turned inside out

@@ -155,14 +155,16 @@ class RveBatch:
         """Stresses and tangents after displacement gradients.
 
         Args:
-            f_minus_i: (n, 2, 2) F - I, where F maps the committed configuration to the new one [-]
+            f_minus_i: (n, 2, 2) the displacement gradient H = F - I (F minus identity, and not F), where F maps the
+                committed configuration to the new one [-]
             tangent: False saves the time of the tangents. Which tangent it is, RveBatch(tangent=...) says.
 
         Returns:
             Answer. A point that has failed has NaN.
 
         Raises:
-            ValueError: wrong shape, or a gradient that is not finite
+            ValueError: wrong shape, a gradient that is not finite, or all gradients are within 0.1 of the identity
+                matrix, as F is
             TypeError: `tangent` is neither True nor False
             KeyboardInterrupt: after Ctrl-C; the committed state is as before, and the next evaluation is the first one
                 of the increment
@@ -210,7 +212,8 @@ class RveBatch:
         part of it.
 
         Raises:
-            ValueError: the bytes are no state of such points, which keep the state that they have
+            ValueError: the bytes are no state of such points, or a bit of them is wrong; the points keep the state that
+                they have
             TypeError: the state is no bytes
             IndexError: there is no such point
         """

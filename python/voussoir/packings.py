@@ -168,7 +168,7 @@ def make_packings(
     text = text_of("pack", settings, ("soil", "packing"), defaults)
     try:
         with told_by_argument(settings, {key: key.removeprefix("packing.") for key in defaults}):
-            made, notes = running().make_packings(text, name, wanted, folder is not None)
+            made, notes, left_out = running().make_packings(text, name, wanted, folder is not None)
     except NoEquilibrium as fault:
         if "packing.void_ratio" in flat(settings):
             fault.add_note(
@@ -180,7 +180,7 @@ def make_packings(
         _log.info(note)
     missing = len(wanted) - len(packings)
     if missing:
-        reasons = "; ".join(note for note in notes if note.endswith("left out") or "left out:" in note)
+        reasons = "; ".join(left_out)
         warnings.warn(f"{missing} of {len(wanted)} packings are missing: {reasons}", PackingWarning, stacklevel=2)
     return packings
 

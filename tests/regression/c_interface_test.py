@@ -31,7 +31,8 @@ def check_names():
     exported = {line.split()[-1] for line in lines}
     check(exported == declared(), f"the library exports {exported ^ declared()} besides or in place of the header's")
     module = (ROOT / "host/library/voussoir.f90").read_text(encoding="utf-8")
-    bound = set(re.findall(r"^ +function (voussoir_[a-z_]+)\(.*bind\(c\)", module, re.MULTILINE))
+    heads = "".join(re.findall(r"^ +(?:function|procedure).*bind\(c\).*$", module, re.MULTILINE))
+    bound = set(re.findall(r"\bvoussoir_[a-z_]+", heads))
     check(len(bound) > 10 and bound <= declared(), f"voussoir.f90 names {bound - declared()}")
 
 

@@ -68,8 +68,11 @@ static void save_and_restore(VoussoirRves* rves) {
 static void crush(VoussoirRves* rves) {
   const double gradients[8] = {0, 0, 0, 0, 0, 0, 0, -0.9};
   const double wrong[8] = {0, 0, 0, 0, 0, 0, 0, NAN};
+  const double not_minus_identity[8] = {1, 0, 0, 1, 1, 0.001, 0, 0.99};
   double stress[6], tangent[18];
   int32_t status[2];
+  check(voussoir_evaluate(rves, 2, not_minus_identity, stress, NULL, NULL) == voussoir_misuse, "F is not taken for H");
+  check(strstr(voussoir_last_error(), "F minus identity") != NULL, "and it is said");
   check(voussoir_evaluate(rves, 2, gradients, stress, tangent, status) == voussoir_no_equilibrium, "it is crushed");
   printf("crushed: %s\n", voussoir_last_error());
   check(status[0] == voussoir_converged && status[1] >= voussoir_neighbour_overflow, "the status tells which RVE");

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "host/case/accuracy.hpp"
+#include "io/input_error.hpp"
 #include "tests/host_support.hpp"
 
 namespace voussoir::host {
@@ -126,6 +128,46 @@ TEST_P(HeldState, ChangesNothingOfWhatFollows) {
     advance(*copied_, 1);
     EXPECT_EQ(pool_->state(), copied_->state()) << n;
   }
+}
+
+/// One wrong bit anywhere is seen, also within numbers that could be right.
+TEST_P(HeldState, IsRefusedWhereOneBitIsWrong) {
+  EngineCase engine;
+  engine.defer = GetParam();
+  RvePool pool(small_packing(), PoolOptions{engine}, 1);
+  const std::vector<std::byte> good = pool.state();
+  std::vector<std::byte> bytes = good;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    const auto flip = std::byte{1} << (bit % 8);
+    bytes[bit / 8] ^= flip;
+    ASSERT_THROW(pool.set_state(bytes), std::runtime_error) << "bit " << bit << " of " << 8 * bytes.size();
+    bytes[bit / 8] ^= flip;
+  }
+  EXPECT_EQ(pool.state(), good);
+}
+
+TEST_P(HeldState, OfAnEarlierVersionIsRefused) {
+  std::vector<std::byte> bytes = pool_->state();
+  bytes[0] = std::byte{record_version - 1};
+  try {
+    pool_->set_state(bytes);
+    FAIL() << "it was taken";
+  } catch (const io::InputError& fault) {
+    EXPECT_NE(std::string(fault.what()).find("another version of this program"), std::string::npos) << fault.what();
+  }
+}
+
+/// Records whose checksums are right and whose contacts are impossible: nothing of the RVEs before is taken over.
+TEST_P(HeldState, IsRefusedWhereAContactIsImpossible) {
+  const std::vector<std::byte> then = pool_->state();
+  advance(*pool_, 1);
+  const std::vector<std::byte> now = pool_->state();
+  std::vector<StateRecord> records = split_state(then, pool_->identity(), 3);
+  std::vector<std::byte> wrong(records[2].begin(), records[2].end());
+  std::fill(wrong.end() - wrong.size() / 2, wrong.end(), std::byte{0xff});
+  records[2] = wrong;
+  EXPECT_THROW(pool_->set_state(join_state(pool_->identity(), records)), std::runtime_error);
+  EXPECT_EQ(pool_->state(), now);
 }
 
 /// A state of another moment cannot be written over one that is held.

@@ -87,7 +87,11 @@ TEST(KeyReference, NearNamesAreThoseOfKeysAndOfTheirLastParts) {
   EXPECT_EQ(near_names("thicknes", known), (std::vector<std::string>{"soil.thickness", "calibrate.thickness"}));
   EXPECT_EQ(near_names("soil.thicknes", known), (std::vector<std::string>{"soil.thickness"}));
   EXPECT_EQ(near_names("tunel", known), (std::vector<std::string>{"tunnel"}));
+  EXPECT_EQ(near_names("thickness_of_discs", known), near_names("thickness", known));
+  EXPECT_EQ(near_names("soil.thick", known), (std::vector<std::string>{"soil.thickness"}));
   EXPECT_TRUE(near_names("weather", known).empty());
+  EXPECT_EQ(nearest_name({"modulus", "friction", "damping"}, "friction_angle"), "friction");
+  EXPECT_EQ(nearest_name({"friction_angles", "friction"}, "friction_angle"), "friction_angles");
   EXPECT_TRUE(near_names(std::string(1000, 'x'), {std::string(1000, 'x')}).empty());
   EXPECT_EQ(near_names("a", {"b", "c", "d", "e", "f", "g", "h"}).size(), 5U);
 }
