@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What a call of RveBatch.evaluate costs beside the engine: for several numbers of RVEs, the wall time of the call in
-Python, the part of it within RvePool::evaluate, which a C++ program would call, and the difference.
+Python, the part of it within RvePool::evaluate, which a C++ program would call, and the difference; and what it costs to
+keep a state and to take it back.
 
     PYTHONPATH=build/openmp/python python/benchmarks/call_overhead.py [--grains 300] [--calls 30]
 
@@ -17,6 +18,7 @@ import voussoir
 SIZES = (1, 16, 1024, 4096)
 STRAIN = 1e-3  # of the long calls
 REST = 0.0  # without a strain the grains are only looked at: the shortest call that there is
+STATE_SIZE = 100  # RVEs whose states are kept
 
 
 def measure(batch, strain, calls):
@@ -38,6 +40,19 @@ def measure(batch, strain, calls):
     return text(walls, 1e-3), text(besides, 1e-6)
 
 
+def measure_states(batch, calls):
+    """Least times of state() and set_state() for one RVE [µs], and the bytes of its state."""
+    keep, take = [], []
+    for _ in range(calls):
+        start = time.perf_counter()
+        state = batch.state()
+        middle = time.perf_counter()
+        batch.set_state(state)
+        keep.append(middle - start)
+        take.append(time.perf_counter() - middle)
+    return *(1e6 * min(times) / len(batch) for times in (keep, take)), len(state) // len(batch)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--grains", type=int, default=300)
@@ -54,6 +69,9 @@ def main():
             rest, rest_beside = measure(batch, REST, options.calls)
             wall, beside = measure(batch, STRAIN, max(3, options.calls // (3 if n < 1024 else 10)))
         print(f"| {n} | {rest} | {rest_beside} | {wall} | {beside} |", flush=True)
+    with voussoir.RveBatch(packing, STATE_SIZE) as batch:
+        keep, take, size = measure_states(batch, 10 * options.calls)
+    print(f"\nstate of an RVE, {size} bytes: state() {keep:.2g} µs, set_state() {take:.2g} µs")
 
 
 if __name__ == "__main__":
