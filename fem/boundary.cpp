@@ -33,14 +33,6 @@ Eigen::VectorXd integrate_edges(const Coordinates& coordinates, const std::vecto
 
 }  // namespace
 
-void constrain(Constraints& constraints, const std::vector<int>& nodes, int axis, double value) {
-  for (const int node : nodes) {
-    const auto [entry, is_new] = constraints.try_emplace(2 * node + axis, value);
-    if (!is_new && entry->second != value)
-      throw std::invalid_argument("boundary: node " + std::to_string(node) + " is given two displacements on one axis");
-  }
-}
-
 Point affine_displacement(const Point& x, const Point& centre, double rotation, double area) {
   if (!(area > -1)) throw std::invalid_argument("boundary: the area must not vanish");
   const double scale = std::sqrt(1 + area);

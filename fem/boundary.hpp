@@ -14,10 +14,6 @@ namespace voussoir::fem {
 /// Prescribed displacement increments by degree of freedom (2 * node + axis) [m].
 using Constraints = std::map<int, double>;
 
-/// Prescribes `value` on one axis (0: x, 1: y) of the nodes. Throws std::invalid_argument where another value is
-/// prescribed already.
-void constrain(Constraints& constraints, const std::vector<int>& nodes, int axis, double value);
-
 /// Displacement [m] of the affine motion about `centre` that turns by `rotation` [rad, counter-clockwise] and changes
 /// areas by the share `area` > -1: u = (s R - 1)(x - centre) with s = sqrt(1 + area) and x the original coordinates.
 /// With area = -V_l and the invert as centre it is the eccentric volume loss of eqs. (17)-(19). Increments are

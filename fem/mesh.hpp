@@ -6,6 +6,7 @@
 /// is u_x, 2*node + 1 is u_y.
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
@@ -54,6 +55,10 @@ struct Mesh {
   /// answers to any name.
   [[nodiscard]] bool in_region(int element, const std::string& name) const {
     return region_names.empty() || region_names[region[element]] == name;
+  }
+  /// True where the element is of one of the regions with these names.
+  [[nodiscard]] bool in_region(int element, const std::vector<std::string>& names) const {
+    return region_names.empty() || std::find(names.begin(), names.end(), region_names[region[element]]) != names.end();
   }
 
   /// The named boundary; throws std::out_of_range, whose message lists the names that exist.

@@ -48,6 +48,21 @@ void turn_to_start(const Coordinates& x, std::vector<Edge>& loop) {
 
 }  // namespace
 
+std::vector<Edge> outline_of(const Mesh& mesh, const std::vector<char>& dug_out) {
+  std::map<int, Edge> once;  // by the midside node, which belongs to one edge of one or two elements
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    if (!dug_out.empty() && dug_out[e] != 0) continue;
+    const ElementNodes& nodes = mesh.elements[e];
+    for (int k = 0; k < 4; ++k) {
+      const auto [found, is_new] = once.try_emplace(nodes[4 + k], Edge{nodes[k], nodes[4 + k], nodes[(k + 1) % 4]});
+      if (!is_new) once.erase(found);
+    }
+  }
+  std::vector<Edge> edges;
+  for (const auto& [mid, edge] : once) edges.push_back(edge);
+  return edges;
+}
+
 std::vector<std::vector<Edge>> outline_loops(const Coordinates& coordinates, const std::vector<Edge>& outer) {
   EdgesByCorner by_start;
   for (std::size_t k = 0; k < outer.size(); ++k) by_start.emplace(outer[k][0], k);

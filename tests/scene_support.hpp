@@ -96,7 +96,7 @@ inline host::Scene scene_on(fem::Mesh mesh, double unit_weight, double pressure 
                                                                          : scene.mesh.region_names;
   for (const std::string& name : names) {
     host::RegionCase region;
-    region.name = name;
+    region.names = {name};
     region.unit_weight = unit_weight;
     scene.input.regions.push_back(region);
   }

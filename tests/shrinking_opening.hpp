@@ -1,7 +1,7 @@
 #pragma once
 /// The opening of a half tunnel that loses volume about its invert, eqs. (17)-(19).
 
-#include "fem/boundary.hpp"
+#include "tests/constrain.hpp"
 
 namespace voussoir::fem {
 

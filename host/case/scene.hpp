@@ -57,9 +57,9 @@ struct PlaceCase {
   std::array<double, 2> at{};
 };
 
-/// [[region]] A named set of elements and its material.
+/// [[region]] Named sets of elements and their material. Several names are several regions with the same settings.
 struct RegionCase {
-  std::string name;
+  std::vector<std::string> names = {};
   double unit_weight = 20.0e3;         ///< [N/m3]
   std::optional<ElasticCase> elastic;  ///< with a value: no grains here
   SoilCase soil;
@@ -95,15 +95,16 @@ struct PressCase {
   std::array<double, 2> traction{};  ///< [Pa]
 };
 
-/// [[stage.release]] A boundary that is no longer held: the forces that held it are taken off by `share`.
+/// [[stage.release]] A boundary or a point that is no longer held: the forces that held it are taken off by `share`.
 struct ReleaseCase {
-  std::string boundary;
+  std::string boundary;  ///< empty: `point` counts
+  PlaceCase point = {};
   double share = 1.0;  ///< [-]
 };
 
-/// [[stage.excavate]] A region that is dug out: the forces that it put on the rest are taken off.
+/// [[stage.excavate]] Regions that are dug out: the forces that they put on the rest are taken off.
 struct ExcavateCase {
-  std::string region;
+  std::vector<std::string> regions = {};
 };
 
 /// [[stage]] What changes while the load parameter goes from 0 to `end`.
@@ -128,13 +129,13 @@ struct StageCase {
   }
 };
 
-/// [[record]] One of: a point, a line, the means of a region.
+/// [[record]] One of: a point, a line, the means over one or several regions.
 struct RecordCase {
   std::string name;
   std::optional<PlaceCase> point;
   std::optional<std::array<PlaceCase, 2>> line;
-  int points = 50;     ///< of a line
-  std::string region;  ///< empty: none
+  int points = 50;                        ///< of a line
+  std::vector<std::string> regions = {};  ///< empty: none
 };
 
 struct SceneCase {

@@ -19,7 +19,7 @@ PlaceCase place_case(const io::Place& place) { return {.name = place.name, .at =
 SupportCase read_support(const io::Table& entry) {
   SupportCase support;
   support.boundaries = entry.texts({"boundary", "Boundary that is held, or an array of boundaries, unless a point is."},
-                                   std::vector<std::string>{}, column_name_rule, {.or_one = true});
+                                   std::vector<std::string>{}, column_name_rule, {.different = true, .or_one = true});
   const auto point = read_place(
       entry, {"point",
               "Point that is held: its name in the mesh, or coordinates, where a node of the mesh as drawn must lie."});
@@ -45,13 +45,12 @@ RecordCase read_record(const io::Table& entry) {
   if (!line.empty()) record.line = {place_case(line[0]), place_case(line[1])};
   const auto points = entry.optional_integer({"points", "Number of points of a line, its ends among them."},
                                              {.at_least = 2, .at_most = 10'000, .default_words = "50"});
-  record.region = entry
-                      .optional_text({"region",
-                                      "Region whose means become columns: of p, q, q/p, volumetric strain and void "
-                                      "ratio over its area."},
-                                     column_name_rule)
-                      .value_or("");
-  if ((record.point ? 1 : 0) + (record.line ? 1 : 0) + (record.region.empty() ? 0 : 1) != 1)
+  record.regions = entry.texts({"region",
+                                "Region whose means become columns: of p, q, q/p, volumetric strain and void ratio "
+                                "over its area; or an array of "
+                                "regions, whose areas are taken together."},
+                               std::vector<std::string>{}, column_name_rule, {.different = true, .or_one = true});
+  if ((record.point ? 1 : 0) + (record.line ? 1 : 0) + (record.regions.empty() ? 0 : 1) != 1)
     throw entry.error("", "must have one of point, line and region");
   if (points && !record.line) throw entry.error("points", "is given without line");
   record.points = static_cast<int>(points.value_or(record.points));

@@ -33,7 +33,9 @@ class NameCheck {
   void boundary(const std::string& key, const std::string& name) const {
     check(key, "boundary", name, mesh_.boundaries);
   }
-  void region(const std::string& key, const std::string& name) const { check(key, "region", name, mesh_.regions); }
+  void regions(const std::string& key, const std::vector<std::string>& names) const {
+    for (const std::string& name : names) check(key, "region", name, mesh_.regions);
+  }
   void point(const std::string& key, const PlaceCase& place) const {
     if (!place.name.empty()) check(key, "point", place.name, mesh_.points);
   }
@@ -59,20 +61,21 @@ void check_stage(const NameCheck& check, const StageCase& stage, const std::stri
   const auto key = [&](const char* change, std::size_t k, const char* name) {
     return fmt::format("{}.{}[{}].{}", table, change, k, name);
   };
-  for (std::size_t k = 0; k < stage.moves.size(); ++k) {
-    const MoveCase& move = stage.moves[k];
-    if (move.boundary.empty())
-      check.point(key("move", k, "point"), move.point);
+  const auto check_target = [&](const char* change, std::size_t k, const auto& of) {
+    if (of.boundary.empty())
+      check.point(key(change, k, "point"), of.point);
     else
-      check.boundary(key("move", k, "boundary"), move.boundary);
-    check.point(key("move", k, "about"), move.about);
+      check.boundary(key(change, k, "boundary"), of.boundary);
+  };
+  for (std::size_t k = 0; k < stage.moves.size(); ++k) {
+    check_target("move", k, stage.moves[k]);
+    check.point(key("move", k, "about"), stage.moves[k].about);
   }
   for (std::size_t k = 0; k < stage.presses.size(); ++k)
     check.boundary(key("press", k, "boundary"), stage.presses[k].boundary);
-  for (std::size_t k = 0; k < stage.releases.size(); ++k)
-    check.boundary(key("release", k, "boundary"), stage.releases[k].boundary);
+  for (std::size_t k = 0; k < stage.releases.size(); ++k) check_target("release", k, stage.releases[k]);
   for (std::size_t k = 0; k < stage.excavations.size(); ++k)
-    check.region(key("excavate", k, "region"), stage.excavations[k].region);
+    check.regions(key("excavate", k, "region"), stage.excavations[k].regions);
 }
 
 void check_record(const NameCheck& check, const RecordCase& record, const std::string& table) {
@@ -80,14 +83,14 @@ void check_record(const NameCheck& check, const RecordCase& record, const std::s
   if (record.line) {
     for (const PlaceCase& end : *record.line) check.point(table + ".line", end);
   }
-  if (!record.region.empty()) check.region(table + ".region", record.region);
+  check.regions(table + ".region", record.regions);
 }
 
 void check_regions(const NameCheck& check, const SceneCase& scene, const MeshNames& mesh) {
   std::vector<std::string> given;
   for (std::size_t k = 0; k < scene.regions.size(); ++k) {
-    check.region(fmt::format("region[{}].name", k), scene.regions[k].name);
-    given.push_back(scene.regions[k].name);
+    check.regions(fmt::format("region[{}].name", k), scene.regions[k].names);
+    add_new(given, scene.regions[k].names);
   }
   for (const std::string& name : mesh.regions) {
     if (!contains(given, name))

@@ -52,7 +52,10 @@ void read_grains(const io::Table& entry, const io::Table& root, const Case& inpu
 
 RegionCase read_region(const io::Table& entry, const io::Table& root, const Case& input) {
   RegionCase region;
-  region.name = entry.text({"name", "Name of the region in the mesh."}, {}, column_name_rule);
+  region.names = entry.texts(
+      {"name",
+       "Name of the region in the mesh, or an array of the names of regions that have the same weight and material."},
+      {}, column_name_rule, {.least = 1, .different = true, .or_one = true});
   read_quantity(
       entry, {"unit_weight", "Unit weight of the region, which the load factor of stages with `gravity` multiplies."},
       io::Dimension::unit_weight, region.unit_weight, {.at_least = "0 N/m3", .at_most = "1 MN/m3"});
@@ -74,8 +77,10 @@ std::vector<RegionCase> read_regions(const io::Table& root, const Case& input) {
   std::vector<std::string> names;
   for (const io::Table& entry : root.tables(tables::region)) {
     RegionCase region = read_region(entry, root, input);
-    check_new_name(entry, region.name, names);
-    names.push_back(region.name);
+    for (const std::string& name : region.names) {
+      check_new_name(entry, name, names);
+      names.push_back(name);
+    }
     regions.push_back(std::move(region));
   }
   return regions;

@@ -1,6 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,21 +16,22 @@ using io::Dimension;
 
 namespace {
 
-/// Reads `boundary` or `point`, of which a table has one.
-void read_target(const io::Table& entry, MoveCase& move) {
-  move.boundary = entry.optional_text({"boundary", "Boundary that is moved, unless a point is."}, column_name_rule)
-                      .value_or("");
-  const auto point = read_place(
-      entry,
-      {"point",
-       "Point that is moved: its name in the mesh, or coordinates, where a node of the mesh as drawn must lie."});
-  if (move.boundary.empty() == !point) throw entry.error(point ? "point" : "", "must have one of boundary and point");
-  if (point) move.point = *point;
+/// Reads the boundary or the point that a table changes, of which it has one.
+template <class Change>
+void read_target(const io::Table& entry, const io::Key& boundary_key, const io::Key& point_key, Change& change) {
+  change.boundary = entry.optional_text(boundary_key, column_name_rule).value_or("");
+  const auto point = read_place(entry, point_key);
+  if (change.boundary.empty() == !point) throw entry.error(point ? "point" : "", "must have one of boundary and point");
+  if (point) change.point = *point;
 }
 
 MoveCase read_move(const io::Table& entry) {
   MoveCase move;
-  read_target(entry, move);
+  read_target(
+      entry, {"boundary", "Boundary that is moved, unless a point is."},
+      {"point",
+       "Point that is moved: its name in the mesh, or coordinates, where a node of the mesh as drawn must lie."},
+      move);
   move.x = entry.optional_quantity({"x",
                                     "Displacement along x at the stage's end, counted from its beginning; with 0 the "
                                     "boundary is held where it is."},
@@ -90,11 +92,15 @@ PressCase read_press(const io::Table& entry) {
 
 ReleaseCase read_release(const io::Table& entry) {
   ReleaseCase release;
-  release.boundary = entry.text({"boundary", "Boundary that is released."}, {}, column_name_rule);
+  read_target(entry, {"boundary", "Boundary that is released, unless a point is."},
+              {"point",
+               "Point that is released, which a support or a stage has held as a point: its name in the mesh, or "
+               "coordinates, where a node of the mesh as drawn must lie."},
+              release);
   read_quantity(entry,
                 {"share",
-                 "Share of the forces that held the boundary at the stage's beginning which is taken off; the rest "
-                 "stays as a load."},
+                 "Share of the forces that held the boundary or the point at the stage's beginning which is taken "
+                 "off; the rest stays as a load."},
                 Dimension::none, release.share, {.at_least = "1e-6", .at_most = "1"});
   return release;
 }
@@ -115,11 +121,13 @@ void read_changes(const io::Table& entry, StageCase& stage) {
   }
   for (const io::Table& release : entry.tables(tables::stage_release)) {
     stage.releases.push_back(read_release(release));
-    check_once(release, "boundary", stage.releases.back().boundary, released);
+    if (!stage.releases.back().boundary.empty())
+      check_once(release, "boundary", stage.releases.back().boundary, released);
   }
   for (const io::Table& excavate : entry.tables(tables::stage_excavate)) {
-    stage.excavations.push_back({excavate.text({"region", "Region that is dug out."}, {}, column_name_rule)});
-    check_once(excavate, "region", stage.excavations.back().region, dug);
+    stage.excavations.push_back({excavate.texts({"region", "Region that is dug out, or an array of regions."}, {},
+                                                column_name_rule, {.least = 1, .different = true, .or_one = true})});
+    for (const std::string& name : stage.excavations.back().regions) check_once(excavate, "region", name, dug);
   }
 }
 
@@ -193,15 +201,14 @@ StageCase read_stage(const io::Table& entry, Weights& weights) {
   return stage;
 }
 
-/// Refuses that a stage digs out what an earlier one has taken away.
-void check_dug(const io::Table& entry, const StageCase& stage, const std::vector<StageCase>& earlier) {
-  for (const StageCase& before : earlier) {
-    for (const ExcavateCase& gone : before.excavations) {
-      for (std::size_t k = 0; k < stage.excavations.size(); ++k) {
-        if (stage.excavations[k].region == gone.region)
-          throw entry.known_tables("excavate")[k].error(
-              "region", fmt::format("names '{}', which stage '{}' has dug out", gone.region, before.name));
-      }
+/// Refuses that a stage digs out what an earlier one has taken away. `gone` has the stage of each region.
+void check_dug(const io::Table& entry, const StageCase& stage, std::map<std::string, std::string>& gone) {
+  for (std::size_t k = 0; k < stage.excavations.size(); ++k) {
+    for (const std::string& name : stage.excavations[k].regions) {
+      const auto [before, is_new] = gone.try_emplace(name, stage.name);
+      if (!is_new)
+        throw entry.known_tables("excavate")[k].error(
+            "region", fmt::format("names '{}', which stage '{}' has dug out", name, before->second));
     }
   }
 }
@@ -211,11 +218,12 @@ void check_dug(const io::Table& entry, const StageCase& stage, const std::vector
 std::vector<StageCase> read_stages(const io::Table& root) {
   std::vector<StageCase> stages;
   std::vector<std::string> names;
+  std::map<std::string, std::string> gone;
   Weights weights;
   for (const io::Table& entry : root.tables(tables::stage)) {
     StageCase stage = read_stage(entry, weights);
     check_new_name(entry, stage.name, names);
-    check_dug(entry, stage, stages);
+    check_dug(entry, stage, gone);
     names.push_back(stage.name);
     stages.push_back(std::move(stage));
   }

@@ -12,8 +12,6 @@
 #include <string_view>
 
 #include "host/ensemble/trough_fit.hpp"
-#include "host/kinds/tunnel_scene.hpp"
-#include "host/scene/scene_of.hpp"
 #include "io/increment_file.hpp"
 
 namespace voussoir::host {
@@ -117,13 +115,11 @@ bool is_at_end(const Case& input, const std::vector<io::IncrementInfo>& incremen
     case CaseKind::tunnel:
       return last.stage == "volume_loss" && last.stage_index == input.volume_loss.increments;
     case CaseKind::column:
-      return last.stage_index == static_cast<int>(gravity_targets(input.ground, input.gravity).size());
+      return last.load_parameter == 1;
     case CaseKind::biaxial_bvp:
       return last.stage_index == input.biaxial_bvp.increments();
-    case CaseKind::scene: {
-      const StagePlan plan = planned_scene(input).plans.back();
-      return last.stage == plan.input.name && last.stage_index == static_cast<int>(plan.targets.size());
-    }
+    case CaseKind::scene:
+      return last.stage == input.scene.stages.back().name && last.load_parameter == input.scene.stages.back().end;
     default:
       return false;
   }

@@ -10,6 +10,7 @@ namespace voussoir::host {
 /// A region of a scene.
 struct RegionSize {
   std::string name;
+  std::size_t table = 0;   ///< number of its [[region]]
   double unit_weight = 0;  ///< [N/m3]
   std::size_t points = 0;  ///< Gauss points
   int variety = 0;         ///< packings at its points; 0 without grains

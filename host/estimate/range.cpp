@@ -166,7 +166,7 @@ Foretold foretell(const Case& input, double height) {
   double most = -1;
   for (const SoilRecipe& recipe : recipes_of(input)) {
     if (recipe.packing->has_state()) continue;  // its pressure is known when it is read
-    const std::string said = recipe.name.empty() ? "" : fmt::format("region {}: ", recipe.name);
+    const std::string said = recipe.regions.empty() ? "" : recipe.place() + ": ";
     auto [one, overlap] = foretell_grains(input, *recipe.soil, largest_load(input, height), grains_of(input, recipe),
                                           said);
     out.warnings.insert(out.warnings.end(), one.warnings.begin(), one.warnings.end());

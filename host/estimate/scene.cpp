@@ -18,11 +18,15 @@ namespace {
 /// The regions of the case with their points; a mesh without names is one region.
 std::vector<RegionSize> regions_of(const Case& input, const fem::Mesh& mesh) {
   std::vector<RegionSize> all;
-  for (const RegionCase& region : input.scene.regions) {
-    RegionSize& size = all.emplace_back(RegionSize{.name = region.name, .unit_weight = region.unit_weight});
-    if (input.material != MaterialKind::grains || region.elastic) continue;
-    size.variety = region.packing.variety;
-    size.grains = region.packing.grains;
+  for (std::size_t k = 0; k < input.scene.regions.size(); ++k) {
+    const RegionCase& region = input.scene.regions[k];
+    const bool has_grains = input.material == MaterialKind::grains && !region.elastic;
+    for (const std::string& name : region.names)
+      all.push_back({.name = name,
+                     .table = k,
+                     .unit_weight = region.unit_weight,
+                     .variety = has_grains ? region.packing.variety : 0,
+                     .grains = has_grains ? region.packing.grains : 0});
   }
   for (int e = 0; e < mesh.n_elements(); ++e) {
     for (RegionSize& size : all) {
@@ -100,11 +104,11 @@ CaseSize scene_size(const Case& input) {
     const std::size_t steps = plan.targets.size();
     const StageWork work = work_of(plan.input, input, mesh, steps);
     size.increments += steps;
-    for (std::size_t k = 0; k < size.regions.size(); ++k) {
-      const RegionSize& region = size.regions[k];
+    for (const RegionSize& region : size.regions) {
       if (region.variety == 0) continue;
       size.particle_steps += static_cast<double>(region.points) * region.grains * work.evaluations *
-                             steps_per_evaluation(input.scene.regions[k].soil, input.engine, work.strain, pressure);
+                             steps_per_evaluation(input.scene.regions[region.table].soil, input.engine, work.strain,
+                                                  pressure);
     }
   }
   return size;

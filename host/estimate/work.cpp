@@ -9,8 +9,8 @@
 #include "host/estimate/scene.hpp"
 #include "host/estimate/storage.hpp"
 #include "host/kinds/tunnel_mesh.hpp"
-#include "host/kinds/tunnel_scene.hpp"
 #include "host/packing/packings.hpp"
+#include "host/scene/scene.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -81,10 +81,15 @@ CaseSize search_size(const CalibrateCase& search, const BiaxialCase& test, const
   return size;
 }
 
+/// Increments of the column, and of a tunnel's gravity.
+std::size_t gravity_increments(const GroundCase& ground, const GravityCase& gravity) {
+  return gravity_targets(gravity, ground.surcharge / (ground.unit_weight * ground.height), 1.0).size();
+}
+
 CaseSize ground_size(const Case& input) {
   CaseSize size;
   const bool with_tunnel = input.kind == CaseKind::tunnel;
-  const std::size_t gravity = gravity_targets(input.ground, input.gravity).size();
+  const std::size_t gravity = gravity_increments(input.ground, input.gravity);
   const auto loss = with_tunnel ? static_cast<std::size_t>(input.volume_loss.increments) : std::size_t{0};
   size.column_points = 4 * static_cast<std::size_t>(input.column.elements);
   size.points = with_tunnel ? static_cast<std::size_t>(tunnel_mesh(input.ground).n_points()) : size.column_points;

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "fem/load_stepper.hpp"
-
 namespace voussoir::host {
 namespace {
 
@@ -45,10 +43,6 @@ Scene tunnel_scene(const Case& input, fem::Mesh mesh) {
   scene.input.stages = {gravity_stage(), volume_loss_stage(input.volume_loss)};
   scene.dead_pressure = true;
   return scene;
-}
-
-std::vector<double> gravity_targets(const GroundCase& soil, const GravityCase& gravity) {
-  return fem::geometric_targets(soil.surcharge / (soil.unit_weight * soil.height), gravity.ratio, gravity.uniform_step);
 }
 
 }  // namespace voussoir::host

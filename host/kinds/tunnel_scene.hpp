@@ -10,7 +10,4 @@ namespace voussoir::host {
 /// invert, and V_l is the load parameter.
 [[nodiscard]] Scene tunnel_scene(const Case& input, fem::Mesh mesh);
 
-/// Load factors of the increments of column and gravity.
-[[nodiscard]] std::vector<double> gravity_targets(const GroundCase& soil, const GravityCase& gravity);
-
 }  // namespace voussoir::host

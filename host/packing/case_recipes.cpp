@@ -1,10 +1,16 @@
 #include "host/packing/case_recipes.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
 
 #include <cstddef>
 
 namespace voussoir::host {
+
+std::string SoilRecipe::place() const {
+  if (regions.empty()) return "";
+  return fmt::format("region{} {}", regions.size() == 1 ? "" : "s", fmt::join(regions, ", "));
+}
 
 std::vector<SoilRecipe> recipes_of(const Case& input) {
   std::vector<SoilRecipe> all;
@@ -12,7 +18,7 @@ std::vector<SoilRecipe> recipes_of(const Case& input) {
   if (input.kind != CaseKind::scene) return {{&input.soil, &input.packing, ""}};
   for (std::size_t k = 0; k < input.scene.regions.size(); ++k) {
     const RegionCase& region = input.scene.regions[k];
-    if (!region.elastic) all.push_back({&region.soil, &region.packing, fmt::format("region[{}].", k), region.name});
+    if (!region.elastic) all.push_back({&region.soil, &region.packing, fmt::format("region[{}].", k), region.names});
   }
   return all;
 }

@@ -12,8 +12,11 @@ namespace voussoir::host {
 struct SoilRecipe {
   const SoilCase* soil;
   const PackingCase* packing;
-  std::string table;      ///< key of the table that holds [soil] and [packing]: "" or "region[1]."
-  std::string name = {};  ///< of the region; empty: of the whole case
+  std::string table;                      ///< key of the table that holds [soil] and [packing]: "" or "region[1]."
+  std::vector<std::string> regions = {};  ///< names of the regions that take it; empty: the whole case
+
+  /// "region bank" or "regions bank, fill"; empty: the whole case.
+  [[nodiscard]] std::string place() const;
 };
 
 /// The recipes of a case: the one of its root, or in a scene that of each region with grains, and none where the

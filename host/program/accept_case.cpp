@@ -54,23 +54,25 @@ void check_packings(const Case& input) {
   }
 }
 
-/// The points of a recipe's region, or of the whole mesh.
-std::size_t points_of(const SoilRecipe& recipe, const CaseSize& size) {
-  for (const RegionSize& region : size.regions)
-    if (region.name == recipe.name) return region.points;
-  return size.points;
+/// Refuses more packings than a region, or the mesh, has points.
+void refuse_idle_packings(const Case& input, const SoilRecipe& recipe, const std::string& place, std::size_t points) {
+  const auto variety = static_cast<std::size_t>(recipe.packing->variety);
+  if (variety <= points) return;
+  const std::string key = recipe.table + "packing.variety";
+  throw io::InputError(
+      place_of(input, key), key,
+      fmt::format("asks for {} packings, but the {} has only {} points to hold them", variety, place, points));
 }
 
 /// Refuses more packings than there are points to hold them.
 void refuse_idle_packings(const Case& input, const CaseSize& size) {
   if (size.points == 0) return;
   for (const SoilRecipe& recipe : recipes_of(input)) {
-    const auto variety = static_cast<std::size_t>(recipe.packing->variety), points = points_of(recipe, size);
-    if (variety <= points) continue;
-    const std::string key = recipe.table + "packing.variety";
-    throw io::InputError(place_of(input, key), key,
-                         fmt::format("asks for {} packings, but the {} has only {} points to hold them", variety,
-                                     recipe.name.empty() ? "mesh" : "region " + recipe.name, points));
+    if (recipe.regions.empty()) refuse_idle_packings(input, recipe, "mesh", size.points);
+    for (const RegionSize& region : size.regions) {
+      if (std::find(recipe.regions.begin(), recipe.regions.end(), region.name) != recipe.regions.end())
+        refuse_idle_packings(input, recipe, "region " + region.name, region.points);
+    }
   }
 }
 
@@ -105,7 +107,7 @@ void add_remarks(AcceptedCase& accepted) {
   for (const SoilRecipe& recipe : recipes_of(accepted.input)) {
     if (!recipe.packing->files.empty()) continue;
     const std::string missing = missing_coarse_grains(*recipe.soil, recipe.packing->grains);
-    if (!missing.empty()) remarks.push_back(recipe.name.empty() ? missing : "region " + recipe.name + ": " + missing);
+    if (!missing.empty()) remarks.push_back(recipe.regions.empty() ? missing : recipe.place() + ": " + missing);
   }
   if (const std::string lanes = lanes_warning(accepted.size); !lanes.empty()) remarks.push_back(lanes);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fem/boundary.hpp"
+#include "fem/mesh_outline.hpp"
 
 namespace voussoir::host {
 namespace {
@@ -67,6 +68,22 @@ std::vector<fem::Edge> edges_carried(const StagePlan& plan, const fem::Coordinat
   return edges;
 }
 
+/// The outer edges along a boundary, or at a point.
+std::vector<fem::Edge> edges_at(const fem::Mesh& mesh, const Target& target, const std::vector<fem::Edge>& outline) {
+  std::set<int> along;
+  if (!target.boundary.empty()) {
+    const std::vector<int>& nodes = mesh.node_set(target.boundary);
+    along.insert(nodes.begin(), nodes.end());
+  }
+  std::vector<fem::Edge> edges;
+  for (const fem::Edge& edge : outline) {
+    const bool is_at = target.boundary.empty() ? std::find(edge.begin(), edge.end(), target.node) != edge.end()
+                                               : along.contains(edge[1]);
+    if (is_at) edges.push_back(edge);
+  }
+  return edges;
+}
+
 /// Its nodes at elements that are left.
 std::vector<int> nodes_left(const StagePlan& plan, std::vector<int> nodes) {
   const std::set<int> idle(plan.idle_nodes.begin(), plan.idle_nodes.end());
@@ -95,21 +112,24 @@ WatchedBoundaries watched(const std::vector<StagePlan>& plans) {
   return boundaries;
 }
 
-std::map<std::string, int> tensile_nodes(const StagePlan& plan, const Eigen::VectorXd& reactions,
+std::map<std::string, int> tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan, const Eigen::VectorXd& reactions,
                                          const fem::Coordinates& coordinates) {
-  std::map<std::string, std::map<int, fem::Point>> owned;  // boundary -> node -> its reaction
+  std::map<Target, std::map<int, fem::Point>> owned;  // node -> its reaction
+  std::map<Target, std::string> names;
   for (const auto& [dof, owner] : plan.owners) {
     const Holder& holder = plan.holders[owner];
-    if (holder.is_boundary)
-      owned[holder.name].try_emplace(dof / 2, fem::Point::Zero()).first->second[dof % 2] = reactions[dof];
+    const Target target = holder.target();
+    owned[target].try_emplace(dof / 2, fem::Point::Zero()).first->second[dof % 2] = reactions[dof];
+    names.try_emplace(target, name_of(mesh, holder));
   }
   const double floor = 1e-6 * reactions.cwiseAbs().maxCoeff();
+  const std::vector<fem::Edge> outline = fem::outline_of(mesh, plan.dug_out);
   std::map<std::string, int> found;
-  for (const auto& [name, nodes] : owned) {
-    const Eigen::VectorXd inwards = fem::pressure_force(coordinates, edges_left(plan, name), 1.0);  // integral of -N
+  for (const auto& [target, nodes] : owned) {
+    const Eigen::VectorXd inwards = fem::pressure_force(coordinates, edges_at(mesh, target, outline), 1.0);  // of -N
     for (const auto& [node, reaction] : nodes) {
       const fem::Point inward = inwards.segment<2>(2 * node);
-      if (inward.norm() > 0 && reaction.dot(inward) < -floor * inward.norm()) ++found[name];
+      if (inward.norm() > 0 && reaction.dot(inward) < -floor * inward.norm()) ++found[names.at(target)];
     }
   }
   return found;
@@ -135,7 +155,7 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
     if (area != boundaries.with_area.end()) to["area_" + name] = {lost_area(ground, name, area->second), "-"};
   }
   int pulled = 0;
-  for (const auto& [name, count] : tensile_nodes(plan, reactions, coordinates)) pulled += count;
+  for (const auto& [name, count] : tensile_nodes(ground.mesh, plan, reactions, coordinates)) pulled += count;
   to["tensile_nodes"] = {static_cast<double>(pulled), "-"};
 }
 

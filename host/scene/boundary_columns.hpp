@@ -25,7 +25,7 @@ struct WatchedBoundaries {
 ///   displacement_NAME_x mean displacement of its nodes [m]
 ///   traction_NAME_x     the reaction over the width of the nodes that it owns [Pa]; not for curves inside the ground
 ///   area_NAME           area that the opening has lost over its first area [-]
-/// and tensile_nodes, the nodes of held boundaries at which the support pulls the ground outwards. `reactions` as
+/// and tensile_nodes, the nodes at which what holds them pulls the ground outwards. `reactions` as
 /// fem::Increment::reactions [N/m], `coordinates` those on which they were integrated [m].
 void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& plan, const Ground& ground,
                           const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates, io::Quantities& to);
@@ -38,8 +38,10 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
 [[nodiscard]] double lost_area(const Ground& ground, const std::string& boundary,
                                const fem::Point& about = fem::Point::Zero());
 
-/// Nodes at which the support of a boundary pulls the ground outwards, by the boundaries' names.
-[[nodiscard]] std::map<std::string, int> tensile_nodes(const StagePlan& plan, const Eigen::VectorXd& reactions,
+/// Nodes at which a held boundary, curve or point pulls the ground outwards, by the names of these. Where the ground is
+/// on both sides, it has no outward normal, and nothing is counted; that changes when one side is dug out.
+[[nodiscard]] std::map<std::string, int> tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan,
+                                                       const Eigen::VectorXd& reactions,
                                                        const fem::Coordinates& coordinates);
 
 }  // namespace voussoir::host

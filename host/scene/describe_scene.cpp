@@ -58,23 +58,34 @@ std::string boundaries_line(const fem::Mesh& mesh) {
   return fmt::format("boundaries: {}", fmt::join(parts, ", "));
 }
 
+struct Extent {
+  double area = 0;  ///< [m2]
+  int elements = 0;
+};
+
+Extent extent_of(const fem::Mesh& mesh, const fem::GaussPoints& points, const std::string& region) {
+  Extent extent;
+  for (int e = 0; e < mesh.n_elements(); ++e) {
+    if (!mesh.in_region(e, region)) continue;
+    ++extent.elements;
+    for (int p = 4 * e; p < 4 * e + 4; ++p) extent.area += points.volumes[p];
+  }
+  return extent;
+}
+
 std::vector<std::string> region_lines(const Scene& scene) {
   const fem::GaussPoints points = fem::gauss_points(scene.mesh, scene.mesh.coordinates);
   std::vector<std::string> lines;
   for (const RegionCase& region : scene.input.regions) {
-    double area = 0;
-    int elements = 0;
-    for (int e = 0; e < scene.mesh.n_elements(); ++e) {
-      if (!scene.mesh.in_region(e, region.name)) continue;
-      ++elements;
-      for (int p = 4 * e; p < 4 * e + 4; ++p) area += points.volumes[p];
-    }
     const std::string material = region.elastic
                                      ? fmt::format("linear elastic, {:.4g} MPa", region.elastic->modulus * 1e-6)
                                      : fmt::format("grains, {} packing{} of {} grains", region.packing.variety,
                                                    region.packing.variety == 1 ? "" : "s", region.packing.grains);
-    lines.push_back(fmt::format("region {}: {}; {:.4g} m2, {:.4g} kN/m, {} points", region.name, material, area,
-                                area * region.unit_weight * 1e-3, 4 * elements));
+    for (const std::string& name : region.names) {
+      const auto [area, elements] = extent_of(scene.mesh, points, name);
+      lines.push_back(fmt::format("region {}: {}; {:.4g} m2, {:.4g} kN/m, {} points", name, material, area,
+                                  area * region.unit_weight * 1e-3, 4 * elements));
+    }
   }
   return lines;
 }
@@ -99,13 +110,6 @@ std::string pressure_line(const PlannedScene& planned) {
   return line + fmt::format(": as much as {:.3g} m of ground, {:.2g} % of the height", depth, 100 * depth / height);
 }
 
-/// A boundary or a named point by its name, another point by its place.
-std::string name_of(const Scene& scene, const Holder& holder) {
-  if (!holder.name.empty()) return holder.name;
-  const fem::Point x = scene.mesh.coordinates.col(holder.nodes.front());
-  return fmt::format("the point ({:.4g}, {:.4g}) m", x.x(), x.y());
-}
-
 std::string motion_of(const Scene& scene, const Holder& holder, double end) {
   const MoveCase& move = holder.move;
   std::vector<std::string> parts;
@@ -113,14 +117,15 @@ std::string motion_of(const Scene& scene, const Holder& holder, double end) {
     parts.push_back(fmt::format("by ({:.4g}, {:.4g}) m", move.x.value_or(0) * end, move.y.value_or(0) * end));
   if (move.rotation) parts.push_back(fmt::format("by {:.4g} deg", *move.rotation * end / degree));
   if (move.area) parts.push_back(fmt::format("its area changes by {:.4g} %", 100 * *move.area * end));
-  return fmt::format("{} moves: {}", name_of(scene, holder), fmt::join(parts, ", "));
+  return fmt::format("{} moves: {}", name_of(scene.mesh, holder), fmt::join(parts, ", "));
 }
 
 /// What holds, each once, even where a stage names again what is held.
 std::string held_by(const Scene& scene, const StagePlan& plan) {
   std::vector<std::string> parts;
   for (const Holder& holder : plan.holders) {
-    std::string part = fmt::format("{} {}{}", name_of(scene, holder), holder.axes[0] ? "x" : "",
+    if (holder.nodes.empty()) continue;  // dug out
+    std::string part = fmt::format("{} {}{}", name_of(scene.mesh, holder), holder.axes[0] ? "x" : "",
                                    holder.axes[1] ? "y" : "");
     if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(std::move(part));
   }
@@ -144,8 +149,10 @@ std::string stage_line(const Scene& scene, const StagePlan& plan, std::size_t nu
                                                 : fmt::format("; ground at rest presses on {}", press.boundary);
   }
   for (const ReleaseCase& release : plan.input.releases)
-    line += fmt::format("; {} is released by {:.4g} %", release.boundary, 100 * release.share);
-  for (const ExcavateCase& dug : plan.input.excavations) line += fmt::format("; {} is dug out", dug.region);
+    line += fmt::format("; {} is released by {:.4g} %", name_of(scene.mesh, release), 100 * release.share);
+  for (const ExcavateCase& dug : plan.input.excavations) {
+    for (const std::string& name : dug.regions) line += fmt::format("; {} is dug out", name);
+  }
   for (const Holder& holder : plan.holders) {
     const double share = step_over_edge(scene, plan, holder);
     if (share > 0)
@@ -182,8 +189,8 @@ std::vector<std::string> owner_lines(const Scene& scene, const StagePlan& plan) 
   for (const auto& [pair, entry] : shared) {
     const fem::Point x = scene.mesh.coordinates.col(entry.nodes.front());
     lines.push_back(fmt::format("stage {}: {} (moved) owns {} before {} at {} node{}, the first at ({:.4g}, {:.4g}) m",
-                                plan.input.name, name_of(scene, plan.holders[pair.second]), entry.axes,
-                                name_of(scene, plan.holders[pair.first]), entry.nodes.size(),
+                                plan.input.name, name_of(scene.mesh, plan.holders[pair.second]), entry.axes,
+                                name_of(scene.mesh, plan.holders[pair.first]), entry.nodes.size(),
                                 entry.nodes.size() == 1 ? "" : "s", x.x(), x.y()));
   }
   return lines;

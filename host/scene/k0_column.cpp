@@ -107,7 +107,7 @@ Scene column_scene(const ColumnSetup& setup) {
   Scene scene{.input = {}, .mesh = column_mesh(setup), .pressure = setup.surcharge, .gravity = setup.gravity};
   for (const GroundLayer& layer : setup.layers) {
     RegionCase region;
-    region.name = layer.region;
+    region.names = {layer.region};
     region.unit_weight = layer.unit_weight;
     scene.input.regions.push_back(std::move(region));
   }

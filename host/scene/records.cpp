@@ -23,7 +23,7 @@ std::vector<int> dug_out_rank(const Scene& scene) {
   for (int s = 0; s < n; ++s) {
     for (const ExcavateCase& dug : scene.input.stages[s].excavations) {
       for (int e = 0; e < mesh.n_elements(); ++e) {
-        if (mesh.in_region(e, dug.region)) rank[e] = n - s;
+        if (mesh.in_region(e, dug.regions)) rank[e] = n - s;
       }
     }
   }
@@ -43,7 +43,7 @@ void add_place(PlacedRecord& record, const fem::Mesh& mesh, const std::vector<in
 int held_node(int node, const std::vector<StagePlan>& plans) {
   for (const StagePlan& plan : plans) {
     for (const Holder& holder : plan.holders)
-      if (!holder.is_boundary && holder.nodes.front() == node) return node;
+      if (holder.target() == Target{.boundary = "", .node = node}) return node;
   }
   return -1;
 }
@@ -144,7 +144,7 @@ std::vector<PlacedRecord> place_records(const Scene& scene, const std::vector<St
       if (record.places.empty()) throw std::runtime_error(key + ".line: no point of the line lies in the ground");
     } else {
       for (int e = 0; e < scene.mesh.n_elements(); ++e) {
-        if (scene.mesh.in_region(e, record.input.region)) record.elements.push_back(e);
+        if (scene.mesh.in_region(e, record.input.regions)) record.elements.push_back(e);
       }
     }
     records.push_back(std::move(record));
@@ -160,7 +160,7 @@ void add_record_columns(const std::vector<PlacedRecord>& records, const StagePla
   ground.material.committed(stress, {});
   const std::vector<fem::PlaneTensor> strain = ground.total_strain();
   const bool regions = std::any_of(records.begin(), records.end(),
-                                   [](const auto& one) { return !one.input.region.empty(); });
+                                   [](const auto& one) { return !one.input.regions.empty(); });
   const std::vector<fem::PointField> fields = regions ? ground.material.fields() : std::vector<fem::PointField>{};
   const fem::PointField* void_ratio = find_field(fields, "void_ratio");
   for (const PlacedRecord& record : records) {
@@ -168,7 +168,7 @@ void add_record_columns(const std::vector<PlacedRecord>& records, const StagePla
       add_point(record, ground, stress, to);
       add_reaction(record, plan, reactions, to);
     }
-    if (!record.input.region.empty())
+    if (!record.input.regions.empty())
       add_region(record, ground, stress, strain, void_ratio == nullptr ? std::vector<double>{} : void_ratio->values,
                  to);
   }
@@ -185,7 +185,7 @@ std::vector<std::string> column_names(const std::vector<PlacedRecord>& records) 
     }
     if (record.held_node >= 0)
       for (const char* axis : {"x", "y"}) names.push_back(fmt::format("reaction_{}_{}", name, axis));
-    if (record.input.region.empty()) continue;
+    if (record.input.regions.empty()) continue;
     for (const char* column : {"p", "q", "q_over_p", "volumetric_strain", "void_ratio"})
       names.push_back(fmt::format("{}_{}", column, name));
   }

@@ -19,7 +19,7 @@ struct PlacedRecord {
   std::vector<fem::Located> places = {};     ///< of a point one, of a line those that lie in the ground
   std::vector<fem::Point> coordinates = {};  ///< of the places, as drawn [m]
   std::vector<double> along = {};            ///< of the places: distance from the line's first point [m]
-  std::vector<int> elements = {};            ///< of a region
+  std::vector<int> elements = {};            ///< of the regions
   int held_node = -1;                        ///< of a point: its node, if a support or a stage holds it as a point
 };
 
@@ -28,7 +28,7 @@ struct PlacedRecord {
 [[nodiscard]] std::vector<PlacedRecord> place_records(const Scene& scene, const std::vector<StagePlan>& plans);
 
 /// Adds, of each point NAME: displacement_NAME_x, _y [m] and the stress of the nearest Gauss point, stress_NAME_xx,
-/// _yy, _xy [Pa]; of each region NAME the means over its area p_NAME, q_NAME [Pa], q_over_p_NAME,
+/// _yy, _xy [Pa]; of regions NAME the means over their area p_NAME, q_NAME [Pa], q_over_p_NAME,
 /// volumetric_strain_NAME and void_ratio_NAME [-], where q is that of the mean stress and the void ratio is of grains
 /// only. What has been dug out has no columns; of elements that meet at a point, the one that stays longest counts.
 /// A point that a stage of the scene holds as a point has reaction_NAME_x, _y [N/m], the force on the ground besides;

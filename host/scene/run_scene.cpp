@@ -59,7 +59,7 @@ class SceneColumns {
     };
     stage.on_record = [this, &plan](IncrementReport& increment) {
       for (const auto& [name, quantity] : of(plan, reactions_, coordinates_)) increment.info.extra[name] = quantity;
-      for (const auto& [name, count] : tensile_nodes(plan, reactions_, coordinates_))
+      for (const auto& [name, count] : tensile_nodes(ground_.mesh, plan, reactions_, coordinates_))
         pulled_[name] = std::max(pulled_[name], count);
       if (shrinks(plan)) increment.volume_loss = increment.info.extra.at("area_" + *shrinks(plan)).value;
     };

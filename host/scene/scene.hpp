@@ -26,6 +26,13 @@ struct Scene {
   [[nodiscard]] double unit_weight(int element) const;  ///< [N/m3]
 };
 
+/// What a stage holds or releases: a boundary by its name, or a point by its node.
+struct Target {
+  std::string boundary = {};  ///< empty: `node` counts
+  int node = -1;
+  auto operator<=>(const Target&) const = default;
+};
+
 /// What holds nodes on one or both axes: a support, or a boundary or a point that a stage moves.
 struct Holder {
   std::string name = {};  ///< of the boundary or the point, in columns and messages
@@ -36,6 +43,7 @@ struct Holder {
   fem::Point about = fem::Point::Zero();  ///< in the mesh as drawn [m]
   int about_node = -1;                    ///< the node that `about` is; -1: it is none, and stays where it is
 
+  [[nodiscard]] Target target() const;
   /// Displacement from one load parameter to another of a node that was at `x` when the stage began, where the centre
   /// of the motion was at `centre` [m].
   [[nodiscard]] fem::Point displacement(const fem::Point& x, double from, double to, const fem::Point& centre) const;
@@ -68,8 +76,8 @@ struct StagePlan {
   /// Degrees of freedom whose forces fade in this stage, and the share of the force that is taken off: those that
   /// nothing holds any more, and those of the edge of what is dug out.
   std::map<int, double> fading = {};
-  /// Degrees of freedom of boundaries that were released in part, now or before: the rest of their forces stays.
-  std::map<std::string, std::set<int>> part_released = {};
+  /// Degrees of freedom of what was released in part, now or before: the rest of their forces stays.
+  std::map<Target, std::set<int>> part_released = {};
 
   /// The load of a boundary, or of the edges without a name (""); null where the boundary has no outer edges at all.
   [[nodiscard]] const BoundaryLoad* load_of(const std::string& boundary) const;
@@ -81,12 +89,21 @@ struct StagePlan {
 /// ...
 [[nodiscard]] std::vector<StagePlan> plan_stages(const Scene& scene);
 
+/// Load parameters of a stage in which the load factor of the weights grows by `rise`. `carried` is the vertical stress
+/// at its start over the one of the full weights [-].
+[[nodiscard]] std::vector<double> gravity_targets(const GravityCase& gravity, double carried, double rise);
+
 /// The largest vertical stress of the weights at load factor 1: of the heaviest region over the height of the mesh
 /// [Pa].
 [[nodiscard]] double weight_stress(const Scene& scene);
 
+/// The name of a boundary or of a point; a point without a name is called by its place in the mesh as drawn.
+[[nodiscard]] std::string name_of(const fem::Mesh& mesh, const Holder& holder);
+[[nodiscard]] std::string name_of(const fem::Mesh& mesh, const ReleaseCase& release);
+
 /// The node of a point or of coordinates that lie on a node; -1 where there is none within 1e-6 of the mesh's size.
 [[nodiscard]] int node_at(const fem::Mesh& mesh, const PlaceCase& place);
+[[nodiscard]] Target target_of(const fem::Mesh& mesh, const ReleaseCase& release);
 /// The outer edges of a named boundary; none of a curve inside the ground.
 [[nodiscard]] const std::vector<fem::Edge>& outer_edges(const fem::Mesh& mesh, const std::string& boundary);
 /// The coordinates of a place [m].

@@ -62,11 +62,12 @@ void check_excavations(const Scene& scene) {
     const std::vector<ExcavateCase>& excavations = scene.input.stages[s].excavations;
     for (std::size_t k = 0; k < excavations.size(); ++k) {
       const std::string key = fmt::format("stage[{}].excavate[{}].region", s, k);
-      const std::string& name = excavations[k].region;
-      if (gone.contains(name)) refuse(key, name + " has been dug out before");
-      if (left.erase(name) == 0) refuse(key, "the mesh has no region " + name);
-      if (left.empty()) refuse(key, "nothing of the ground is left");
-      gone.insert(name);
+      for (const std::string& name : excavations[k].regions) {
+        if (gone.contains(name)) refuse(key, name + " has been dug out before");
+        if (left.erase(name) == 0) refuse(key, "the mesh has no region " + name);
+        if (left.empty()) refuse(key, "nothing of the ground is left");
+        gone.insert(name);
+      }
     }
   }
 }
@@ -214,6 +215,11 @@ void check_places(const Scene& scene) {
     for (std::size_t k = 0; k < moves.size(); ++k) {
       if (moves[k].boundary.empty()) check_node(scene, fmt::format("stage[{}].move[{}].point", s, k), moves[k].point);
     }
+    const std::vector<ReleaseCase>& releases = scene.input.stages[s].releases;
+    for (std::size_t k = 0; k < releases.size(); ++k) {
+      if (releases[k].boundary.empty())
+        check_node(scene, fmt::format("stage[{}].release[{}].point", s, k), releases[k].point);
+    }
     const std::vector<PressCase>& presses = scene.input.stages[s].presses;
     for (std::size_t k = 0; k < presses.size(); ++k) {
       if (outer_edges(scene.mesh, presses[k].boundary).empty())
@@ -224,15 +230,21 @@ void check_places(const Scene& scene) {
   check_excavations(scene);
 }
 
-void check_releases(const StageCase& stage, const std::vector<Holder>& holders,
-                    const std::map<std::string, std::set<int>>& part_released, std::size_t number) {
+void check_releases(const fem::Mesh& mesh, const StageCase& stage, const std::vector<Holder>& holders,
+                    const std::map<Target, std::set<int>>& part_released, std::size_t number) {
+  std::set<Target> known;
   for (std::size_t k = 0; k < stage.releases.size(); ++k) {
-    const std::string& name = stage.releases[k].boundary;
+    const ReleaseCase& release = stage.releases[k];
+    const std::string key = fmt::format("stage[{}].release[{}].{}", number, k,
+                                        release.boundary.empty() ? "point" : "boundary");
+    const Target target = target_of(mesh, release);
+    const std::string name = name_of(mesh, release);
+    if (!known.insert(target).second) refuse(key, fmt::format("names {} for the second time in this stage", name));
     const bool held = std::any_of(holders.begin(), holders.end(),
-                                  [&](const Holder& holder) { return holder.is_boundary && holder.name == name; });
-    const auto part = part_released.find(name);
+                                  [&](const Holder& holder) { return holder.target() == target; });
+    const auto part = part_released.find(target);
     if (held || (part != part_released.end() && !part->second.empty())) continue;
-    refuse(fmt::format("stage[{}].release[{}].boundary", number, k), "nothing holds " + name);
+    refuse(key, fmt::format("nothing holds {}{}", name, release.boundary.empty() ? " as a point" : ""));
   }
 }
 
@@ -264,7 +276,8 @@ void check_steps(const Scene& scene, const StagePlan& plan, std::size_t number) 
     const double share = step_over_edge(scene, plan, holder);
     if (share > most_of_an_edge)
       refuse(fmt::format("stage[{}].steps", number),
-             fmt::format("{} moves by {:.2g} of an element's edge a step: more steps", holder.name, share));
+             fmt::format("{} moves by {:.2g} of an element's edge a step: more steps", name_of(scene.mesh, holder),
+                         share));
   }
 }
 

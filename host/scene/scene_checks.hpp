@@ -11,13 +11,13 @@ inline constexpr double most_of_an_edge = 0.25;
 /// The share from which on `check` advises more steps.
 inline constexpr double wide_step = 0.05;
 
-/// Points of supports and moves must be nodes, a press needs outer edges, a region is dug out once, and some ground is
-/// left.
+/// Points of supports, moves and releases must be nodes, a press needs outer edges, a region is dug out once, and some
+/// ground is left.
 void check_places(const Scene& scene);
 
-/// Boundaries that the stage with this number releases are held, or were released in part, before it.
-void check_releases(const StageCase& stage, const std::vector<Holder>& holders,
-                    const std::map<std::string, std::set<int>>& part_released, std::size_t number);
+/// What the stage with this number releases is held, or was released in part, before it, and is released once.
+void check_releases(const fem::Mesh& mesh, const StageCase& stage, const std::vector<Holder>& holders,
+                    const std::map<Target, std::set<int>>& part_released, std::size_t number);
 
 /// The stage with this number: nothing presses on what is held or gone, motions of area keep to their supports, ground
 /// at rest is level, no piece of the ground can move as a rigid body.

@@ -17,7 +17,7 @@ struct Standing {
   std::vector<BoundaryLoad> loads;  ///< `..._to` counts
   double gravity = 0, tilt = 0;
   std::vector<char> dug_out;
-  std::map<std::string, std::set<int>> part_released;
+  std::map<Target, std::set<int>> part_released;
 };
 
 std::vector<Holder> holders_of(const Scene& scene, const SupportCase& support) {
@@ -121,28 +121,30 @@ void clear(BoundaryLoad& load, int axis) {
   }
 }
 
-/// The degrees of freedom that a boundary owns and that nothing holds any more where it is no holder.
-std::set<int> let_go(StagePlan& plan, const std::string& boundary) {
+/// The degrees of freedom that a boundary or a point owns and that nothing holds any more where it is no holder.
+std::set<int> let_go(StagePlan& plan, const Target& target) {
   const std::map<int, std::size_t> before = owners_of(plan.holders);
   std::set<int> dofs;
   for (const auto& [dof, owner] : before) {
-    if (plan.holders[owner].is_boundary && plan.holders[owner].name == boundary) dofs.insert(dof);
+    if (plan.holders[owner].target() == target) dofs.insert(dof);
   }
-  std::erase_if(plan.holders, [&](const Holder& holder) { return holder.is_boundary && holder.name == boundary; });
+  std::erase_if(plan.holders, [&](const Holder& holder) { return holder.target() == target; });
   const std::map<int, std::size_t> after = owners_of(plan.holders);
   std::erase_if(dofs, [&](int dof) { return after.contains(dof); });
   return dofs;
 }
 
-/// The forces that held the boundary fade, and its own load begins at nothing along the axes that are free now. Of a
-/// boundary that was released in part before, the rest of the forces fades.
-void release(StagePlan& plan, const ReleaseCase& release) {
+/// The forces that held a boundary or a point fade, and the own load of a boundary begins at nothing along the axes
+/// that are free now. Of what was released in part before, the rest of the forces fades.
+void release(const fem::Mesh& mesh, StagePlan& plan, const ReleaseCase& release) {
+  const Target target = target_of(mesh, release);
   std::array<bool, 2> freed{};
   for (int axis = 0; axis < 2; ++axis) freed[axis] = is_held(plan.holders, release.boundary, axis);
-  std::set<int>& part = plan.part_released[release.boundary];
-  part.merge(let_go(plan, release.boundary));
+  std::set<int>& part = plan.part_released[target];
+  part.merge(let_go(plan, target));
   for (const int dof : part) plan.fading[dof] = release.share;
-  if (release.share == 1) plan.part_released.erase(release.boundary);
+  if (release.share == 1) plan.part_released.erase(target);
+  if (release.boundary.empty()) return;  // a point has no load of its own
   BoundaryLoad* load = load_of(plan, release.boundary);
   if (load == nullptr) return;
   for (int axis = 0; axis < 2; ++axis) {
@@ -156,8 +158,9 @@ void replace_rest_of_release(StagePlan& plan, const std::string& boundary) {
   for (const ReleaseCase& one : plan.input.releases) {
     if (one.boundary == boundary) return;
   }
-  for (const int dof : plan.part_released[boundary]) plan.fading[dof] = 1.0;
-  plan.part_released.erase(boundary);
+  const Target target{.boundary = boundary};
+  for (const int dof : plan.part_released[target]) plan.fading[dof] = 1.0;
+  plan.part_released.erase(target);
 }
 
 /// @param no_weights the ground has no weight until now, so that ground at rest presses with its own pressure
@@ -181,7 +184,7 @@ void excavate(const Scene& scene, StagePlan& plan, const ExcavateCase& excavatio
   const fem::Mesh& mesh = scene.mesh;
   plan.dug_out.resize(static_cast<std::size_t>(mesh.n_elements()), 0);
   for (int e = 0; e < mesh.n_elements(); ++e) {
-    if (mesh.in_region(e, excavation.region)) plan.dug_out[e] = 1;
+    if (mesh.in_region(e, excavation.regions)) plan.dug_out[e] = 1;
   }
 }
 
@@ -223,6 +226,10 @@ void leave_out_dug(const Scene& scene, StagePlan& plan, const std::vector<char>&
 
 }  // namespace
 
+std::vector<double> gravity_targets(const GravityCase& gravity, double carried, double rise) {
+  return fem::geometric_targets(carried / rise, gravity.ratio, gravity.uniform_step);
+}
+
 double weight_stress(const Scene& scene) {
   const Eigen::RowVectorXd y = scene.mesh.coordinates.row(1);
   double heaviest = 0;
@@ -236,10 +243,8 @@ std::vector<double> targets_of(const Scene& scene, const StagePlan& plan) {
   std::vector<double> targets;
   const double rise = plan.gravity_to - plan.gravity_from;
   const double full = weight_stress(scene);
-  if (plan.input.steps == 0 && rise > 0 && full > 0) {
-    const double carried = scene.pressure / full + plan.gravity_from;
-    return fem::geometric_targets(carried / rise, scene.gravity.ratio, scene.gravity.uniform_step);
-  }
+  if (plan.input.steps == 0 && rise > 0 && full > 0)
+    return gravity_targets(scene.gravity, scene.pressure / full + plan.gravity_from, rise);
   const int n = plan.input.steps > 0 ? plan.input.steps : static_cast<int>(std::ceil(1 / scene.gravity.uniform_step));
   for (int k = 1; k <= n; ++k) targets.push_back(plan.input.end * k / n);
   return targets;
@@ -267,14 +272,14 @@ void leave_to_holders(BoundaryLoad& load, const fem::Mesh& mesh, const std::vect
 
 StagePlan plan_stage(const Scene& scene, const Standing& standing, const StageCase& input) {
   StagePlan plan = plan_on(standing, input);
-  for (const ReleaseCase& one : input.releases) release(plan, one);
+  for (const ReleaseCase& one : input.releases) release(scene.mesh, plan, one);
   for (const ExcavateCase& one : input.excavations) excavate(scene, plan, one);
   for (const MoveCase& move : input.moves) plan.holders.push_back(holder_of(scene, move));
   for (const PressCase& one : input.presses) press(plan, one, scene.pressure, standing.gravity == 0);
   leave_out_dug(scene, plan, standing.dug_out);
   plan.owners = owners_of(plan.holders);
   std::erase_if(plan.fading, [&](const auto& entry) { return plan.owners.contains(entry.first); });
-  for (auto& [boundary, dofs] : plan.part_released)
+  for (auto& [target, dofs] : plan.part_released)
     std::erase_if(dofs, [&](int dof) { return plan.owners.contains(dof); });
   for (BoundaryLoad& load : plan.loads) leave_to_holders(load, scene.mesh, plan.holders);
   plan.targets = targets_of(scene, plan);
@@ -288,7 +293,7 @@ std::vector<StagePlan> plan_stages(const Scene& scene) {
   std::vector<StagePlan> plans;
   Standing standing = first_standing(scene);
   for (const StageCase& stage : scene.input.stages) {
-    check_releases(stage, standing.holders, standing.part_released, plans.size());
+    check_releases(scene.mesh, stage, standing.holders, standing.part_released, plans.size());
     StagePlan plan = plan_stage(scene, standing, stage);
     check_stage(scene, plan, plans.size());
     standing = standing_after(plan);

@@ -21,16 +21,19 @@ using Points = std::vector<std::size_t>;
 /// A region with its points of the mesh, ascending.
 struct RegionPoints {
   const RegionCase* region = nullptr;
+  std::string name;
   Points points;
 };
 
 /// The regions of the mesh that have points, in the order of the case.
 std::vector<RegionPoints> regions_of(const std::vector<RegionCase>& cases, const fem::Mesh& mesh) {
   std::vector<RegionPoints> all;
-  for (const RegionCase& region : cases) all.push_back({&region, {}});
+  for (const RegionCase& region : cases) {
+    for (const std::string& name : region.names) all.push_back({&region, name, {}});
+  }
   for (int e = 0; e < mesh.n_elements(); ++e) {
     const auto found = std::find_if(all.begin(), all.end(),
-                                    [&](const RegionPoints& r) { return mesh.in_region(e, r.region->name); });
+                                    [&](const RegionPoints& r) { return mesh.in_region(e, r.name); });
     if (found == all.end())
       throw std::invalid_argument("region '" + mesh.region_names[mesh.region[e]] + "' of the mesh has no [[region]]");
     for (int p = 4 * e; p < 4 * e + 4; ++p) found->points.push_back(static_cast<std::size_t>(p));
@@ -73,7 +76,7 @@ RegionPart grains_part(const MaterialCase& material, const std::vector<RegionPoi
   for (const RegionPoints& r : regions) {
     PackingCase recipe = r.region->packing;
     recipe.pressure = material.packing.pressure;
-    const PackingNote prefixed = [&](const std::string& text) { note("region " + r.region->name + ": " + text); };
+    const PackingNote prefixed = [&](const std::string& text) { note("region " + r.name + ": " + text); };
     const bool is_only = regions.size() == 1;
     mixes.push_back(choose_packings(r.region->soil, recipe, r.points.size(), note && !is_only ? prefixed : note));
     Points& of_mix = places.emplace_back();
@@ -84,7 +87,7 @@ RegionPart grains_part(const MaterialCase& material, const std::vector<RegionPoi
   PackingMix mix = mixes.size() == 1 ? std::move(mixes.front()) : join(std::move(mixes), places);
   if (!is_whole_mesh) mix.numbers = points;
   return {pool_of(material, std::move(mix), note), std::move(points)};
-}
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): the part owns its batch, which the check loses.
 
 std::unique_ptr<fem::MaterialBatch> material_of_regions(const MaterialCase& material, const fem::Mesh& mesh,
                                                         const PackingNote& note) {
@@ -108,7 +111,7 @@ std::unique_ptr<fem::MaterialBatch> material_of_regions(const MaterialCase& mate
   }
   if (parts.size() == 1) return std::move(parts.front().batch);
   return std::make_unique<RegionBatch>(std::move(parts));
-}
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): as above.
 
 }  // namespace
 

@@ -29,7 +29,7 @@ NEEDED = {  # what an entry of an array of tables cannot be without
 OR_ONE = {
     f"mesh.{name}" for name in ("columns", "rows", "x_ratio", "y_ratio", "layers", "base", "top", "left", "right")
 }
-OR_ONE |= {"support[].boundary"}
+OR_ONE |= {"support[].boundary", "region[].name", "stage[].excavate[].region", "record[].region"}
 
 
 def scene_tables(settings, tiny):

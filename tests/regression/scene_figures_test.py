@@ -7,16 +7,29 @@ import unittest
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
+import h5py
 import numpy as np
-from figure_calls import call
+from figure_calls import call, copy
 from program import PROGRAM, fresh, run
 from tiny_scene import CASE
 from voussoir.figures import __main__ as figures
-from voussoir.figures import openings, panels, q8, regions, scene, scene_boundaries, scene_ground, scene_lines
-from voussoir.figures.result import Missing, Result
+from voussoir.figures import (
+    catalogue,
+    openings,
+    panels,
+    q8,
+    regions,
+    scene,
+    scene_boundaries,
+    scene_ground,
+    scene_holds,
+    scene_lines,
+)
+from voussoir.figures.result import Missing, Result, plain
 
 OF_EVERY_SCENE = {
     *("mesh", "boundary_curves", "boundary_reactions", "record_points", "record_regions", "section_lines"),
@@ -58,12 +71,13 @@ class OfAScene(unittest.TestCase):
         self.stages = {stage.name: stage for stage in scene.stages(self.result)}
 
     def test_figures(self):
-        """All figures that fit are drawn, as vectors, too; those of tunnels are skipped with their reason."""
+        """All figures that fit are drawn, as vectors, too; those that the scene cannot have are not mentioned."""
         status, said, errors = call(figures, "runs/tiny", "-o", "figures")
         self.assertEqual((status, errors), (0, []))
         self.assertEqual({Path(line.split()[-1]).stem for line in said if line.startswith("wrote")}, OF_EVERY_SCENE)
-        skipped = [line for line in said if line.startswith("skipped")]
-        self.assertTrue(any("ground_reaction.png: there is no stage volume_loss" in line for line in skipped), skipped)
+        self.assertEqual([line for line in said if not line.startswith("wrote")], [])
+        _, said, _ = call(figures, "runs/tiny", "-o", "figures", "--only", "ground_reaction")
+        self.assertEqual(said, ["skipped ground_reaction.png: there is no stage volume_loss"])
         status, said, _ = call(figures, "runs/tiny", "-o", "figures", "--only", "boundary_curves", "--format", "svg")
         self.assertEqual((status, len(said)), (0, 1))
         self.assertIn("<svg", Path("figures/boundary_curves.svg").read_text()[:600])
@@ -116,6 +130,107 @@ class OfAScene(unittest.TestCase):
         status, said, errors = call(figures, "runs/sweep", "-o", "figures/sweep", "--only", "boundary_curves")
         self.assertEqual((status, errors, len(said)), (0, [], 1))
         self.assertTrue(said[0].startswith("wrote"), said)
+
+
+class WhatASceneCanHave(unittest.TestCase):
+    def test_a_figure_without_its_data_is_tried(self):
+        """The case records lines, but the run has not written their tables: the figure's own reason is told."""
+        folder = copy("cut", "tiny")
+        with h5py.File(folder / "run.h5", "r+") as file:
+            for name in ("line_level", "line_wall"):
+                del file[f"tables/{name}"]
+        result = Result(folder)
+        draw = catalogue.figures_for("a scene", result)["section_lines.png"]
+        self.assertRaisesRegex(Missing, "run.h5 has no table of a line", draw, result, Path("cut.png"))
+
+    def test_by_the_case(self):
+        """Tunnels are those that lose area, grains are in regions without an elastic material."""
+        loss = {"name": "loss", "move": [{"boundary": "opening", "area": "-5 %", "about": "invert"}]}
+        rest = {"name": "gravity", "press": [{"boundary": "opening", "at_rest": True}]}
+        case = {"region": [{"name": "sand"}], "stage": [rest, loss]}
+
+        def figures_of(more, diameter=True):
+            result: Any = SimpleNamespace(case={**case, **more}, geometry={"diameter": 5.0} if diameter else {})
+            return set(catalogue.figures_for("a scene", result))
+
+        tunnel, grains = {"ground_reaction.png", "settlement_troughs.png"}, {"void_ratio.png", "grain_rotation.png"}
+        self.assertLessEqual(tunnel | grains | {"rve_paths.png", "k0.png"}, figures_of({}))
+        self.assertFalse((tunnel | {"rve_paths.png"}) & figures_of({}, diameter=False))
+        grown = figures_of({"stage": [{"name": "grow", "move": [{"boundary": "opening", "area": "5 %"}]}]})
+        self.assertFalse((tunnel | {"k0.png"}) & grown)
+        for elastic in ({"material": "linear_elastic"}, {"region": [{"name": "wall", "elastic": {}}]}):
+            self.assertFalse((grains | {"rve_paths.png"}) & figures_of(elastic))
+            self.assertLessEqual(tunnel, figures_of(elastic))
+        self.assertEqual(
+            figures_of({"record": [{"name": "a", "region": ["sand"]}]}) - figures_of({}), {"record_regions.png"}
+        )
+
+    def test_of_an_ensemble(self):
+        """Ensembles of scenes have no figures of tunnels and specimens, those of other kinds keep all."""
+        stages = [{"name": "lower", "move": [{"boundary": "door", "y": "-1 mm"}]}]
+        ensemble: Any = SimpleNamespace(case={"kind": "scene", "stage": stages})
+        self.assertEqual(set(catalogue.figures_for("an ensemble", ensemble)), {"ensemble_boundaries.png"})
+        ensemble.case["kind"] = "tunnel"
+        self.assertEqual(len(catalogue.figures_for("an ensemble", ensemble)), 7)
+
+
+class OfLaterHolds(unittest.TestCase):
+    def test_words(self):
+        """From the start, from a stage on, until a stage releases it; points are known by their place."""
+        corner = ["4 m", "3 m"]
+        case: dict[str, Any] = {
+            "support": [{"boundary": ["left", "right"], "fix": "x"}, {"point": "foot", "fix": "xy"}],
+            "stage": [
+                {"name": "dig", "move": [{"boundary": "face", "x": "0 m"}, {"boundary": "right", "y": "0 m"}]},
+                {"name": "prop", "move": [{"point": corner, "x": "0 m"}, {"boundary": "hole", "area": "1 %"}]},
+                {"name": "free", "release": [{"point": corner}, {"boundary": "right"}, {"boundary": "left"}]},
+                {"name": "again", "move": [{"point": "foot", "y": "1 mm"}]},
+            ],
+        }
+        result: Any = SimpleNamespace(
+            case=case, coordinates=np.array([[0.0, 0.0], [4.0, 3.0]]), points={"foot": 0}, boundaries={}
+        )
+        names = [stage["name"] for stage in case["stage"]]
+        found = {hold.name: (hold.words(names), hold.from_start) for hold in scene_holds.holds(result)}
+        self.assertEqual(
+            found,
+            {
+                "left": ("held x until stage free", True),
+                "right": ("held x until stage free, y from stage dig until stage free", True),
+                "point foot": ("held x and y", True),
+                "face": ("held x from stage dig on", False),
+                "point (4, 3) m": ("held x from stage prop until stage free", False),
+                "hole": ("held x and y from stage prop on", False),
+            },
+        )
+
+    def test_picture(self):
+        """What a later stage holds is hollow: a white line on the boundary, a white triangle."""
+        folder = copy("later", "tiny")
+        with h5py.File(folder / "run.h5", "r+") as file:
+            text = plain(file["input"][()])
+            del file["input"]
+            more = 'move = [{boundary = "top", y = "0 m"}, {point = ["1 m", "0 m"], x = "0 m"}]'
+            file["input"] = f'{text}\n[[stage]]\nname = "late"\nsteps = 1\n{more}\n'
+        result = Result(folder)
+        with mock.patch.object(scene_ground, "save") as save:
+            scene_ground.draw_mesh(result, Path("later.png"))
+        figure = save.call_args.args[0]
+        labels = {text.get_text() for text in figure.legends[0].get_texts()}
+        self.assertLessEqual(
+            {
+                "door, held y until stage free",
+                "top, held y from stage late on",
+                "point (1, 0) m, held x from stage late on",
+            },
+            labels,
+        )
+        (axis,) = figure.axes
+        white = [lines for lines in axis.collections if np.all(lines.get_edgecolor() == 1)]
+        self.assertEqual(len(white), 1)
+        self.assertEqual({float(y) for path in white[0].get_paths() for y in path.vertices[:, 1]}, {2.0})
+        (triangle,) = [line for line in axis.lines if line.get_marker() == "^"]
+        self.assertEqual(triangle.get_markerfacecolor(), "white")
 
 
 class OfAnOpening(unittest.TestCase):

@@ -6,11 +6,15 @@ import subprocess
 import sys
 import unittest
 from pathlib import Path
+from unittest import mock
 
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "tools"))
 sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
-from validation_figures import budget, lattice
+import matplotlib.pyplot as plt
+import numpy as np
+from validation_figures import budget, lattice, scenes
+from validation_figures.log_axes import log_axis
 from validation_figures.program import Program
 
 ROOT = Path(os.environ["VOUSSOIR_ROOT"])
@@ -45,6 +49,40 @@ class Lattice(unittest.TestCase):
         lattice.draw(Program(PROGRAM, Path("lattice_runs")), Path("lattice.png"))
         wrong = lattice.answer(Path("lattice_runs/lattice_0.5"), 0.51)
         self.assertGreater(wrong.largest_difference(), 0.01)
+
+
+def numbers_at(axis):
+    """The labels of the ticks that lie within the limits."""
+    low, high = axis.get_view_interval()
+    axis.figure.draw_without_rendering()
+    return [tick.label1.get_text() for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+
+
+class LogarithmicAxes(unittest.TestCase):
+    def test_numbers_can_be_read(self):
+        for low, high, wanted in (
+            (0.15, 6.0, ["0.2", "0.5", "1", "2", "5"]),
+            (0.01, 10, ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5", "1", "2", "5", "10"]),
+            (0.5, 2e4, ["1", "10", "100", "1000", "10000"]),
+            (3, 6, ["3", "4", "5", "6"]),
+        ):
+            for which in ("x", "y"):
+                _, axis = plt.subplots(figsize=(10, 8))
+                axis.set(**{f"{which}lim": (low, high)})
+                log_axis(axis, which)
+                self.assertEqual(numbers_at(getattr(axis, f"{which}axis")), wanted)
+                plt.close("all")
+
+    def test_panels_of_scenes_have_them(self):
+        """The wall between 0.2 and 7 and the friction at 5 to 200 kPa, from made-up runs."""
+        moved = {"displacement_wall_x": np.linspace(0, 0.2, 20), "reaction_wall_x": np.geomspace(1e4, 3e5, 20)}
+        _, axes = plt.subplots(1, 2, figsize=(10, 4))
+        with mock.patch.object(scenes, "stage", return_value=moved):
+            scenes._wall(axes[0], mock.Mock(), np.radians(np.full(6, 40.0)))
+        scenes._friction(axes[1], np.radians(np.full(6, 40.0)))
+        self.assertEqual(numbers_at(axes[0].yaxis), ["0.2", "0.5", "1", "2", "5"])
+        self.assertEqual(numbers_at(axes[1].xaxis), ["5", "10", "20", "50", "100", "200"])
+        plt.close("all")
 
 
 class Pictures(unittest.TestCase):

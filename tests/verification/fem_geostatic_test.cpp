@@ -4,6 +4,7 @@
 #include "fem/load_stepper.hpp"
 #include "fem/mesh_rectangle.hpp"
 #include "fem/mesh_tunnel.hpp"
+#include "tests/constrain.hpp"
 #include "tests/fem_support.hpp"
 #include "tests/shrinking_opening.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "fem/mesh_rectangle.hpp"
 #include "fem/newton.hpp"
+#include "tests/constrain.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fem/newton.hpp"
+#include "tests/constrain.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

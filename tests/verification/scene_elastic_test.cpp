@@ -126,7 +126,7 @@ TEST(Lame, ReleasedInPartThenHeldThenReleased) {
 TEST(Lame, ByExcavationOfTheCore) {
   Scene scene = quarter(true, {support({"far"}, "xy")});
   StageCase dig = stage("dig", 2);
-  dig.excavations = {{"core"}};
+  dig.excavations = {{.regions = {"core"}}};
   scene.input.stages = {dig};
   const double exact = lame(radius, outer, p0, true);
   const StageEnd end = ElasticRun{.scene = scene}.run("dig").back();
@@ -199,7 +199,7 @@ Scene trench() {
 
 StageCase dig(const std::string& name, std::vector<std::string> regions) {
   StageCase one = stage(name, 2);
-  for (std::string& region : regions) one.excavations.push_back({std::move(region)});
+  for (std::string& region : regions) one.excavations.push_back({.regions = {std::move(region)}});
   return one;
 }
 

@@ -9,6 +9,7 @@ from voussoir.figures import q8, stresses
 from voussoir.figures.result import Result
 from voussoir.figures.style import CYCLE, save
 
+from .log_axes import log_axis
 from .program import ROOT, Program
 
 FIRST = 1e3  # isotropic pressure with which the ground begins [Pa]
@@ -50,7 +51,7 @@ def _k0(axis: Axes, folder: Path, poisson: float) -> list[str]:
     axis.plot(vertical / 1e3, k0, "o", color=CYCLE[2], markersize=4, label="column stage")
     line = np.geomspace(vertical.min(), vertical.max())
     axis.plot(line / 1e3, k0_form(line, poisson), color="black", linewidth=1, label="closed form")
-    axis.set_xscale("log")
+    log_axis(axis, "x")
     axis.set_xlabel("vertical stress [kPa]")
     axis.set_ylabel("$K_0$ [-]")
     axis.set_title("earth pressure at rest")

@@ -11,6 +11,7 @@ from voussoir.figures.ensemble import Ensemble
 from voussoir.figures.study.bands import of_members
 from voussoir.figures.style import CYCLE, save
 
+from .log_axes import log_axis
 from .program import Program
 from .scenes import HERE, PSI, SMOOTHED, davis, terzaghi, wedge
 
@@ -178,9 +179,8 @@ def draw(program: Program, path: Path) -> list[str]:
     axes[0].set_xlim(0, 10)
     axes[0].set_ylim(0, 0.65)
     axes[0].set_title("to a tenth of the width")
-    axes[1].set_xscale("log")
     axes[1].set_xlim(0.01, 10)
-    axes[1].xaxis.set_major_formatter("{x:g}")
+    log_axis(axes[1], "x")
     axes[1].set_ylim(0, 1)
     axes[1].set_title("the first part")
     handles, labels = axes[0].get_legend_handles_labels()

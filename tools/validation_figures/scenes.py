@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from voussoir.figures.style import CYCLE, save
 from voussoir.results import Result, numbers_of
 
+from .log_axes import log_axis
 from .program import ROOT, Program
 
 Array = np.ndarray
@@ -74,7 +75,8 @@ def wedge(angle: float) -> float:
 
 
 def _friction(axis: Axes, frictions: Array) -> list[str]:
-    axis.semilogx(LATERAL, np.degrees(frictions), "o-", color=CYCLE[0])
+    axis.plot(LATERAL, np.degrees(frictions), "o-", color=CYCLE[0])
+    log_axis(axis, "x")
     axis.set_xlabel("lateral stress of the element test [kPa]")
     axis.set_ylabel("friction angle, mean over 0.5 % of strain [deg]")
     axis.set_title("the scenes' packing, made at 1 kPa")
@@ -90,10 +92,11 @@ def _wall(axis: Axes, program: Program, frictions: Array) -> list[str]:
         strain = np.abs(moved["displacement_wall_x"]) / 4.0  # the fill is 4 m long
         mean_k = moved["reaction_wall_x"] / (UNIT_WEIGHT * HEIGHT**2 / 2 + P0 * HEIGHT)
         form = rankine(frictions, name == "passive")
-        axis.semilogy(100 * strain, mean_k, color=CYCLE[k], label=name)
+        axis.plot(100 * strain, mean_k, color=CYCLE[k], label=name)
         axis.axhline(form, color=CYCLE[k], linestyle="--", linewidth=1)
         reached = mean_k.max() if name == "passive" else mean_k.min()
         lines.append(f"wall, {name}: K = {reached:.3f}, Rankine {form:.3f}")
+    log_axis(axis, "y")
     axis.plot([], [], "--", color="black", linewidth=1, label="Rankine with the friction on the left")
     axis.set_xlabel("displacement of the wall over the fill's length [%]")
     axis.set_ylabel("mean K [-]")

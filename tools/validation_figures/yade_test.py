@@ -9,6 +9,7 @@ from voussoir.figures.element_tests import Series, Test
 from voussoir.figures.result import RunIndex
 from voussoir.figures.style import CYCLE, save
 
+from .log_axes import log_axis
 from .program import ROOT, Program
 
 DATA = ROOT / "tests/data/yade"
@@ -75,7 +76,7 @@ def _k0(axis: Axes, program: Program) -> list[str]:
         axis.plot(vertical / 1e3, k0, color=CYCLE[0], linewidth=1, label=label)
     axis.plot(unloaded[0] / 1e3, unloaded[1], "--", color=CYCLE[1], label="Voussoir, Yade's packing")
     axis.plot(stress, recorded, "s", color=CYCLE[3], label="Yade 2023.02a, Yade's packing")
-    axis.set_xscale("log")
+    log_axis(axis, "x")
     axis.set_xlabel("vertical stress [kPa]")
     axis.set_ylabel("$K_0$ [-]")
     axis.legend()

@@ -10,10 +10,11 @@ import argparse
 import sys
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 try:
     from . import guard, settings, style
-    from .catalogue import TRENDS, Figures, figures_of, stems
+    from .catalogue import TRENDS, Figures, figures_for, figures_of, stems
     from .output import make_folder, say
     from .result import Missing
     from .source import open_source
@@ -26,13 +27,14 @@ except ModuleNotFoundError as missing:
     sys.exit(2)
 
 
-def chosen(arguments: argparse.Namespace, what: str) -> Figures:
-    """The functions that write the wanted files, by the names of the files."""
+def chosen(arguments: argparse.Namespace, what: str, data: Any) -> Figures:
+    """The functions that write the wanted files, by the names of the files. A figure that `--only` names is tried in
+    any case, so that a line says why it does not exist."""
     if arguments.trends:
         if what != "a tunnel":
             raise Missing(f"the study's trends are judged for single runs of tunnels, and this is {what}")
         return TRENDS
-    everything = figures_of(what)
+    everything = figures_of(what) if arguments.only else figures_for(what, data)
     for name in sorted(set(arguments.only or ()) - {Path(known).stem for known in everything}):
         say(f"skipped {name}: it is no figure of {what}")
     return {name: draw for name, draw in everything.items() if not arguments.only or Path(name).stem in arguments.only}
@@ -81,7 +83,7 @@ def main() -> int:
     for reason in source.left_out:
         say(f"left out: {reason}", error=True)
         figures.unreadable()
-    wanted = chosen(arguments, source.what)
+    wanted = chosen(arguments, source.what, source.data)
     make_folder(output)
     set_note(source.note)
     for name, draw in wanted.items():

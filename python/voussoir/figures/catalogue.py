@@ -27,6 +27,7 @@ from . import (
     scene_boundaries,
     scene_ground,
     scene_lines,
+    scene_needs,
     scene_records,
     scene_sweep,
     settlements,
@@ -71,7 +72,7 @@ _OF_A_MESH: Figures = {
     for name in ("displacement.png", "deviatoric_strain.png", "void_ratio.png", "grain_rotation.png", "convergence.png")
 }
 
-# Of a scene. The figures of a tunnel are skipped where the scene's mesh has none.
+# Of any scene; `scene_needs` says which of them a certain scene can have.
 SCENE: Figures = {
     "mesh.png": scene_ground.draw_mesh,
     "boundary_curves.png": scene_boundaries.draw,
@@ -128,6 +129,17 @@ OF: dict[str, Figures] = {
 def figures_of(what: str) -> Figures:
     """The figures of one sort of source, with the trends where these are judged."""
     return {**OF[what], **TRENDS} if what == "a tunnel" else OF[what]
+
+
+def figures_for(what: str, data: Any) -> Figures:
+    """The figures that this source can have: those of its sort, without those that its case rules out. Figures whose
+    data are missing although the case has them are among these."""
+    everything = figures_of(what)
+    if what == "a scene":
+        return {name: draw for name, draw in everything.items() if scene_needs.can_have(data, name)}
+    if what == "an ensemble":
+        return {name: draw for name, draw in everything.items() if scene_needs.ensemble_can_have(data, name)}
+    return everything
 
 
 def stems() -> set[str]:

@@ -1,5 +1,7 @@
 """The regions of a mesh, and the elements that a scene has dug out."""
 
+from typing import Any
+
 import numpy as np
 
 from .result import Increment, Result, remembered
@@ -24,10 +26,16 @@ def alive(result: Result, increment: Increment) -> np.ndarray:
     return np.isfinite(values).any(axis=1)
 
 
+def names_of(region: dict[str, Any]) -> list[str]:
+    """The regions of the mesh that a table of the case names: one or several."""
+    written = region.get("name", "ground")
+    return [str(name) for name in written] if isinstance(written, list) else [str(written)]
+
+
 def ground(result: Result) -> np.ndarray:
     """True for the elements outside of regions with an elastic material of their own, such as walls (element); for all
     where each region has one."""
-    elastic = {entry.get("name") for entry in result.case.get("region", []) if "elastic" in entry}
+    elastic = {name for entry in result.case.get("region", []) if "elastic" in entry for name in names_of(entry)}
     if result.regions is None or not result.region_names:
         return np.ones(len(result.connectivity), dtype=bool)
     inside = ~np.isin(result.regions, [k for k, name in enumerate(result.region_names) if name in elastic])

@@ -71,7 +71,7 @@ def progress(stage: Stage) -> np.ndarray:
     return stage.number + column(stage.increments, "load_parameter")
 
 
-def _written(table: dict[str, Any], key: str) -> bool:
+def is_written(table: dict[str, Any], key: str) -> bool:
     return table.get(key) not in (None, "", [])
 
 
@@ -131,10 +131,10 @@ def names_in(table: dict[str, Any]) -> list[str]:
 
 
 def _motion(name: str, changes: list[dict[str, Any]], values: Callable[[str], np.ndarray | None]) -> Motion:
-    areas = [change for change in changes if _written(change, "area")]
+    areas = [change for change in changes if is_written(change, "area")]
     columns = {axis: values(f"displacement_{name}_{axis}") for axis in AXES}
     moved = {axis: np.nan_to_num(np.zeros(0) if found is None else found) for axis, found in columns.items()}
-    named = [axis for axis in AXES if any(_written(change, axis) for change in changes)]
+    named = [axis for axis in AXES if any(is_written(change, axis) for change in changes)]
     axis = max(named or AXES, key=lambda a: np.abs(moved[a]).max(initial=0))
     furthest = moved[axis][np.argmax(np.abs(moved[axis]))] if len(moved[axis]) else 0.0
     with_area = bool(areas) and values(f"area_{name}") is not None
@@ -158,7 +158,7 @@ def held_boundaries(result: Result) -> list[str]:
 
 def records(result: Result, key: str) -> list[dict[str, Any]]:
     """The records of the case that have a "point", a "line" or a "region"."""
-    return [record for record in result.case.get("record", []) if _written(record, key)]
+    return [record for record in result.case.get("record", []) if is_written(record, key)]
 
 
 def mark_stages(axis: Axes, shown: Sequence[Stage], named: bool = True) -> None:

@@ -1,7 +1,6 @@
 """The mesh of a scene with its names, and its fields at the ends of the stages."""
 
 from pathlib import Path
-from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.patheffects import Stroke
 
-from . import panels, q8, regions, scene
+from . import panels, q8, regions, scene, scene_holds
 from .result import Increment, Missing, Result
 from .style import CYCLE, LINES, save
 
@@ -31,7 +31,12 @@ def draw_mesh(result: Result, path: Path) -> None:
     named: list[Artist] = [
         Patch(facecolor=PALE[k % len(PALE)], edgecolor="0.6", label=f"region {name}") for k, name in _regions(result)
     ]
-    named += [_draw_boundary(axis, result, name, k) for k, name in enumerate(sorted(result.boundaries))]
+    held = scene_holds.holds(result)
+    of_boundary = {hold.name: hold for hold in held if hold.place is None}
+    named += [
+        _draw_boundary(axis, result, name, of_boundary.get(name), k) for k, name in enumerate(sorted(result.boundaries))
+    ]
+    named += [_draw_held_point(axis, result, hold) for hold in held if hold.place is not None]
     named += _draw_records(axis, result)
     axis.set_aspect("equal")
     axis.margins(0.03)
@@ -46,30 +51,42 @@ def draw_mesh(result: Result, path: Path) -> None:
 def _regions(result: Result) -> list[tuple[int, str]]:
     if result.region_names:
         return list(enumerate(result.region_names))
-    return [(0, str(region.get("name", "ground"))) for region in result.case.get("region", [])[:1]]
+    return [(0, name) for region in result.case.get("region", [])[:1] for name in regions.names_of(region)[:1]]
 
 
-def _draw_boundary(axis: Axes, result: Result, name: str, k: int) -> Line2D:
-    """A named boundary, which may be in several pieces: the sides of elements of which all three nodes are named."""
+def _stages(result: Result) -> list[str]:
+    return [str(stage.get("name", "")) for stage in result.case.get("stage", [])]
+
+
+def _draw_boundary(axis: Axes, result: Result, name: str, hold: scene_holds.Hold | None, k: int) -> Line2D:
+    """A named boundary, which may be in several pieces: the sides of elements of which all three nodes are named. One
+    that only a later stage holds is hollow."""
     named = np.zeros(len(result.coordinates), dtype=bool)
     named[result.boundaries[name]] = True
     sides = regions.all_sides(result)
     along = sides[named[sides].all(axis=1)]
     colour, style = CYCLE[k % len(CYCLE)], LINES[k // len(CYCLE) % len(LINES)]
+    is_hollow = hold is not None and not hold.from_start
+    width = 4.5 if is_hollow else 3
     axis.add_collection(
-        LineCollection(list(result.coordinates[along]), colors=colour, linewidths=3, linestyles=style, zorder=3)
+        LineCollection(list(result.coordinates[along]), colors=colour, linewidths=width, linestyles=style, zorder=3)
     )
-    held = _supports(result.case, name)
-    return Line2D([], [], color=colour, linestyle=style, linewidth=3, label=name + (f", held {held}" if held else ""))
+    handle = Line2D([], [], color=colour, linestyle=style, linewidth=width, label=name)
+    if hold is not None:
+        handle.set_label(f"{name}, {hold.words(_stages(result))}")
+    if is_hollow:
+        axis.add_collection(LineCollection(list(result.coordinates[along]), colors="white", linewidths=2, zorder=3))
+        handle.set_path_effects([Stroke(linewidth=width, foreground=colour), Stroke(linewidth=2, foreground="white")])
+    return handle
 
 
-def _supports(case: dict[str, Any], name: str) -> str:
-    """Along which axes a boundary is held from the start: "x", "y", "x and y" or nothing."""
-    held = set()
-    for support in case.get("support", []):
-        if name in scene.names_in(support):
-            held |= set(str(support.get("fix", "")))
-    return " and ".join(sorted(held & set(scene.AXES)))
+def _draw_held_point(axis: Axes, result: Result, hold: scene_holds.Hold) -> Line2D:
+    """A triangle below the point, which is hollow where only a later stage holds it."""
+    assert hold.place is not None
+    inside = "black" if hold.from_start else "white"
+    label = f"{hold.name}, {hold.words(_stages(result))}"
+    x, y = (float(value) for value in hold.place)
+    return axis.plot(x, y, "^", color="black", markerfacecolor=inside, markersize=9, zorder=5, label=label)[0]
 
 
 def _draw_records(axis: Axes, result: Result) -> list[Line2D]:

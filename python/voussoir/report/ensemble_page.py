@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from voussoir.ensembles import INDEX
-from voussoir.figures.catalogue import Figures, figures_of
+from voussoir.figures.catalogue import Figures, figures_for
 from voussoir.figures.ensemble import Ensemble
 from voussoir.figures.result import Missing, Result
 from voussoir.figures.study import judging
@@ -43,7 +43,9 @@ def make(ensemble: Ensemble, folder: Path, only: list[str] | None = None) -> Bui
     drawn = pictures.draw_all(pictures.chosen(_figures(ensemble), only), ensemble)
     if result is not None:
         of_a_run = SORTS.get(ground.stage_of(result)[0], "a tunnel")
-        further = pictures.draw_all(pictures.chosen(figures_of(of_a_run), only), result, f"One member: {name}.")
+        further = pictures.draw_all(
+            pictures.chosen(figures_for(of_a_run, result), only), result, f"One member: {name}."
+        )
         drawn += further
         if of_a_run == "a tunnel":
             for tunnel in study.tunnels if study else []:
@@ -57,7 +59,7 @@ def make(ensemble: Ensemble, folder: Path, only: list[str] | None = None) -> Bui
 def _figures(ensemble: Ensemble) -> Figures:
     """The ensemble's figures, without those of other kinds of runs."""
     other = {"ensemble_specimen.png"} if "surface_settlement" in ensemble.curves else set()
-    return {name: draw for name, draw in figures_of("an ensemble").items() if name not in other}
+    return {name: draw for name, draw in figures_for("an ensemble", ensemble).items() if name not in other}
 
 
 def _warnings(folder: Path, each: list[facts.Facts]) -> list[str]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from voussoir.figures import points
-from voussoir.figures.catalogue import figures_of
+from voussoir.figures.catalogue import figures_for
 from voussoir.figures.result import Missing, Result, RunIndex
 from voussoir.figures.source import Source
 
@@ -37,7 +37,7 @@ def make(source: Source, folder: Path, only: list[str] | None = None) -> Builder
         _mesh_parts(builder, source.data, source.what)
     if source.what == "a tunnel":
         builder.trends(source.data)
-    drawn = pictures.draw_all(pictures.chosen(figures_of(source.what), only), source.data, source.note)
+    drawn = pictures.draw_all(pictures.chosen(figures_for(source.what, source.data), only), source.data, source.note)
     study = paper_sentences.study_of(folder, source.data.settings) if source.what == "a tunnel" else None
     paper_sentences.apply(drawn.pictures, study)
     builder.figures(drawn)

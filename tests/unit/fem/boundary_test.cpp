@@ -4,6 +4,7 @@
 #include "fem/boundary.hpp"
 #include "fem/mesh_rectangle.hpp"
 #include "fem/mesh_tunnel.hpp"
+#include "tests/constrain.hpp"
 #include "tests/fem_support.hpp"
 #include "tests/shrinking_opening.hpp"
 #include "tests/throws.hpp"
@@ -77,12 +78,7 @@ TEST(VolumeLoss, RemovesExactlyItsShareOfTheArea) {
   EXPECT_EQ(moved(0, crown), 0);
 }
 
-TEST(Constraints, ContradictionsAreRefused) {
-  Constraints constraints;
-  constrain(constraints, {3, 4}, 0, 0);
-  constrain(constraints, {4}, 0, 0);
-  EXPECT_EQ(constraints.size(), 2u);
-  expect_throws<std::invalid_argument>([&] { constrain(constraints, {4}, 0, 1); }, "node 4 is given two displacements");
+TEST(AffineMotion, CannotTakeAllOfTheArea) {
   expect_throws<std::invalid_argument>([&] { static_cast<void>(affine_displacement({1, 1}, {0, 0}, 0, -1)); },
                                        "the area must not vanish");
 }

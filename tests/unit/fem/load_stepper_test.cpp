@@ -2,6 +2,7 @@
 
 #include "fem/load_stepper.hpp"
 #include "fem/mesh_rectangle.hpp"
+#include "tests/constrain.hpp"
 #include "tests/fem_support.hpp"
 #include "tests/throws.hpp"
 

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "fem/newton.hpp"
+#include "tests/constrain.hpp"
 #include "tests/fem_support.hpp"
 #include "tests/throws.hpp"
 

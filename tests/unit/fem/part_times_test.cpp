@@ -10,6 +10,7 @@
 #include "fem/linear_elastic.hpp"
 #include "fem/mesh_rectangle.hpp"
 #include "fem/newton.hpp"
+#include "tests/constrain.hpp"
 
 namespace voussoir::fem {
 namespace {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "fem/mesh_rectangle.hpp"
+#include "tests/constrain.hpp"
 #include "tests/fem_support.hpp"
 
 namespace voussoir::fem {

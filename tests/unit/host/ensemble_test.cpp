@@ -198,6 +198,15 @@ TEST(ReductionTest, ARunIsAtItsEndWhereItsLastIncrementIsTheLastPlanned) {
   EXPECT_FALSE(is_at_end(input, {}));
   input.kind = CaseKind::pack;
   EXPECT_FALSE(is_at_end(input, member(0).increments));
+  input.kind = CaseKind::column;
+  EXPECT_TRUE(is_at_end(input, {{.stage = "column", .load_parameter = 1}}));
+  EXPECT_FALSE(is_at_end(input, {{.stage = "column", .load_parameter = 0.9}}));
+  input.kind = CaseKind::scene;
+  input.scene.stages.resize(2);
+  input.scene.stages.back().name = "lowering";
+  EXPECT_TRUE(is_at_end(input, {{.stage = "lowering", .load_parameter = 1}}));
+  EXPECT_FALSE(is_at_end(input, {{.stage = "lowering", .load_parameter = 0.5}}));
+  EXPECT_FALSE(is_at_end(input, {{.stage = "gravity", .load_parameter = 1}}));
 }
 
 }  // namespace

@@ -184,7 +184,7 @@ fem::Mesh layered_mesh() {
 
 RegionCase region_of(const std::string& name, int grains, const char* folder) {
   RegionCase region;
-  region.name = name;
+  region.names = {name};
   region.packing.grains = grains;
   region.packing.pressure = 1e5;
   region.packing.folder = folder;
@@ -238,6 +238,27 @@ TEST(Regions, EqualRecipesShareTheirPackings) {
   std::multiset<double> fill(packing.begin(), packing.begin() + 4), bank(packing.begin() + 8, packing.end());
   EXPECT_EQ(fill, (std::multiset<double>{0, 0, 1, 1}));
   EXPECT_EQ(bank, (std::multiset<double>{0, 0, 1, 1}));
+}
+
+TEST(Regions, SeveralNamesAreAsManyTables) {
+  MaterialCase tables = layered_case();
+  for (RegionCase& region : tables.regions) {
+    region.packing.candidates = 2;
+    region.packing.variety = 2;
+  }
+  MaterialCase list = tables;
+  list.regions.erase(list.regions.begin() + 1);
+  list.regions[0].names = {"bank", "fill"};
+  const fem::Mesh mesh = layered_mesh();
+  const auto one = make_material(list, mesh), two = make_material(tables, mesh);
+  EXPECT_EQ(one->state(), two->state());
+  const std::vector<double> packings = packings_of(*one), others = packings_of(*two);
+  ASSERT_EQ(packings.size(), 12U);
+  for (std::size_t p = 0; p < 12; ++p) {
+    if (!std::isnan(packings[p])) {
+      EXPECT_EQ(packings[p], others[p]) << p;
+    }
+  }
 }
 
 TEST(Regions, OneRegionWithGrainsIsTheMaterialOfAMeshWithout) {

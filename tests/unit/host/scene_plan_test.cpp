@@ -205,7 +205,7 @@ TEST(Refused, APieceThatNothingHolds) {
   Scene scene = scene_on(grid(4, 3, 4, 3, {"lower", "middle", "upper"}), 20e3);
   scene.input.supports = {support({"base"}, "xy")};
   StageCase dig = stage("dig");
-  dig.excavations = {{"middle"}};
+  dig.excavations = {{.regions = {"middle"}}};
   scene.input.stages = {gravity_stage(), dig};
   expect_refused(scene, "stage[1]: nothing holds the piece of ground about (2, 2.5) m along");
   scene.input.supports.push_back(support({"top"}, "y"));
@@ -216,7 +216,7 @@ TEST(Refused, APieceThatNothingHolds) {
 TEST(Refused, TheLastGround) {
   Scene scene = bed();
   StageCase dig = stage("dig");
-  dig.excavations = {{"lower"}, {"upper"}};
+  dig.excavations = {{.regions = {"lower"}}, {.regions = {"upper"}}};
   scene.input.stages = {gravity_stage(), dig};
   expect_refused(scene, "stage[1].excavate[1].region: nothing of the ground is left");
 }
@@ -224,10 +224,10 @@ TEST(Refused, TheLastGround) {
 TEST(Refused, WhatIsDugOutTwice) {
   Scene scene = bed();
   StageCase dig = stage("dig"), again = stage("again");
-  dig.excavations = again.excavations = {{"upper"}};
+  dig.excavations = again.excavations = {{.regions = {"upper"}}};
   scene.input.stages = {dig, again};
   expect_refused(scene, "stage[1].excavate[0].region: upper has been dug out before");
-  again.excavations = {{"nowhere"}};
+  again.excavations = {{.regions = {"nowhere"}}};
   scene.input.stages = {again};
   expect_refused(scene, "stage[0].excavate[0].region: the mesh has no region nowhere");
 }
@@ -236,7 +236,7 @@ TEST(Refused, WhatIsDugOutTwice) {
 TEST(Refused, WhatASupportThatIsDugOutHeld) {
   Scene scene = bed();
   StageCase dig = stage("dig");
-  dig.excavations = {{"lower"}};
+  dig.excavations = {{.regions = {"lower"}}};
   scene.input.stages = {dig};
   expect_refused(scene, "stage[0]: nothing holds the ground along y");
 }
@@ -252,7 +252,7 @@ TEST(Refused, APressOnWhatIsHeldOrGone) {
   EXPECT_EQ(plan_stages(scene).size(), 1U);
 
   StageCase dig = stage("dig");
-  dig.excavations = {{"upper"}};
+  dig.excavations = {{.regions = {"upper"}}};
   press.presses = {pressure_on("top", 1e4)};
   scene.input.stages = {dig, press};
   expect_refused(scene, "stage[1].press[0].boundary: all of top has been dug out");
@@ -288,7 +288,7 @@ TEST(Refused, GroundAtRestWhereTheWeightIsTiltedOrGroundWasDugOut) {
   scene.input.stages = {settle};
   expect_refused(scene, "stage[0].tilt: right is pressed by ground at rest, which is level");
   StageCase dig = stage("dig");
-  dig.excavations = {{"upper"}};
+  dig.excavations = {{.regions = {"upper"}}};
   settle.tilt = {};
   scene.input.stages = {dig, settle};
   expect_refused(scene, "stage[1].press[0].at_rest: ground was dug out before");
@@ -335,7 +335,7 @@ TEST(Refused, APointThatIsNoNode) {
 TEST(Refused, MotionsOfWhatHasBeenDugOutAndMotionsThatWouldBeLost) {
   Scene scene = bed();
   StageCase dig = stage("dig"), lift = stage("lift");
-  dig.excavations = {{"upper"}};
+  dig.excavations = {{.regions = {"upper"}}};
   lift.moves = {move_by("top", {}, 0.01)};
   scene.input.stages = {dig, lift};
   expect_refused(scene, "stage[1].move[0].boundary: all of top has been dug out");

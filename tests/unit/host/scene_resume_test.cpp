@@ -26,7 +26,7 @@ Scene five_stages() {
   StageCase push = stage("push", 2), part = stage("part", 2), all = stage("all", 2), dig = stage("dig", 2);
   push.moves = {move_by("right", -0.01, {})};
   part.releases = {{.boundary = "right", .share = 0.3}};
-  dig.excavations = {{"upper"}};
+  dig.excavations = {{.regions = {"upper"}}};
   dig.presses = {traction_on("right", 500, 0)};
   all.presses = {pressure_on("top", 2e3)};
   StageCase weights = gravity_stage();

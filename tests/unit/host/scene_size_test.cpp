@@ -39,7 +39,7 @@ Case wall() {
   input.kind = CaseKind::scene;
   input.scene.regions.resize(3);
   const char* names[] = {"fill", "wall", "bank"};
-  for (std::size_t k = 0; k < 3; ++k) input.scene.regions[k].name = names[k];
+  for (std::size_t k = 0; k < 3; ++k) input.scene.regions[k].names = {names[k]};
   input.scene.regions[1].elastic = ElasticCase{};
   return input;
 }
