@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(os.environ["VOUSSOIR_ROOT"]) / "python"))
 
 import matplotlib.pyplot as plt
 import numpy as np
-from validation_figures import budget, lattice, scenes
+from validation_figures import budget, lattice, scenes, trapdoor_bands
 from validation_figures.log_axes import log_axis
 from validation_figures.program import Program
 
@@ -109,6 +109,17 @@ class Pictures(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertEqual(len(done.stderr.splitlines()), 1)
         self.assertIn("no_such_program", done.stderr)
+
+
+class Bands(unittest.TestCase):
+    def test_the_inclination_of_bands_is_found(self):
+        x, y = np.meshgrid(np.arange(1.02, 4, 0.04), np.arange(0.05, 2, 0.1), indexing="ij")
+        places = np.stack([x.ravel(), y.ravel()], axis=-1).reshape(-1, 4, 2)
+        for angle in (0.0, 20.0, 30.0):
+            lean = np.tan(np.radians(angle)) * places[..., 1]
+            left, right = (np.abs(places[..., 0] - at) for at in (2 + lean, 3 - lean))
+            rate = 0.05 + np.exp(-((left / 0.06) ** 2)) + np.exp(-((right / 0.06) ** 2))  # and a little everywhere
+            np.testing.assert_allclose(trapdoor_bands.inclinations(places, rate), angle, atol=1.5)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from .program import ROOT, Program
 Array = np.ndarray
 SHOWN = {0.01: CYCLE[0], 0.025: CYCLE[2], 0.05: CYCLE[3], 0.1: CYCLE[1]}  # volume losses that are drawn
 TOLD = (0.01, 0.025, 0.05, 0.075, 0.1)  # volume losses whose numbers are told
-MEMBERS = 4  # of both ensembles
+MEMBERS = 16  # of both ensembles
 HALF_TO_TEN = ("volume_loss.increments=40", "volume_loss.total=10 %")  # as in cases/full_tunnel
 SAME_MESH = ("ground.mesh_size_opening=1.2 m", "ground.mesh_size_far=6 m")  # as in cases/full_tunnel
 

@@ -64,6 +64,12 @@ class Members:
         """The number of increments that all members have."""
         return min(len(one) for one in self.load)
 
+    def finished(self) -> "Members":
+        """Those that came as far as any; the others found no equilibrium on the way."""
+        last = max(map(len, self.load))
+        whole = [k for k, one in enumerate(self.load) if len(one) == last]
+        return Members([self.down[k] for k in whole], [self.load[k] for k in whole])
+
     def together(self) -> Array:
         """Loads of all members (member, increment) in the increments that all of them have."""
         return np.array([one[: self.common] for one in self.load])
@@ -171,7 +177,7 @@ def draw(program: Program, path: Path) -> list[str]:
     peak, late = frictions(program)
     forms = published(float(peak.mean()), float(late.mean()))
     found = members(trapdoors(program))
-    medium = members(program.ensemble("trapdoor_md", HERE / "trapdoor.toml", MEDIUM_MEMBERS, *MEDIUM))
+    medium = members(program.ensemble("trapdoor_md", HERE / "trapdoor.toml", MEDIUM_MEMBERS, *MEDIUM)).finished()
     figure, axes = plt.subplots(1, 2, figsize=(12, 5.8), layout="constrained")
     for axis in axes:
         _draw_members(axis, found, medium)
