@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a call of RveBatch.evaluate costs beside the engine: for several numbers of RVEs, the wall time of the call in
-Python, the part of it within RvePool::evaluate, which a C++ program would call, and the difference; and what it costs to
-keep a state and to take it back.
+Python, the part of it within RvePool::evaluate, which a C++ program would call, and the difference; and what a state
+costs to keep and to take back.
 
     PYTHONPATH=build/openmp/python python/benchmarks/call_overhead.py [--grains 300] [--calls 30]
 
