@@ -17,7 +17,9 @@ SHOWN = {0.01: CYCLE[0], 0.025: CYCLE[2], 0.05: CYCLE[3], 0.1: CYCLE[1]}  # volu
 TOLD = (0.01, 0.025, 0.05, 0.075, 0.1)  # volume losses whose numbers are told
 MEMBERS = 16  # of both ensembles
 HALF_TO_TEN = ("volume_loss.increments=40", "volume_loss.total=10 %")  # as in cases/full_tunnel
+NEAR = 12.0  # distance from the axis within which the mean difference of the halves is told [m]
 SAME_MESH = ("ground.mesh_size_opening=1.2 m", "ground.mesh_size_far=6 m")  # as in cases/full_tunnel
+SAME_PACKINGS = ("packing.candidates=32", "packing.variety=16")  # and so the same seeds
 
 
 class Surface:
@@ -91,7 +93,7 @@ def _differences(axis: Axes, full: Surface) -> None:
         left, right = full.sides(loss)
         x = full.x[-left.shape[1] :]
         for k, one in enumerate(1e3 * (right - left)):
-            axis.plot(x, one, color=colour, linewidth=1, label=f"$V_l$ = {100 * loss:g} %" if k == 0 else "_")
+            axis.plot(x, one, color=colour, linewidth=0.6, label=f"$V_l$ = {100 * loss:g} %" if k == 0 else "_")
         _band(axis, x, right - left, colour, 2.2)
     axis.axhline(0, color="0.4", linewidth=0.8)
     axis.set_xlim(0, 25)
@@ -115,29 +117,35 @@ def _growth(axis: Axes, full: Surface) -> None:
     axis.legend(fontsize=8.5, loc="upper left")
 
 
+def _range(values: Array) -> str:
+    return f"{values.mean():.2g} ({values.min():.2g} to {values.max():.2g})"
+
+
 def _told(full: Surface, half: Path) -> list[str]:
     lines = []
     for loss in TOLD:
         middle = 1e3 * full.at(loss)[:, len(full.x) // 2]
         left, right = full.sides(loss)
-        largest = 1e3 * np.abs(right - left).max(axis=1)
-        places = full.x[full.at(loss).argmax(axis=1)]
-        share = 100 * full.asymmetry(loss)
+        differences, places = 1e3 * (right - left), full.x[full.at(loss).argmax(axis=1)]
+        side = differences[:, full.x[-left.shape[1] :] < NEAR].mean(axis=1)
         x, members = half_trough(half, loss)
         of_half = 1e3 * members[:, np.argmin(np.abs(x))]
         lines.append(
             f"V_l {100 * loss:g} %: {middle.mean():.1f} +- {middle.std(ddof=1):.1f} mm (half {of_half.mean():.1f} +- "
-            f"{of_half.std(ddof=1):.1f}); differences {', '.join(f'{d:.1f}' for d in largest)} mm; "
-            f"rms {', '.join(f'{s:.1f}' for s in share)} %; largest at {', '.join(f'{p:.1f}' for p in places)} m"
+            f"{of_half.std(ddof=1):.1f}); largest difference {_range(np.abs(differences).max(axis=1))} mm; "
+            f"rms {_range(100 * full.asymmetry(loss))} %; largest at {places.min():.1f} to {places.max():.1f} m; "
+            f"right less left within {NEAR:g} m: {side.mean():.2f} +- {side.std(ddof=1) / np.sqrt(len(side)):.2f} mm"
         )
     area = full.at(max(SHOWN))
-    lines.append(f"centre of the trough: {', '.join(f'{c:.2f}' for c in area @ full.x / area.sum(axis=1))} m")
+    lines.append(f"centre of the trough: {_range(area @ full.x / area.sum(axis=1))} m")
     return lines
 
 
 def draw(program: Program, path: Path) -> list[str]:
     full = Surface(program.ensemble("full", ROOT / "cases/full_tunnel/case.toml", MEMBERS))
-    half = program.ensemble("half", ROOT / "cases/tunnel_quick/case.toml", MEMBERS, *SAME_MESH, *HALF_TO_TEN)
+    half = program.ensemble(
+        "half", ROOT / "cases/tunnel_quick/case.toml", MEMBERS, *SAME_MESH, *SAME_PACKINGS, *HALF_TO_TEN
+    )
     figure, axes = plt.subplots(1, 3, figsize=(12, 4), layout="constrained")
     _troughs(axes[0], full, half)
     _differences(axes[1], full)
