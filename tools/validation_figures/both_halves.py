@@ -117,6 +117,11 @@ def _growth(axis: Axes, full: Surface) -> None:
     axis.legend(fontsize=8.5, loc="upper left")
 
 
+def _error(values: Array) -> str:
+    """Mean and its standard error."""
+    return f"{values.mean():.2f} +- {values.std(ddof=1) / np.sqrt(len(values)):.2f}"
+
+
 def _range(values: Array) -> str:
     return f"{values.mean():.2g} ({values.min():.2g} to {values.max():.2g})"
 
@@ -132,9 +137,9 @@ def _told(full: Surface, half: Path) -> list[str]:
         of_half = 1e3 * members[:, np.argmin(np.abs(x))]
         lines.append(
             f"V_l {100 * loss:g} %: {middle.mean():.1f} +- {middle.std(ddof=1):.1f} mm (half {of_half.mean():.1f} +- "
-            f"{of_half.std(ddof=1):.1f}); largest difference {_range(np.abs(differences).max(axis=1))} mm; "
+            f"{of_half.std(ddof=1):.1f}; pairs {_error(middle - of_half)}); largest difference {_range(np.abs(differences).max(axis=1))} mm; "
             f"rms {_range(100 * full.asymmetry(loss))} %; largest at {places.min():.1f} to {places.max():.1f} m; "
-            f"right less left within {NEAR:g} m: {side.mean():.2f} +- {side.std(ddof=1) / np.sqrt(len(side)):.2f} mm"
+            f"right less left within {NEAR:g} m: {_error(side)} mm"
         )
     area = full.at(max(SHOWN))
     lines.append(f"centre of the trough: {_range(area @ full.x / area.sum(axis=1))} m")
