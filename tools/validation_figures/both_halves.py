@@ -137,7 +137,8 @@ def _told(full: Surface, half: Path) -> list[str]:
         of_half = 1e3 * members[:, np.argmin(np.abs(x))]
         lines.append(
             f"V_l {100 * loss:g} %: {middle.mean():.1f} +- {middle.std(ddof=1):.1f} mm (half {of_half.mean():.1f} +- "
-            f"{of_half.std(ddof=1):.1f}; pairs {_error(middle - of_half)}); largest difference {_range(np.abs(differences).max(axis=1))} mm; "
+            f"{of_half.std(ddof=1):.1f}; pairs {_error(middle - of_half)}); "
+            f"largest difference {_range(np.abs(differences).max(axis=1))} mm; "
             f"rms {_range(100 * full.asymmetry(loss))} %; largest at {places.min():.1f} to {places.max():.1f} m; "
             f"right less left within {NEAR:g} m: {_error(side)} mm"
         )
