@@ -16,36 +16,38 @@ from .program import Program
 from .scenes import HERE, PSI, SMOOTHED, davis, terzaghi, wedge
 
 Array = np.ndarray
-MEMBERS, MEDIUM_MEMBERS = 8, 4
-MEDIUM = (  # medium dense sand, its weight, and half of the displacement
-    "packing.consolidation_friction=0.45",
-    "region[0].unit_weight=18 kN/m3",
-    "stage[2].steps=30",
-    "stage[2].move[0].y=-49 mm",
-)
 ELEMENT_STRESS = 20  # lateral stress at which the packings' friction is measured [kPa], that of half the depth
 FIRST_SLOPE = 125.0  # of Iglesia's curve: fall of the load over its first value, over displacement over width
 MCNULTY = (2e-4, 0.5)  # McNulty's abstract: so small a displacement may change the load by as much as 50 %
-WIDTHS = (
-    1e-4,
-    2e-4,
-    5e-4,
-    1e-3,
-    2e-3,
-    5e-3,
-    0.01,
-    0.014,
-    0.02,
-    0.05,
-    0.10,
-)  # displacements over B whose loads are told
+LEVEL = 0.085  # displacement over B from which the level at the end is told
+WIDTHS = (1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.10)  # displacements over B whose loads are told
 
 
-def frictions(program: Program) -> tuple[Array, Array]:
+@dataclass(frozen=True)
+class Sand:
+    name: str
+    suffix: str  # of its runs
+    members: int
+    unit_weight: float  # [N/m3]
+    packing: tuple[str, ...] = ()  # settings beside those of dense sand
+
+
+DENSE = Sand("dense", "_8", 8, 20e3)
+MEDIUM = Sand("medium dense", "_md", 4, 18e3, ("packing.consolidation_friction=0.45",))
+
+
+def trapdoors(program: Program, sand: Sand) -> Path:
+    """The folder of the ensemble."""
+    weight = f"region[0].unit_weight={sand.unit_weight / 1e3:g} kN/m3"
+    return program.ensemble(f"trapdoor{sand.suffix}", HERE / "trapdoor.toml", sand.members, weight, *sand.packing)
+
+
+def frictions(program: Program, sand: Sand) -> tuple[Array, Array]:
     """Friction angles [rad] of the members' packings in one element, at the peak and at 6 % of strain: means over 0.5 %
     of strain."""
-    settings = [f"stage[0].press[{k}].pressure={ELEMENT_STRESS} kPa" for k in (0, 1)]
-    ensemble = Ensemble(program.ensemble(f"element_{ELEMENT_STRESS}", HERE / "element.toml", MEMBERS, *settings))
+    pressures = [f"stage[0].press[{k}].pressure={ELEMENT_STRESS} kPa" for k in (0, 1)]
+    name = f"element_{ELEMENT_STRESS}{sand.suffix}"
+    ensemble = Ensemble(program.ensemble(name, HERE / "element.toml", sand.members, *pressures, *sand.packing))
     sheared = ensemble.curve("q_over_p_element").members[:, ensemble.stage == "shear"]
     angle = np.arcsin(sheared)  # q is half the difference of the principal stresses
     smoothed = np.array([np.convolve(one, np.ones(SMOOTHED) / SMOOTHED, "valid") for one in angle])
@@ -58,17 +60,13 @@ class Members:
 
     down: list[Array]
     load: list[Array]
+    cuts: list[int]  # steps that were cut
+    pulled: list[int]  # most nodes that pulled the ground
 
     @property
     def common(self) -> int:
         """The number of increments that all members have."""
         return min(len(one) for one in self.load)
-
-    def finished(self) -> "Members":
-        """Those that came as far as any; the others found no equilibrium on the way."""
-        last = max(map(len, self.load))
-        whole = [k for k, one in enumerate(self.load) if len(one) == last]
-        return Members([self.down[k] for k in whole], [self.load[k] for k in whole])
 
     def together(self) -> Array:
         """Loads of all members (member, increment) in the increments that all of them have."""
@@ -76,33 +74,40 @@ class Members:
 
 
 def members(folder: Path) -> Members:
-    """The members of an ensemble of the trapdoor, also of one that was stopped; the door is 1 m wide."""
-    found = Members([], [])
-    for run in sorted(folder.glob("member_*/run.h5")):
-        with h5py.File(run) as file:
-            rows = np.flatnonzero(file["table/stage"][()] != b"gravity")
-            if len(rows) == 0:
-                continue  # stopped before the door moved
-            rows = np.concatenate([[rows[0] - 1], rows])
-            down = -file["table/displacement_door_y"][()][rows]
-            load = file["table/reaction_door_y"][()][rows]
+    """The members of an ensemble of the trapdoor that came as far as any: others found no equilibrium on the way, or
+    were stopped. The door is 1 m wide."""
+    runs = []
+    for path in sorted(folder.glob("member_*/run.h5")):
+        with h5py.File(path) as file:
+            runs.append({name: values[()] for name, values in file["table"].items()})
+    last = max(len(run["stage"]) for run in runs)
+    found = Members([], [], [], [])
+    for run in runs:
+        if len(run["stage"]) < last:
+            continue
+        first = np.flatnonzero(run["stage"] != b"gravity")[0] - 1
+        down, load = -run["displacement_door_y"][first:], run["reaction_door_y"][first:]
         found.down.append(down - down[0])
         found.load.append(load / load[0])
+        found.cuts.append(int(run["cuts"].sum()))
+        found.pulled.append(int(run["tensile_nodes"].max()))
     return found
 
 
-def published(friction: float, late: float) -> list[tuple[str, float]]:
+def published(peak: float, late: float, sand: Sand) -> list[tuple[str, float]]:
     """Closed forms of the load over its first value, with the friction at the peak and at large strain [rad].
 
-    The last form has the friction on planes that shear without dilating any more, which is Davis' angle for psi = 0.
-    """
-    krynine = (1 - np.sin(friction) ** 2) / (1 + np.sin(friction) ** 2)
+    The last form has the friction on vertical planes that shear without dilating any more. Where the axes of stress and
+    strain coincide, the principal stresses lie at 45 degrees to such planes, so that the horizontal stress is the
+    vertical one (K = 1) and the friction on them is sin(phi), Davis' angle for psi = 0."""
+    krynine = (1 - np.sin(peak) ** 2) / (1 + np.sin(peak) ** 2)
+    weight = sand.unit_weight
     return [
-        (r"wedge with $\varphi$", wedge(friction)),
-        (r"wedge with $\psi$", wedge(PSI)),
-        ("Terzaghi, K = 1", terzaghi(friction, 1.0)),
-        (f"Terzaghi, K = {krynine:.2f} (Krynine)", terzaghi(friction, krynine)),
-        ("Terzaghi, K = 1, large strain", terzaghi(davis(late, 0.0), 1.0)),
+        (r"wedge with $\varphi$", wedge(peak, weight)),
+        (r"wedge with $\psi$", wedge(PSI, weight)),
+        ("Terzaghi, K = 1", terzaghi(peak, 1.0, weight)),
+        (f"Terzaghi, K = {krynine:.2f} (Krynine)", terzaghi(peak, krynine, weight)),
+        ("Terzaghi, K = 1, large strain", terzaghi(davis(late, 0.0), 1.0, weight)),
     ]
 
 
@@ -143,20 +148,28 @@ def _draw_published(axis: Axes, forms: list[tuple[str, float]], friction: float)
     axis.set_ylabel("load on the door over its first value  [-]")
 
 
-def told(found: Members, forms: list[tuple[str, float]]) -> list[str]:
-    """The numbers of the page."""
-    loads, down = found.together(), 100 * found.down[0]
+def _told(found: Members, peak: Array, forms: list[tuple[str, float]]) -> list[str]:
+    """The numbers of the page. @param peak friction angles of all packings [rad]"""
+    loads, down = found.together(), found.down[0]
     least = np.array([one.min() for one in found.load])
     at = ", ".join(f"{100 * d[one.argmin()]:.2f}" for d, one in zip(found.down, found.load))
     lines = [
-        f"all members reach {down[found.common - 1]:.2f} % of B",
+        f"{len(found.load)} members reach {100 * down[found.common - 1]:.2f} % of B; "
+        f"steps that were cut: {found.cuts}; nodes that pulled: {found.pulled}",
         f"least load: {_listed(least, 3)}; {_mean(least, 3)}; at {at} % of B",
-        f"least of the mean: {loads.mean(axis=0).min():.3f} at {down[loads.mean(axis=0).argmin()]:.2f} %",
+        f"least of the mean: {loads.mean(axis=0).min():.3f} at {100 * down[loads.mean(axis=0).argmin()]:.2f} %",
     ]
+    if len(least) == len(peak):
+        wedges = np.array([wedge(angle) for angle in peak])
+        lines.append(
+            f"wedges: {_mean(wedges, 3)}; correlation with the least load {np.corrcoef(wedges, least)[0, 1]:.2f}"
+        )
     for width in WIDTHS:
-        near = np.array([np.interp(width, d, one) for d, one in zip(found.down, found.load) if d[-1] > width - 1e-6])
-        if len(near) > 1:
-            lines.append(f"load at {100 * width:g} % of B: {_mean(near, 3)} of {len(near)}: {_listed(near, 3)}")
+        near = np.array([np.interp(width, d, one) for d, one in zip(found.down, found.load)])
+        lines.append(f"load at {100 * width:g} % of B: {_mean(near, 3)}: {_listed(near, 3)}")
+    level = loads.mean(axis=0)[down[: found.common] > LEVEL - 1e-6]
+    if len(level):
+        lines.append(f"mean load from {100 * LEVEL:g} % of B on: {level.min():.3f} to {level.max():.3f}")
     return lines + [f"{name}: {value:.3f}" for name, value in forms]
 
 
@@ -168,20 +181,21 @@ def _mean(values: Array, digits: int) -> str:
     return f"{values.mean():.{digits}f} +- {values.std(ddof=1):.{digits}f}"
 
 
-def trapdoors(program: Program) -> Path:
-    """The folder of the ensemble with dense sand."""
-    return program.ensemble("trapdoor_8", HERE / "trapdoor.toml", MEMBERS)
-
-
 def draw(program: Program, path: Path) -> list[str]:
-    peak, late = frictions(program)
-    forms = published(float(peak.mean()), float(late.mean()))
-    found = members(trapdoors(program))
-    medium = members(program.ensemble("trapdoor_md", HERE / "trapdoor.toml", MEDIUM_MEMBERS, *MEDIUM)).finished()
+    found, lines, forms, angles = {}, [], {}, {}
+    for sand in (DENSE, MEDIUM):
+        peak, late = frictions(program, sand)
+        found[sand], angles[sand] = members(trapdoors(program, sand)), float(peak.mean())
+        forms[sand] = published(angles[sand], float(late.mean()), sand)
+        lines += [
+            f"{sand.name}: friction {when}: {_listed(np.degrees(angle), 1)}; {_mean(np.degrees(angle), 1)} deg"
+            for when, angle in (("at the peak", peak), ("at 6 % of strain", late))
+        ]
+        lines += [f"{sand.name}: {line}" for line in _told(found[sand], peak, forms[sand])]
     figure, axes = plt.subplots(1, 2, figsize=(12, 5.8), layout="constrained")
     for axis in axes:
-        _draw_members(axis, found, medium)
-        _draw_published(axis, forms, float(peak.mean()))
+        _draw_members(axis, found[DENSE], found[MEDIUM])
+        _draw_published(axis, forms[DENSE], angles[DENSE])
     axes[0].set_xlim(0, 10)
     axes[0].set_ylim(0, 0.65)
     axes[0].set_title("to a tenth of the width")
@@ -193,8 +207,4 @@ def draw(program: Program, path: Path) -> list[str]:
     figure.legend(handles, labels, fontsize=9, ncols=4, loc="outside lower center")
     figure.suptitle("Trapdoor, H/B = 2, coarse sand: draws of the packing", fontsize=12)
     save(figure, path)
-    angles = [
-        f"friction {when}: {_listed(np.degrees(angle), 1)}; {_mean(np.degrees(angle), 1)} deg"
-        for when, angle in (("at the peak", peak), ("at 6 % of strain", late))
-    ]
-    return angles + told(found, forms) + [f"medium dense: {line}" for line in told(medium, [])]
+    return lines

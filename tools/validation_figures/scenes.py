@@ -62,16 +62,16 @@ def rankine(lateral_frictions: Array, passive: bool) -> float:
     return float(np.trapezoid(k * vertical, depth) / np.trapezoid(vertical, depth))
 
 
-def terzaghi(friction: float, lateral: float) -> float:
+def terzaghi(friction: float, lateral: float, unit_weight: float = UNIT_WEIGHT) -> float:
     """Load on the trapdoor over its first value between vertical planes that slide, with the coefficient `lateral`."""
     decay = 2 * lateral * np.tan(friction) * HEIGHT  # the door is 1 m wide
-    weight = UNIT_WEIGHT * HEIGHT * (1 - np.exp(-decay)) / decay
-    return float((weight + P0 * np.exp(-decay)) / (UNIT_WEIGHT * HEIGHT + P0))
+    weight = unit_weight * HEIGHT * (1 - np.exp(-decay)) / decay
+    return float((weight + P0 * np.exp(-decay)) / (unit_weight * HEIGHT + P0))
 
 
-def wedge(angle: float) -> float:
+def wedge(angle: float, unit_weight: float = UNIT_WEIGHT) -> float:
     """Weight on the trapdoor, over its first load, of the wedge whose sides leave the vertical by this angle [rad]."""
-    return float(UNIT_WEIGHT / (4 * np.tan(angle)) / (UNIT_WEIGHT * HEIGHT + P0))
+    return float(unit_weight / (4 * np.tan(angle)) / (unit_weight * HEIGHT + P0))
 
 
 def _friction(axis: Axes, frictions: Array) -> list[str]:

@@ -9,21 +9,18 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from voussoir.figures import q8
 from voussoir.figures.style import save
+from voussoir.figures.tensors import deviatoric_strain
 from voussoir.results import Result
 
-from .ground_reaction import frictions, trapdoors
+from .ground_reaction import DENSE, frictions, trapdoors
 from .program import Program
 
 Array = np.ndarray
 WIDTH = 1.0  # of the door [m]
 EDGES = (2.0, 3.0)  # x of the door's edges [m]
 RANGES = ((0.0, 0.0043), (0.0043, 0.016), (0.016, 0.05), (0.05, 0.10))  # displacements over the width
-HEIGHTS = (0.15, 0.85)  # between which a band's inclination is measured [m]
-
-
-def deviatoric(strain: Array) -> Array:
-    """eps_q of strains (xx, yy, xy), eq. (11) [-]."""
-    return 2 * np.hypot(0.5 * (strain[..., 0] - strain[..., 1]), strain[..., 2])
+HEIGHTS, UPPER = (0.15, 0.85), (1.0, 1.95)  # between which a band's inclination is measured [m]
+OTHERS = [(power, heights) for power in (1.5, 2, 3, 4) for heights in (HEIGHTS, (0.1, 0.6), (0.2, 1.0))]
 
 
 @dataclass
@@ -42,8 +39,8 @@ def gained(run: Result, first: float, last: float) -> tuple[float, float, Array]
     begin, end = (int(np.argmin(np.abs(down - at))) for at in (first, last))
     strain = increments[end].field("gauss/strain")
     if first == 0:
-        return 0.0, down[end], deviatoric(strain)
-    return down[begin], down[end], deviatoric(strain - increments[begin].field("gauss/strain"))
+        return 0.0, down[end], deviatoric_strain(strain)
+    return down[begin], down[end], deviatoric_strain(strain - increments[begin].field("gauss/strain"))
 
 
 def sheared(runs: list[Result]) -> list[Sheared]:
@@ -57,14 +54,14 @@ def sheared(runs: list[Result]) -> list[Sheared]:
     return found
 
 
-def inclinations(places: Array, rate: Array) -> Array:
+def inclinations(places: Array, rate: Array, heights: tuple[float, float] = HEIGHTS, power: float = 2) -> Array:
     """Angles from the vertical [deg] of the left and the right band, positive towards the door's middle.
 
-    The band's place at a height is the mean x of one half of the ground there, weighted with the square of the rate, so
+    The band's place at a height is the mean x of one half of the ground there, weighted with this power of the rate, so
     that the band counts and not what is strained a little everywhere. A straight line goes through these places."""
-    x, y, weight = places[..., 0].ravel(), places[..., 1].ravel(), rate.ravel() ** 2
+    x, y, weight = places[..., 0].ravel(), places[..., 1].ravel(), rate.ravel() ** power
     middle, found = sum(EDGES) / 2, []
-    rows = np.unique(np.round(y[(y > HEIGHTS[0]) & (y < HEIGHTS[1])], 6))
+    rows = np.unique(np.round(y[(y > heights[0]) & (y < heights[1])], 6))
     for side in (-1, 1):
         at = []
         for row in rows:
@@ -93,10 +90,28 @@ def _draw(axis: Axes, run: Result, one: Sheared, friction: float) -> PolyCollect
     return drawn
 
 
+def _told(runs: list[Result], found: list[Sheared]) -> list[str]:
+    """Inclinations of the bands; the first range has none yet."""
+    places = runs[0].gauss_points
+    members = [sheared([run]) for run in runs]
+    lines = []
+    for k, one in enumerate(found[1:], start=1):
+        lean = np.array([inclinations(places, member[k].rate).mean() for member in members])
+        upper = inclinations(places, one.rate, UPPER)
+        others = [inclinations(places, one.rate, heights, power).mean() for power, heights in OTHERS]
+        lines.append(
+            f"{100 * one.first:.2f} to {100 * one.last:.2f} % of the width: bands lean {lean.mean():.0f} +- "
+            f"{lean.std(ddof=1):.0f} deg to the middle ({lean.min():.0f} to {lean.max():.0f}); the mean of the members "
+            f"{inclinations(places, one.rate).mean():.0f}, with other weights and heights {min(others):.0f} to "
+            f"{max(others):.0f}, above {UPPER[0]:g} m {upper.mean():.0f}"
+        )
+    return lines
+
+
 def draw(program: Program, path: Path) -> list[str]:
-    friction = float(frictions(program)[0].mean())
-    runs = [Result(folder) for folder in sorted(trapdoors(program).glob("member_*"))]
-    found, places = sheared(runs), runs[0].gauss_points
+    friction = float(frictions(program, DENSE)[0].mean())
+    runs = [Result(folder) for folder in sorted(trapdoors(program, DENSE).glob("member_*"))]
+    found = sheared(runs)
     figure, axes = plt.subplots(1, len(found), figsize=(14, 3.8), layout="constrained", sharey=True)
     for axis, one in zip(axes, found):
         drawn = _draw(axis, runs[0], one, friction)
@@ -109,9 +124,4 @@ def draw(program: Program, path: Path) -> list[str]:
         fontsize=12,
     )
     save(figure, path)
-    # the first range has no bands yet
-    return [
-        f"{100 * one.first:.2f} to {100 * one.last:.2f} % of the width: bands lean "
-        f"{', '.join(f'{angle:.0f}' for angle in inclinations(places, one.rate))} deg to the middle"
-        for one in found[1:]
-    ] + [f"45 deg - phi/2 = {np.degrees(np.pi / 4 - friction / 2):.1f} deg"]
+    return [*_told(runs, found), f"45 deg - phi/2 = {np.degrees(np.pi / 4 - friction / 2):.1f} deg"]

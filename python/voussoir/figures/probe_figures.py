@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from .probes import COMPONENTS, STRAINED, Probe
 from .result import Missing
 from .style import CYCLE, LINES, MARKERS, save
+from .tensors import deviatoric_strain
 
 SAID = {
     "xx": "extension xx",
@@ -66,7 +67,7 @@ def draw_path(probe: Probe, path: Path) -> None:
         xx, yy = (-probe.path_of(seed, f"stress_{c}_Pa") for c in ("xx", "yy"))
         strain_xx, strain_yy = (-probe.path_of(seed, f"strain_{c}") for c in ("xx", "yy"))
         xy, strain_xy = probe.path_of(seed, "stress_xy_Pa"), probe.path_of(seed, "strain_xy")
-        sheared = 100 * np.hypot(strain_xx - strain_yy, 2 * strain_xy)
+        sheared = 100 * deviatoric_strain(np.stack([strain_xx, strain_yy, strain_xy], axis=-1))
         for j, (values, symbol) in enumerate(((xx, "xx"), (yy, "yy"), (np.abs(xy), "xy"))):
             label = rf"$|\sigma_{{{symbol}}}|$" if symbol == "xy" else rf"$\sigma_{{{symbol}}}$"
             stress.plot(sheared, values / 1e3, line, color=CYCLE[j], marker=".", label=label if k == 0 else None)

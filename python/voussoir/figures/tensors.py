@@ -1,4 +1,4 @@
-"""Directions of plane tensors (xx, yy, xy) along the last axis, tension positive as in the files; and of axes."""
+"""Plane tensors (xx, yy, xy) along the last axis, tension positive as in the files: their directions and sizes."""
 
 import numpy as np
 import numpy.typing as npt
@@ -12,3 +12,8 @@ def major_from_vertical(stress: np.ndarray) -> np.ndarray:
 def axis_angle(angle: npt.ArrayLike) -> np.ndarray:
     """The angle of an axis, which has no arrow, brought into (-pi/2, pi/2]."""
     return np.pi / 2 - np.mod(np.pi / 2 - np.asarray(angle), np.pi)
+
+
+def deviatoric_strain(strain: np.ndarray) -> np.ndarray:
+    """eps_q = sqrt(2 e_ij e_ij) of the deviator e_ij, eq. (11) [-]: the diameter of Mohr's circle."""
+    return np.asarray(np.hypot(strain[..., 0] - strain[..., 1], 2 * strain[..., 2]))
