@@ -1,6 +1,8 @@
 #include "io/near_names.hpp"
 
 #include <algorithm>
+#include <compare>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -34,21 +36,28 @@ bool continues(std::string_view longer, std::string_view shorter) {
          longer.find('.', shorter.size()) == std::string_view::npos;
 }
 
-/// The edit distance, or half of the largest one where one name continues the other.
-std::size_t distance_of(std::string_view name, std::string_view wanted) {
-  const std::size_t distance = edit_distance(name, wanted);
-  return continues(name, wanted) ? std::min(distance, most_distance(wanted) / 2) : distance;
+/// How far a name is from a wanted one; the smaller one of two is nearer.
+struct Nearness {
+  std::size_t distance = 0;  ///< the edit distance, or half of the largest one where one name continues the other
+  std::size_t letters = 0;   ///< the edit distance, which decides where two names are equally far: "size" is "sizes"
+                             ///< and not "size_maximum"
+  auto operator<=>(const Nearness&) const = default;
+};
+
+Nearness nearness(std::string_view name, std::string_view wanted) {
+  const std::size_t letters = edit_distance(name, wanted);
+  return {continues(name, wanted) ? std::min(letters, most_distance(wanted) / 2) : letters, letters};
 }
 
 }  // namespace
 
 std::string nearest_name(const std::vector<std::string>& names, std::string_view wanted) {
-  std::size_t best = most_distance(wanted);
+  Nearness best{most_distance(wanted), std::numeric_limits<std::size_t>::max()};
   std::string nearest;
   for (const std::string& name : names) {
-    const std::size_t distance = distance_of(name, wanted);
-    if (distance <= best) {
-      best = distance;
+    const Nearness near = nearness(name, wanted);
+    if (near <= best) {
+      best = near;
       nearest = name;
     }
   }
@@ -59,17 +68,17 @@ std::vector<std::string> near_names(const std::string& wanted, const std::vector
   constexpr std::size_t longest = 100, most_names = 5;
   if (wanted.size() > longest) return {};
   const bool has_table = wanted.find('.') != std::string::npos;
-  std::vector<std::pair<std::size_t, std::string>> found;
+  std::vector<std::pair<Nearness, std::string>> found;
   for (const std::string& name : known) {
-    std::size_t distance = distance_of(name, wanted);
-    if (!has_table) distance = std::min(distance, distance_of(last_part(name), wanted));
-    if (distance <= most_distance(wanted)) found.emplace_back(distance, name);
+    Nearness near = nearness(name, wanted);
+    if (!has_table) near = std::min(near, nearness(last_part(name), wanted));
+    if (near.distance <= most_distance(wanted)) found.emplace_back(near, name);
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   // Where one name is a letter or two away, those at twice its distance and more are no longer meant.
   std::vector<std::string> names;
-  for (auto& [distance, name] : found) {
-    if (names.size() == most_names || distance > 2 * found.front().first) break;
+  for (auto& [near, name] : found) {
+    if (names.size() == most_names || near.distance > 2 * found.front().first.distance) break;
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
   }
   return names;

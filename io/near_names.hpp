@@ -16,7 +16,7 @@ namespace voussoir::io {
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The last of the names that are nearest to `wanted`, by letters or because one continues the other ("friction" and
-/// "friction_angle"); empty where all are farther than most_distance.
+/// "friction_angle"); where both lead equally near, letters decide. Empty where all are farther than most_distance.
 [[nodiscard]] std::string nearest_name(const std::vector<std::string>& names, std::string_view wanted);
 
 /// The known keys, "soil.thickness", that are meant by an unknown name perhaps, the nearest first and five at the most:

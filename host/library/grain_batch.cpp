@@ -30,8 +30,9 @@ host::PackingMix mix_of(std::vector<Grains>& packings, const std::vector<int>& p
 }
 
 /// All gradients are within 0.1 of the identity matrix, as deformation gradients F are. As displacement gradients they
-/// would double both sides of every cell within one increment, so that all grains part; no honest call asks for this,
-/// not even a Newton iterate that diverges, because this one is not near the same matrix everywhere.
+/// would double both sides of every cell within one increment, so that all grains part. Hardly any honest call asks
+/// for this: a Newton iterate that diverges over many RVEs is not near the same matrix everywhere. A single RVE may
+/// meet it, where a search tries to double its cell; the documents tell that this is refused.
 bool look_like_f(std::span<const fem::Gradient> gradients) {
   return std::all_of(gradients.begin(), gradients.end(), [](const fem::Gradient& h) {
     return (h - fem::Gradient::Identity()).cwiseAbs().maxCoeff() <= 0.1;
@@ -45,6 +46,12 @@ std::span<fem::Tangent> tangents_of(std::span<double> numbers) {
 }
 
 }  // namespace
+
+void require_finite(std::span<const double> gradients) {
+  const auto wrong = std::find_if_not(gradients.begin(), gradients.end(), [](double h) { return std::isfinite(h); });
+  if (wrong == gradients.end()) return;
+  throw std::invalid_argument(fmt::format("the gradient of RVE {} is not finite", (wrong - gradients.begin()) / 4));
+}
 
 GrainBatch::GrainBatch(std::vector<Grains> packings, std::vector<int> packing_of, const host::PoolOptions& options,
                        std::vector<bool> mirrored)
@@ -62,14 +69,15 @@ GrainBatch::GrainBatch(std::vector<Grains> packings, std::vector<int> packing_of
 }
 
 void GrainBatch::take_gradients(std::span<const double> f_minus_i) {
+  require_finite(f_minus_i);
   for (std::size_t k = 0; k < size(); ++k) {
     const double* h = f_minus_i.data() + 4 * k;
     gradients_[k] << h[0], h[1], h[2], h[3];
-    if (!gradients_[k].allFinite()) throw std::invalid_argument(fmt::format("the gradient of RVE {} is not finite", k));
   }
   if (look_like_f(gradients_)) {
     throw std::invalid_argument(
-        "all gradients are near the identity matrix, as F is: H is the displacement gradient (F minus identity)");
+        "all gradients are within 0.1 of the identity matrix, as F is: H is the displacement gradient (F minus "
+        "identity)");
   }
 }
 

@@ -49,6 +49,9 @@ struct AnswerArrays {
   std::span<PointReport> reports;  ///< (n)
 };
 
+/// @param gradients (n, 2, 2) @throws std::invalid_argument where a number is not finite, with the first such RVE
+void require_finite(std::span<const double> gradients);
+
 class GrainBatch {
  public:
   /// One RVE at each point. @param packing_of (n) index into `packings`; @param mirrored (n), or empty: none is
@@ -66,7 +69,8 @@ class GrainBatch {
   /// Answers to displacement gradients (n, 2, 2) that count from the committed state [-]. The numbers of steps follow
   /// the first evaluation of an increment and stay until `commit` or `begin_increment`. A point that has failed answers
   /// with NaN.
-  /// @throws std::invalid_argument where a gradient is not finite, or all gradients look like F; what a pause throws
+  /// @throws std::invalid_argument where a gradient is not finite, or all gradients are within 0.1 of the identity
+  /// matrix, as F is; what a pause throws
   fem::BatchReport evaluate(std::span<const double> f_minus_i, const AnswerArrays& to);
 
   /// Wall time of the last evaluation without what this class adds to the pool's own [s].

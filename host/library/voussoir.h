@@ -8,9 +8,10 @@
 /// vector of stress is (xx, yy, xy); the strains that a tangent multiplies are (xx, yy, gamma_xy), gamma_xy = 2 eps_xy.
 ///
 /// Every function that can fail returns one of the codes below, which are the exit statuses of the program where the
-/// program has one. No C++ exception leaves a function, and a call that is refused changes nothing. No function ends
-/// the process, unless the memory ends within a thread of the engine. Wrong pointers cannot be found, except NULL and
-/// handles that are not, or no longer, those of RVEs.
+/// program has one. No C++ exception leaves a function. A call that is refused leaves the committed state as it was
+/// and changes nothing else but what its description says. No function ends the process, unless the memory ends within
+/// a thread of the engine. Wrong pointers cannot be found, except NULL and handles that are not, or no longer, those of
+/// RVEs.
 ///
 /// Any thread may call. Calls wait for one another, because an evaluation uses all threads of the engine by itself. The
 /// functions refuse to work in a process that was forked after voussoir_start.
@@ -116,9 +117,13 @@ int voussoir_begin_increment(VoussoirRves* rves);
 /// @param tangent (n, 3, 3), symmetric [Pa]; or NULL, which saves the cost of the tangents
 /// @param status (n): how each RVE ended; or NULL
 /// Codes: no_equilibrium where at least one RVE has no answer: its stress and tangent are NaN, those of the others are
-/// right. With every other code but voussoir_ok, where n is right, all stresses and tangents are NaN, all statuses -1.
-/// misuse: a gradient that is not finite, or one that turns the cell inside out (det F <= 0); or all gradients are
-/// within 0.1 of the identity matrix, as F is. An earlier evaluation cannot be committed then.
+/// right. misuse: gradients or stress is NULL; a gradient is not finite, or turns the cell inside out (det F <= 0); or
+/// all gradients are within 0.1 of the identity matrix, as F is. This also refuses a single RVE whose H is meant to be
+/// there, which doubles its cell.
+///
+/// With every other code but voussoir_ok, where the handle and n are right, all stresses and tangents are NaN, all
+/// statuses -1. After every code but voussoir_ok an earlier evaluation cannot be committed. A call in a forked process
+/// or by a note does nothing of this.
 int voussoir_evaluate(VoussoirRves* rves, int64_t n, const double* gradients, double* stress, double* tangent,
                       int32_t* status);
 
@@ -130,7 +135,8 @@ int voussoir_commit(VoussoirRves* rves);
 /// computed, or a stiffer one of the grains' contacts where it computed none.
 int voussoir_committed(VoussoirRves* rves, int64_t n, double* stress, double* tangent);
 
-/// Numbers of the last evaluation; misuse before the first one.
+/// Numbers of the last evaluation; misuse before the first one, and after one that was refused or failed with another
+/// code than voussoir_no_equilibrium.
 int voussoir_report(VoussoirRves* rves, VoussoirReport* report);
 
 /// Size of the committed state [bytes]; it changes with commits, because contacts come and go.

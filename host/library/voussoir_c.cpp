@@ -85,10 +85,21 @@ VoussoirReport report_of(const fem::BatchReport& from, std::int64_t failed) {
   return out;
 }
 
-int evaluate(CRves& rves, std::span<const double> gradients, const AnswerArrays& to) {
-  rves.batch->forget_trial();
+/// The arrays of voussoir_evaluate.
+struct CallerArrays {
+  const double* gradients;
+  double* stress;
+  double* tangent;  ///< may be NULL, as the next one
+  std::int32_t* status;
+};
+
+int evaluate(CRves& rves, const CallerArrays& of) {
+  require(of.gradients, "gradients");
+  require(of.stress, "stress");
+  const std::span<const double> gradients{of.gradients, 4 * rves.batch->size()};
+  require_finite(gradients);
   refuse_inside_out(gradients);
-  const fem::BatchReport report = rves.batch->evaluate(gradients, to);
+  const fem::BatchReport report = rves.batch->evaluate(gradients, answers_in(rves, of.stress, of.tangent));
   rves.report = report_of(report, std::count_if(rves.points.begin(), rves.points.end(), [](const PointReport& point) {
                             return kernels::is_failure(static_cast<RveStatus>(point.status));
                           }));
@@ -97,16 +108,17 @@ int evaluate(CRves& rves, std::span<const double> gradients, const AnswerArrays&
   return voussoir_no_equilibrium;
 }
 
-/// @param status (n) or empty. All answers are NaN and all statuses -1 where an exception leaves this function.
-int evaluate(CRves& rves, std::span<const double> gradients, const AnswerArrays& to, std::span<std::int32_t> status) {
+/// All answers are NaN and all statuses -1 where an exception leaves this function.
+int evaluate_or_clear(CRves& rves, const CallerArrays& arrays) {
+  const std::size_t n = rves.batch->size();
   const auto clear = [&] {
-    std::fill(to.stress.begin(), to.stress.end(), nan);
-    std::fill(to.tangent.begin(), to.tangent.end(), nan);
-    std::fill(status.begin(), status.end(), -1);
+    if (arrays.stress != nullptr) std::fill_n(arrays.stress, 3 * n, nan);
+    if (arrays.tangent != nullptr) std::fill_n(arrays.tangent, 9 * n, nan);
+    if (arrays.status != nullptr) std::fill_n(arrays.status, n, -1);
   };
   try {
-    const int code = evaluate(rves, gradients, to);
-    for (std::size_t k = 0; k < status.size(); ++k) status[k] = rves.points[k].status;
+    const int code = evaluate(rves, arrays);
+    for (std::size_t k = 0; arrays.status != nullptr && k < n; ++k) arrays.status[k] = rves.points[k].status;
     return code;
   } catch (const std::invalid_argument& fault) {
     clear();
@@ -159,9 +171,9 @@ int32_t voussoir_threads(void) {
 
 int voussoir_create(const char* case_file, int64_t n, const char* settings, VoussoirNote note, void* context,
                     VoussoirRves** rves) {
+  if (rves != nullptr) *rves = nullptr;
   return library::guarded(__func__, [&] {
     library::require(rves, "rves");
-    *rves = nullptr;
     library::require(case_file, "case_file");
     if (n < 1) throw Misuse("n is " + std::to_string(n) + ", and at least 1 is right");
     library::require_threads();
@@ -200,12 +212,10 @@ int voussoir_begin_increment(VoussoirRves* rves) {
 int voussoir_evaluate(VoussoirRves* rves, int64_t n, const double* gradients, double* stress, double* tangent,
                       int32_t* status) {
   return library::guarded(__func__, rves, [&](library::CRves& ours) {
+    ours.batch->forget_trial();
+    ours.report.reset();
     library::require_equal(n, ours.batch->size(), "n");
-    library::require(gradients, "gradients");
-    library::require(stress, "stress");
-    const std::size_t size = ours.batch->size();
-    return library::evaluate(ours, {gradients, 4 * size}, library::answers_in(ours, stress, tangent),
-                             {status, status == nullptr ? 0 : size});
+    return library::evaluate_or_clear(ours, {gradients, stress, tangent, status});
   });
 }
 
@@ -229,7 +239,7 @@ int voussoir_committed(VoussoirRves* rves, int64_t n, double* stress, double* ta
 int voussoir_report(VoussoirRves* rves, VoussoirReport* report) {
   return library::guarded(__func__, rves, [&](library::CRves& ours) {
     library::require(report, "report");
-    if (!ours.report) throw Misuse("there is no evaluation yet");
+    if (!ours.report) throw Misuse("there is no evaluation yet, or the last one was refused");
     *report = *ours.report;
   });
 }

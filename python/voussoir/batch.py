@@ -164,7 +164,8 @@ class RveBatch:
 
         Raises:
             ValueError: wrong shape, a gradient that is not finite, or all gradients are within 0.1 of the identity
-                matrix, as F is
+                matrix, as F is. A batch of one point meets this where H is meant to double its cell: a search for H
+                should stay below 0.9
             TypeError: `tangent` is neither True nor False
             KeyboardInterrupt: after Ctrl-C; the committed state is as before, and the next evaluation is the first one
                 of the increment

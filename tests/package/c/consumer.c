@@ -114,6 +114,7 @@ static void make_mistakes(VoussoirRves* rves, const char* file) {
   check(voussoir_create(file, 1, NULL, NULL, NULL, NULL) == voussoir_misuse, "no handle is refused");
   check(voussoir_evaluate(rves, 3, numbers, numbers, NULL, NULL) == voussoir_misuse, "a wrong n is refused");
   check(voussoir_evaluate(rves, 2, NULL, numbers, NULL, NULL) == voussoir_misuse, "no gradients are refused");
+  check(isnan(numbers[0]) && isnan(numbers[5]) && numbers[6] == 0, "and leave no old answers");
   check(voussoir_evaluate(rves, 2, numbers, NULL, NULL, NULL) == voussoir_misuse, "no stress is refused");
   check(voussoir_evaluate(NULL, 2, numbers, numbers, NULL, NULL) == voussoir_misuse, "NULL is refused");
   check(voussoir_commit((VoussoirRves*)numbers) == voussoir_misuse, "a pointer that is no handle is refused");

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -118,6 +119,69 @@ TEST(CInterface, AGradientThatTurnsTheCellInsideOutIsRefused) {
   EXPECT_TRUE(std::isnan(out[0]));
 }
 
+TEST(CInterface, AGradientThatIsNoNumberIsToldBeforeOneThatTurnsTheCellInsideOut) {
+  const Rves rves;
+  Answer out{};
+  for (const double first : {-std::numeric_limits<double>::infinity(), std::nan("")}) {
+    std::array<double, 4 * n> h{};
+    h[0] = first;
+    h[7] = -1.5;
+    EXPECT_EQ(voussoir_evaluate(rves.get(), n, h.data(), out.data(), nullptr, nullptr), voussoir_misuse);
+    EXPECT_NE(std::string(voussoir_last_error()).find("the gradient of RVE 0 is not finite"), std::string::npos)
+        << voussoir_last_error();
+  }
+}
+
+/// Whatever argument is wrong, no old answer may be taken for a new one, committed or reported.
+TEST(CInterface, ARefusedEvaluationLeavesNothingOfAnEarlierOne) {
+  const Rves rves;
+  const double* const h = gradients.data();
+  auto no_number = gradients;
+  no_number.back() = std::nan("");
+  const std::array<double, 12 * n> filled = answer_of(rves.get());
+  const auto refused = [&](std::int64_t size, const double* from, bool with_stress, bool with_others) {
+    static_cast<void>(answer_of(rves.get()));
+    VoussoirReport report{};
+    EXPECT_EQ(voussoir_report(rves.get(), &report), voussoir_ok);
+    std::array<double, 12 * n> out = filled;
+    std::array<std::int32_t, n> status{};
+    EXPECT_EQ(voussoir_evaluate(rves.get(), size, from, with_stress ? out.data() : nullptr,
+                                with_others ? out.data() + 3 * n : nullptr, with_others ? status.data() : nullptr),
+              voussoir_misuse);
+    EXPECT_EQ(voussoir_commit(rves.get()), voussoir_misuse);
+    EXPECT_EQ(voussoir_report(rves.get(), &report), voussoir_misuse);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const bool given = size == n && (k < 3 * n ? with_stress : with_others);
+      EXPECT_TRUE(given ? std::isnan(out[k]) : out[k] == filled[k]) << k;
+    }
+    for (const std::int32_t s : status) EXPECT_EQ(s, size == n && with_others ? -1 : 0);
+  };
+  refused(n, nullptr, true, true);
+  refused(n, nullptr, true, false);
+  refused(n, h, false, true);
+  refused(n, no_number.data(), true, true);
+  refused(n + 1, h, true, true);
+}
+
+/// F in place of H is refused, and so is a single RVE whose H is meant to be near the identity.
+TEST(CInterface, GradientsNearTheIdentityAreRefused) {
+  VoussoirRves* one = nullptr;
+  ASSERT_EQ(voussoir_start(0), voussoir_ok);
+  ASSERT_EQ(voussoir_create(case_file.c_str(), 1, "packing.folder=packings\npacking.grains=60", nullptr, nullptr, &one),
+            voussoir_ok)
+      << voussoir_last_error();
+  for (const double e : {0.89, 0.9, 1.0, 1.1, 1.11}) {
+    const std::array<double, 4> h{e, 0, 0, e};
+    std::array<double, 3> stress{};
+    const int code = voussoir_evaluate(one, 1, h.data(), stress.data(), nullptr, nullptr);
+    EXPECT_EQ(code, e == 0.9 || e == 1.0 ? voussoir_misuse : voussoir_ok) << e << ": " << voussoir_last_error();
+    if (code == voussoir_misuse) {
+      EXPECT_NE(std::string(voussoir_last_error()).find("within 0.1 of the identity"), std::string::npos);
+    }
+  }
+  EXPECT_EQ(voussoir_destroy(one), voussoir_ok);
+}
+
 TEST(CInterface, AnIncrementThatBeginsAnewNeedsAnEvaluation) {
   const Rves rves;
   static_cast<void>(answer_of(rves.get()));
@@ -152,6 +216,9 @@ TEST(CInterface, ThreadsMayCallAtOnce) {
 }
 
 void call_back(const char* /*line*/, void* code) { *static_cast<int*>(code) = voussoir_stop(); }
+void create(const char* /*line*/, void* handle) {
+  voussoir_create(case_file.c_str(), 1, nullptr, nullptr, nullptr, static_cast<VoussoirRves**>(handle));
+}
 void throw_something(const char* /*line*/, void* /*context*/) { throw 7; }
 
 TEST(CInterface, ANoteMayNeitherCallNorThrow) {
@@ -161,6 +228,10 @@ TEST(CInterface, ANoteMayNeitherCallNorThrow) {
   const char* one = "packing.folder=packings\npacking.grains=60";
   EXPECT_EQ(voussoir_create(case_file.c_str(), 1, one, call_back, &code, &others), voussoir_ok);
   EXPECT_EQ(code, voussoir_misuse);
+  EXPECT_EQ(voussoir_destroy(others), voussoir_ok);
+  VoussoirRves* within = rves.get();
+  EXPECT_EQ(voussoir_create(case_file.c_str(), 1, one, create, static_cast<void*>(&within), &others), voussoir_ok);
+  EXPECT_EQ(within, nullptr) << "a refused call leaves a handle";
   EXPECT_EQ(voussoir_destroy(others), voussoir_ok);
   EXPECT_EQ(voussoir_create(case_file.c_str(), 1, one, throw_something, nullptr, &others), voussoir_machine_failure);
   EXPECT_EQ(others, nullptr);

@@ -92,6 +92,13 @@ TEST(KeyReference, NearNamesAreThoseOfKeysAndOfTheirLastParts) {
   EXPECT_TRUE(near_names("weather", known).empty());
   EXPECT_EQ(nearest_name({"modulus", "friction", "damping"}, "friction_angle"), "friction");
   EXPECT_EQ(nearest_name({"friction_angles", "friction"}, "friction_angle"), "friction_angles");
+  // A letter that is missing or wrong is likelier than a word that is missing.
+  const std::vector<std::string> sieve{"passing", "passing_by", "sizes", "size_minimum", "size_maximum"};
+  EXPECT_EQ(nearest_name(sieve, "size"), "sizes");
+  EXPECT_EQ(nearest_name(sieve, "passin"), "passing");
+  EXPECT_EQ(nearest_name(sieve, "size_max"), "size_maximum");
+  EXPECT_EQ(near_names("size", {"soil.size_minimum", "soil.sizes", "soil.size_maximum"}),
+            (std::vector<std::string>{"soil.sizes", "soil.size_minimum", "soil.size_maximum"}));
   EXPECT_TRUE(near_names(std::string(1000, 'x'), {std::string(1000, 'x')}).empty());
   EXPECT_EQ(near_names("a", {"b", "c", "d", "e", "f", "g", "h"}).size(), 5U);
 }
