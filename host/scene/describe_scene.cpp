@@ -153,7 +153,8 @@ std::string release_words(const Scene& scene, const StagePlan& plan, const Relea
   const Released& released = plan.released.at(target_of(scene.mesh, release));
   const bool fades = std::any_of(released.own.begin(), released.own.end(),
                                  [&](int dof) { return plan.fading.contains(dof); });
-  std::string words = name_of(scene.mesh, release) + " is released";
+  const std::string name = name_of(scene.mesh, release);
+  std::string words = name + " is released";
   if (fades) words += fmt::format(" by {:.4g} %", 100 * release.share);
   if (fades && !release.boundary.empty()) return words;
   std::map<std::string, std::set<char>> axes;  // by the owner
@@ -163,8 +164,8 @@ std::string release_words(const Scene& scene, const StagePlan& plan, const Relea
   }
   for (const int dof : dofs) axes[owner_of(scene, plan, dof)].insert(*axis_names[dof % 2]);
   for (const auto& [owner, named] : axes)
-    words += fmt::format(", {} owns {} of its node{}", owner, fmt::join(named, ""),
-                         release.boundary.empty() ? "" : "s");
+    words += fmt::format(", {} {} of its node{}", owner == name ? "a motion holds" : owner + " owns",
+                         fmt::join(named, ""), release.boundary.empty() ? "" : "s");
   return fades || !axes.empty() ? words : words + ", all of it is dug out";
 }
 
