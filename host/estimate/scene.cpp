@@ -91,7 +91,7 @@ CaseSize scene_size(const Case& input) {
   const PlannedScene planned = planned_scene(input);
   const fem::Mesh& mesh = planned.scene.mesh;
   CaseSize size;
-  size.sentences = describe(planned);
+  size.sentences = describe(input, planned);
   size.points = static_cast<std::size_t>(mesh.n_points());
   size.nodes = static_cast<std::size_t>(mesh.n_nodes());
   size.height = mesh.coordinates.row(1).maxCoeff() - mesh.coordinates.row(1).minCoeff();

@@ -112,8 +112,9 @@ WatchedBoundaries watched(const std::vector<StagePlan>& plans) {
   return boundaries;
 }
 
-std::map<std::string, int> tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan, const Eigen::VectorXd& reactions,
-                                         const fem::Coordinates& coordinates) {
+std::map<std::string, std::set<int>> tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan,
+                                                   const Eigen::VectorXd& reactions,
+                                                   const fem::Coordinates& coordinates) {
   std::map<Target, std::map<int, fem::Point>> owned;  // node -> its reaction
   std::map<Target, std::string> names;
   for (const auto& [dof, owner] : plan.owners) {
@@ -124,12 +125,12 @@ std::map<std::string, int> tensile_nodes(const fem::Mesh& mesh, const StagePlan&
   }
   const double floor = 1e-6 * reactions.cwiseAbs().maxCoeff();
   const std::vector<fem::Edge> outline = fem::outline_of(mesh, plan.dug_out);
-  std::map<std::string, int> found;
+  std::map<std::string, std::set<int>> found;
   for (const auto& [target, nodes] : owned) {
     const Eigen::VectorXd inwards = fem::pressure_force(coordinates, edges_at(mesh, target, outline), 1.0);  // of -N
     for (const auto& [node, reaction] : nodes) {
       const fem::Point inward = inwards.segment<2>(2 * node);
-      if (inward.norm() > 0 && reaction.dot(inward) < -floor * inward.norm()) ++found[names.at(target)];
+      if (inward.norm() > 0 && reaction.dot(inward) < -floor * inward.norm()) found[names.at(target)].insert(node);
     }
   }
   return found;
@@ -154,9 +155,9 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
     const auto area = boundaries.with_area.find(name);
     if (area != boundaries.with_area.end()) to["area_" + name] = {lost_area(ground, name, area->second), "-"};
   }
-  int pulled = 0;
-  for (const auto& [name, count] : tensile_nodes(ground.mesh, plan, reactions, coordinates)) pulled += count;
-  to["tensile_nodes"] = {static_cast<double>(pulled), "-"};
+  std::set<int> pulled;
+  for (auto& [name, found] : tensile_nodes(ground.mesh, plan, reactions, coordinates)) pulled.merge(found);
+  to["tensile_nodes"] = {static_cast<double>(pulled.size()), "-"};
 }
 
 std::vector<std::string> column_names(const WatchedBoundaries& boundaries, const fem::Mesh& mesh) {

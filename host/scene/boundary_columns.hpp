@@ -2,6 +2,7 @@
 /// What the boundaries of a scene bear and how far they have moved, as columns of the table of increments.
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,8 @@ struct WatchedBoundaries {
 ///   displacement_NAME_x mean displacement of its nodes [m]
 ///   traction_NAME_x     the reaction over the width of the nodes that it owns [Pa]; not for curves inside the ground
 ///   area_NAME           area that the opening has lost over its first area [-]
-/// and tensile_nodes, the nodes at which what holds them pulls the ground outwards. `reactions` as
-/// fem::Increment::reactions [N/m], `coordinates` those on which they were integrated [m].
+/// and tensile_nodes, the number of the nodes at which what holds them pulls the ground outwards, each node once.
+/// `reactions` as fem::Increment::reactions [N/m], `coordinates` those on which they were integrated [m].
 void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& plan, const Ground& ground,
                           const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates, io::Quantities& to);
 
@@ -38,10 +39,11 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
 [[nodiscard]] double lost_area(const Ground& ground, const std::string& boundary,
                                const fem::Point& about = fem::Point::Zero());
 
-/// Nodes at which a held boundary, curve or point pulls the ground outwards, by the names of these. Where the ground is
-/// on both sides, it has no outward normal, and nothing is counted; that changes when one side is dug out.
-[[nodiscard]] std::map<std::string, int> tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan,
-                                                       const Eigen::VectorXd& reactions,
-                                                       const fem::Coordinates& coordinates);
+/// Nodes at which a held boundary, curve or point pulls the ground outwards, by the names of these; a node that two of
+/// them own along different axes may be with both. Where the ground is on both sides, it has no outward normal, and no
+/// node is there; that changes when one side is dug out.
+[[nodiscard]] std::map<std::string, std::set<int>> tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan,
+                                                                 const Eigen::VectorXd& reactions,
+                                                                 const fem::Coordinates& coordinates);
 
 }  // namespace voussoir::host

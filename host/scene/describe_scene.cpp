@@ -73,14 +73,20 @@ Extent extent_of(const fem::Mesh& mesh, const fem::GaussPoints& points, const st
   return extent;
 }
 
-std::vector<std::string> region_lines(const Scene& scene) {
+/// What is computed in a region.
+std::string material_of(const Case& input, const RegionCase& region) {
+  if (region.elastic) return fmt::format("linear elastic, {:.4g} MPa", region.elastic->modulus * 1e-6);
+  if (input.material == MaterialKind::linear_elastic)
+    return fmt::format("linear elastic, {:.4g} MPa", input.elastic.modulus * 1e-6);
+  return fmt::format("grains, {} packing{} of {} grains", region.packing.variety,
+                     region.packing.variety == 1 ? "" : "s", region.packing.grains);
+}
+
+std::vector<std::string> region_lines(const Case& input, const Scene& scene) {
   const fem::GaussPoints points = fem::gauss_points(scene.mesh, scene.mesh.coordinates);
   std::vector<std::string> lines;
   for (const RegionCase& region : scene.input.regions) {
-    const std::string material = region.elastic
-                                     ? fmt::format("linear elastic, {:.4g} MPa", region.elastic->modulus * 1e-6)
-                                     : fmt::format("grains, {} packing{} of {} grains", region.packing.variety,
-                                                   region.packing.variety == 1 ? "" : "s", region.packing.grains);
+    const std::string material = material_of(input, region);
     for (const std::string& name : region.names) {
       const auto [area, elements] = extent_of(scene.mesh, points, name);
       lines.push_back(fmt::format("region {}: {}; {:.4g} m2, {:.4g} kN/m, {} points", name, material, area,
@@ -132,6 +138,37 @@ std::string held_by(const Scene& scene, const StagePlan& plan) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// Who owns a degree of freedom of what is released: what holds it in this stage, or what else releases it.
+std::string owner_of(const Scene& scene, const StagePlan& plan, int dof) {
+  if (const auto owner = plan.owners.find(dof); owner != plan.owners.end())
+    return name_of(scene.mesh, plan.holders[owner->second]);
+  for (const ReleaseCase& release : plan.input.releases) {
+    if (plan.released.at(target_of(scene.mesh, release)).own.contains(dof)) return name_of(scene.mesh, release);
+  }
+  return {};
+}
+
+/// "door is released by 50 %"; of a point, and of a boundary of which nothing fades, also whom its nodes belong to.
+std::string release_words(const Scene& scene, const StagePlan& plan, const ReleaseCase& release) {
+  const Released& released = plan.released.at(target_of(scene.mesh, release));
+  const bool fades = std::any_of(released.own.begin(), released.own.end(),
+                                 [&](int dof) { return plan.fading.contains(dof); });
+  const std::string name = name_of(scene.mesh, release);
+  std::string words = name + " is released";
+  if (fades) words += fmt::format(" by {:.4g} %", 100 * release.share);
+  if (fades && !release.boundary.empty()) return words;
+  std::map<std::string, std::set<char>> axes;  // by the owner
+  std::set<int> dofs = released.others;
+  for (const int dof : released.own) {
+    if (plan.owners.contains(dof)) dofs.insert(dof);  // a motion of this stage holds it
+  }
+  for (const int dof : dofs) axes[owner_of(scene, plan, dof)].insert(*axis_names[dof % 2]);
+  for (const auto& [owner, named] : axes)
+    words += fmt::format(", {} {} of its node{}", owner == name ? "a motion holds" : owner + " owns",
+                         fmt::join(named, ""), release.boundary.empty() ? "" : "s");
+  return fades || !axes.empty() ? words : words + ", all of it is dug out";
+}
+
 std::string stage_line(const Scene& scene, const StagePlan& plan, std::size_t number) {
   std::string line = fmt::format("stage {} {}: {} steps, {}; held: {}", number, plan.input.name, plan.targets.size(),
                                  plan.input.geometry == LossGeometry::fixed_mesh ? "fixed_mesh" : "updated_lagrangian",
@@ -148,8 +185,7 @@ std::string stage_line(const Scene& scene, const StagePlan& plan, std::size_t nu
                                                               press.traction[0] * 1e-3, press.traction[1] * 1e-3)
                                                 : fmt::format("; ground at rest presses on {}", press.boundary);
   }
-  for (const ReleaseCase& release : plan.input.releases)
-    line += fmt::format("; {} is released by {:.4g} %", name_of(scene.mesh, release), 100 * release.share);
+  for (const ReleaseCase& release : plan.input.releases) line += "; " + release_words(scene, plan, release);
   for (const ExcavateCase& dug : plan.input.excavations) {
     for (const std::string& name : dug.regions) line += fmt::format("; {} is dug out", name);
   }
@@ -198,10 +234,10 @@ std::vector<std::string> owner_lines(const Scene& scene, const StagePlan& plan) 
 
 }  // namespace
 
-std::vector<std::string> describe(const PlannedScene& planned) {
+std::vector<std::string> describe(const Case& input, const PlannedScene& planned) {
   const Scene& scene = planned.scene;
   std::vector<std::string> lines{mesh_line(scene.mesh), boundaries_line(scene.mesh)};
-  for (std::string& line : region_lines(scene)) lines.push_back(std::move(line));
+  for (std::string& line : region_lines(input, scene)) lines.push_back(std::move(line));
   lines.push_back(pressure_line(planned));
   for (std::size_t k = 0; k < planned.plans.size(); ++k) lines.push_back(stage_line(scene, planned.plans[k], k + 1));
   for (const StagePlan& plan : planned.plans) {

@@ -59,8 +59,8 @@ class SceneColumns {
     };
     stage.on_record = [this, &plan](IncrementReport& increment) {
       for (const auto& [name, quantity] : of(plan, reactions_, coordinates_)) increment.info.extra[name] = quantity;
-      for (const auto& [name, count] : tensile_nodes(ground_.mesh, plan, reactions_, coordinates_))
-        pulled_[name] = std::max(pulled_[name], count);
+      for (const auto& [name, nodes] : tensile_nodes(ground_.mesh, plan, reactions_, coordinates_))
+        pulled_[name] = std::max(pulled_[name], nodes.size());
       if (shrinks(plan)) increment.volume_loss = increment.info.extra.at("area_" + *shrinks(plan)).value;
     };
   }
@@ -69,7 +69,8 @@ class SceneColumns {
   [[nodiscard]] std::string tension_sentence() const {
     std::string list;
     for (const auto& [name, count] : pulled_) {
-      if (count > 0) list += fmt::format("{}{} ({} nodes at the most)", list.empty() ? "" : ", ", name, count);
+      if (count == 0) continue;
+      list += fmt::format("{}{} ({} node{} at the most)", list.empty() ? "" : ", ", name, count, count == 1 ? "" : "s");
     }
     if (list.empty()) return {};
     return fmt::format("supports pulled the ground at {}: where it has no cohesion, a real boundary would part from it",
@@ -90,7 +91,7 @@ class SceneColumns {
   const Ground& ground_;
   Eigen::VectorXd reactions_;
   fem::Coordinates coordinates_;
-  std::map<std::string, int> pulled_;
+  std::map<std::string, std::size_t> pulled_;  ///< by name, the most of all increments
 };
 
 MaterialCase scene_material(const Case& input) {

@@ -62,6 +62,12 @@ struct BoundaryLoad {
   std::array<double, 2> rest_from{}, rest_to{};          ///< share of the tractions of ground at rest [-]
 };
 
+/// Degrees of freedom of a boundary or a point that a stage releases.
+struct Released {
+  std::set<int> own = {};     ///< those that it owned and that no holder before it takes back: their forces fade
+  std::set<int> others = {};  ///< those of another owner, whom they stay with or go back to
+};
+
 /// One stage with everything that earlier stages have left.
 struct StagePlan {
   StageCase input = {};
@@ -78,6 +84,7 @@ struct StagePlan {
   std::map<int, double> fading = {};
   /// Degrees of freedom of what was released in part, now or before: the rest of their forces stays.
   std::map<Target, std::set<int>> part_released = {};
+  std::map<Target, Released> released = {};  ///< in this stage
 
   /// The load of a boundary, or of the edges without a name (""); null where the boundary has no outer edges at all.
   [[nodiscard]] const BoundaryLoad* load_of(const std::string& boundary) const;

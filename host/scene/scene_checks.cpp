@@ -240,8 +240,9 @@ void check_releases(const fem::Mesh& mesh, const StageCase& stage, const std::ve
     const Target target = target_of(mesh, release);
     const std::string name = name_of(mesh, release);
     if (!known.insert(target).second) refuse(key, fmt::format("names {} for the second time in this stage", name));
-    const bool held = std::any_of(holders.begin(), holders.end(),
-                                  [&](const Holder& holder) { return holder.target() == target; });
+    const bool held = std::any_of(holders.begin(), holders.end(), [&](const Holder& holder) {
+      return !holder.nodes.empty() && holder.target() == target;
+    });
     const auto part = part_released.find(target);
     if (held || (part != part_released.end() && !part->second.empty())) continue;
     refuse(key, fmt::format("nothing holds {}{}", name, release.boundary.empty() ? " as a point" : ""));

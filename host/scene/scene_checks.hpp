@@ -15,7 +15,8 @@ inline constexpr double wide_step = 0.05;
 /// ground is left.
 void check_places(const Scene& scene);
 
-/// What the stage with this number releases is held, or was released in part, before it, and is released once.
+/// What the stage with this number releases is held, or was released in part, at ground that is left before it, and is
+/// released once.
 void check_releases(const fem::Mesh& mesh, const StageCase& stage, const std::vector<Holder>& holders,
                     const std::map<Target, std::set<int>>& part_released, std::size_t number);
 

@@ -121,34 +121,52 @@ void clear(BoundaryLoad& load, int axis) {
   }
 }
 
-/// The degrees of freedom that a boundary or a point owns and that nothing holds any more where it is no holder.
-std::set<int> let_go(StagePlan& plan, const Target& target) {
-  const std::map<int, std::size_t> before = owners_of(plan.holders);
-  std::set<int> dofs;
-  for (const auto& [dof, owner] : before) {
-    if (plan.holders[owner].target() == target) dofs.insert(dof);
-  }
-  std::erase_if(plan.holders, [&](const Holder& holder) { return holder.target() == target; });
+/// Takes away all holders of the targets at once, so that the order of the releases does not matter: a degree of
+/// freedom that nothing holds any more is released with the target that has owned it.
+void let_go(StagePlan& plan, const std::set<Target>& targets) {
+  const std::vector<Holder> holders = plan.holders;
+  const std::map<int, std::size_t> before = owners_of(holders);
+  std::erase_if(plan.holders, [&](const Holder& holder) { return targets.contains(holder.target()); });
   const std::map<int, std::size_t> after = owners_of(plan.holders);
-  std::erase_if(dofs, [&](int dof) { return after.contains(dof); });
-  return dofs;
+  for (const Holder& holder : holders) {
+    const Target target = holder.target();
+    if (!targets.contains(target)) continue;
+    for (const int node : holder.nodes) {
+      for (int axis = 0; axis < 2; ++axis) {
+        const int dof = 2 * node + axis;
+        if (!holder.axes[axis]) continue;
+        const bool is_own = !after.contains(dof) && holders[before.at(dof)].target() == target;
+        (is_own ? plan.released[target].own : plan.released[target].others).insert(dof);
+      }
+    }
+  }
 }
 
-/// The forces that held a boundary or a point fade, and the own load of a boundary begins at nothing along the axes
-/// that are free now. Of what was released in part before, the rest of the forces fades.
-void release(const fem::Mesh& mesh, StagePlan& plan, const ReleaseCase& release) {
-  const Target target = target_of(mesh, release);
-  std::array<bool, 2> freed{};
-  for (int axis = 0; axis < 2; ++axis) freed[axis] = is_held(plan.holders, release.boundary, axis);
-  std::set<int>& part = plan.part_released[target];
-  part.merge(let_go(plan, target));
-  for (const int dof : part) plan.fading[dof] = release.share;
-  if (release.share == 1) plan.part_released.erase(target);
-  if (release.boundary.empty()) return;  // a point has no load of its own
-  BoundaryLoad* load = load_of(plan, release.boundary);
+/// The own load of a boundary begins at nothing along the axes along which it is free now.
+void clear_loads(StagePlan& plan, const std::string& boundary, const std::array<bool, 2>& freed) {
+  BoundaryLoad* load = load_of(plan, boundary);
   if (load == nullptr) return;
   for (int axis = 0; axis < 2; ++axis) {
     if (freed[axis]) clear(*load, axis);
+  }
+}
+
+/// The forces that held boundaries and points fade. Of what was released in part before, the rest of the forces fades.
+void release(const fem::Mesh& mesh, StagePlan& plan) {
+  std::set<Target> targets;
+  for (const ReleaseCase& one : plan.input.releases) {
+    targets.insert(target_of(mesh, one));
+    if (one.boundary.empty()) continue;  // a point has no load of its own
+    clear_loads(plan, one.boundary, {is_held(plan.holders, one.boundary, 0), is_held(plan.holders, one.boundary, 1)});
+  }
+  let_go(plan, targets);
+  for (const ReleaseCase& one : plan.input.releases) {
+    const Target target = target_of(mesh, one);
+    std::set<int>& own = plan.released[target].own;
+    own.merge(plan.part_released[target]);
+    for (const int dof : own) plan.fading[dof] = one.share;
+    plan.part_released.erase(target);
+    if (one.share < 1) plan.part_released[target] = own;
   }
 }
 
@@ -206,6 +224,12 @@ void leave_out_dug(const Scene& scene, StagePlan& plan, const std::vector<char>&
     if (used[node] == 0) plan.idle_nodes.push_back(node);
   }
   for (Holder& holder : plan.holders) std::erase_if(holder.nodes, [&](int node) { return used[node] == 0; });
+  const auto is_idle = [&](int dof) { return used[dof / 2] == 0; };
+  for (auto& [target, dofs] : plan.part_released) std::erase_if(dofs, is_idle);
+  for (auto& [target, released] : plan.released) {
+    std::erase_if(released.own, is_idle);
+    std::erase_if(released.others, is_idle);
+  }
   std::set<int> mids;  // of edges that are left; an outer edge belongs to one element
   for (int e = 0; e < mesh.n_elements(); ++e) {
     if (plan.dug_out[e] == 0) mids.insert(mesh.elements[e].begin() + 4, mesh.elements[e].end());
@@ -272,7 +296,7 @@ void leave_to_holders(BoundaryLoad& load, const fem::Mesh& mesh, const std::vect
 
 StagePlan plan_stage(const Scene& scene, const Standing& standing, const StageCase& input) {
   StagePlan plan = plan_on(standing, input);
-  for (const ReleaseCase& one : input.releases) release(scene.mesh, plan, one);
+  release(scene.mesh, plan);
   for (const ExcavateCase& one : input.excavations) excavate(scene, plan, one);
   for (const MoveCase& move : input.moves) plan.holders.push_back(holder_of(scene, move));
   for (const PressCase& one : input.presses) press(plan, one, scene.pressure, standing.gravity == 0);

@@ -1,6 +1,6 @@
 """A curve inside the ground: the face of a pit is held while the pit is dug out, moves into it and is released, and so
 is a point. `check` names both, the table has their forces, and with the forces of all other supports they balance the
-ground. Two regions share one table."""
+ground. Two regions share one table. Nodes that are pulled are counted once."""
 
 from pathlib import Path
 
@@ -98,3 +98,20 @@ with h5py.File(folder / "run.h5") as results:
     place = np.argmin(np.linalg.norm(results["mesh/coordinates"][:] - (4.0, 1.0), axis=1))
 with h5py.File(folder / f"increments/{row['index']:04d}.h5") as increment:
     check(increment["node/reaction"][place, 1] == row["reaction_strut_y"], "the field has the same force")
+
+# A square of one element is drawn out upwards between rollers: all its eight nodes are pulled, the corners twice.
+Path("square.toml").write_text("""
+kind = "scene"
+title = "square"
+material = "linear_elastic"
+mesh = {shape = "grid", x = ["0 m", "1 m"], columns = [1], y = ["0 m", "1 m"], rows = [1]}
+region = [{name = "ground", unit_weight = "0 N/m3"}]
+support = [{boundary = "base", fix = "y"}, {boundary = ["left", "right"], fix = "x"}]
+stage = [{name = "pull", steps = 1, move = [{boundary = "top", y = "1 mm"}, {point = "top_right", y = "1 mm"}]}]
+""")
+folder = fresh("square")
+said = run([PROGRAM, "run", "square.toml", "-o", str(folder)])
+check(table(folder)[-1]["tensile_nodes"] == 8, f"{table(folder)[-1]['tensile_nodes']} of 8 nodes are pulled")
+counts = {"base": "3 nodes", "left": "3 nodes", "right": "3 nodes", "top": "2 nodes", "top_right": "1 node"}
+sentence = ", ".join(f"{name} ({count} at the most)" for name, count in counts.items())
+check(f"pulled the ground at {sentence}: " in said.stdout + said.stderr, f"the sides pull at {counts}")

@@ -28,6 +28,7 @@ from voussoir.figures import (
     scene_ground,
     scene_holds,
     scene_lines,
+    scene_needs,
 )
 from voussoir.figures.result import Missing, Result, plain
 
@@ -173,6 +174,12 @@ class WhatASceneCanHave(unittest.TestCase):
         ensemble.case["kind"] = "tunnel"
         self.assertEqual(len(catalogue.figures_for("an ensemble", ensemble)), 7)
 
+    def test_a_new_figure(self):
+        """A figure for which no rule is written yet is tried, of runs as of ensembles."""
+        data: Any = SimpleNamespace(case={"kind": "scene", "stage": []})
+        self.assertTrue(scene_needs.can_have(data, "new.png"))
+        self.assertTrue(scene_needs.ensemble_can_have(data, "ensemble_new.png"))
+
 
 class OfLaterHolds(unittest.TestCase):
     def test_words(self):
@@ -203,6 +210,32 @@ class OfLaterHolds(unittest.TestCase):
                 "hole": ("held x and y from stage prop on", False),
             },
         )
+
+    def test_again(self):
+        """What is held again after its release has both times; a stage that releases and holds has not let go."""
+        hold, free = [{"boundary": "right", "x": "0 m"}], [{"boundary": "right"}]
+        stages: list[dict[str, Any]] = [
+            {"name": "prop", "move": hold},
+            {"name": "out", "release": free},
+            {"name": "late", "move": [{"boundary": "right", "x": "0 m", "y": "0 m"}]},
+            {"name": "push", "move": hold},
+            {"name": "renew", "release": free, "move": hold},
+            {"name": "end", "release": free},
+        ]
+
+        def words(supports, number):
+            case = {"support": supports, "stage": stages[:number]}
+            result: Any = SimpleNamespace(case=case, boundaries={}, points={})
+            (found,) = scene_holds.holds(result)
+            return found.words([stage["name"] for stage in stages]), found.from_start
+
+        fixed = [{"boundary": "right", "fix": "x"}]
+        self.assertEqual(words(fixed, 2), ("held x until stage out", True))
+        self.assertEqual(words(fixed, 4), ("held x until stage out and from stage late on, y from stage late on", True))
+        again = "held x from stage prop until stage out and from stage late"
+        self.assertEqual(words([], 4), (f"{again} on, y from stage late on", False))
+        self.assertEqual(words([], 5), (f"{again} on, y from stage late until stage renew", False))
+        self.assertEqual(words([], 6), (f"{again} until stage end, y from stage late until stage renew", False))
 
     def test_picture(self):
         """What a later stage holds is hollow: a white line on the boundary, a white triangle."""

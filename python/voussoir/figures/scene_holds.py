@@ -12,32 +12,29 @@ from .result import Result
 START = -1  # stands for the number of a stage where something is held before the first one
 
 
+Span = tuple[int, int | None]  # numbers of the stage that holds, or START, and of the one that releases, if one does
+
+
 @dataclass
 class Hold:
     """A boundary, or a point, and the stages between which it is held along each axis."""
 
     name: str
     place: np.ndarray | None = None  # of a point [m]; a boundary has none
-    first: dict[str, int] = field(default_factory=dict)  # number of the stage by axis, or START
-    end: dict[str, int] = field(default_factory=dict)  # number of the stage that releases it first
+    spans: dict[str, tuple[Span, ...]] = field(default_factory=dict)  # by axis, one after the other
 
     @property
     def from_start(self) -> bool:
-        return START in self.first.values()
+        return any(spans[0][0] == START for spans in self.spans.values())
 
     def words(self, stages: list[str]) -> str:
-        """ "held x and y", "held x, y from stage dig on", "held x from stage dig until stage free"."""
-        axes: dict[tuple[int, int | None], list[str]] = {}
-        for axis in sorted(self.first):
-            axes.setdefault((self.first[axis], self.end.get(axis)), []).append(axis)
+        """ "held x and y", "held x, y from stage dig on", "held x until stage dig and from stage prop on"."""
+        axes: dict[tuple[Span, ...], list[str]] = {}
+        for axis in sorted(self.spans):
+            axes.setdefault(self.spans[axis], []).append(axis)
         parts = []
-        for (first, end), named in sorted(axes.items(), key=lambda entry: entry[0][0]):
-            part = " and ".join(named)
-            if first != START:
-                part += f" from stage {stages[first]}" + (" on" if end is None else "")
-            if end is not None:
-                part += f" until stage {stages[end]}"
-            parts.append(part)
+        for spans, named in sorted(axes.items(), key=lambda entry: entry[0][0][0]):
+            parts.append(" and ".join(named) + " and".join(_span_words(span, stages) for span in spans))
         return "held " + ", ".join(parts) if parts else ""
 
 
@@ -54,17 +51,30 @@ def holds(result: Result) -> list[Hold]:
         for move in stage.get("move", []):
             for key, hold in _targets(result, move):
                 _begin(known.setdefault(key, hold), _axes(move), number)
-    return [hold for hold in known.values() if hold.first]
+    return [hold for hold in known.values() if hold.spans]
 
 
 def _begin(hold: Hold, axes: set[str], number: int) -> None:
+    """What a stage releases and holds again is held all the time."""
     for axis in axes & set(scene.AXES):
-        hold.first.setdefault(axis, number)
+        *earlier, (first, end) = hold.spans.get(axis, ((number, number),))
+        if end == number:
+            hold.spans[axis] = (*earlier, (first, None))
+        elif end is not None:
+            hold.spans[axis] = (*earlier, (first, end), (number, None))
 
 
 def _end(hold: Hold, number: int) -> None:
-    for axis in hold.first:
-        hold.end.setdefault(axis, number)
+    for axis, (*earlier, (first, end)) in hold.spans.items():
+        hold.spans[axis] = (*earlier, (first, number if end is None else end))
+
+
+def _span_words(span: Span, stages: list[str]) -> str:
+    first, end = span
+    words = "" if first == START else f" from stage {stages[first]}"
+    if end is not None:
+        return words + f" until stage {stages[end]}"
+    return words + " on" if words else ""
 
 
 def _axes(move: dict[str, Any]) -> set[str]:

@@ -85,4 +85,4 @@ def can_have(result: Result, figure: str) -> bool:
 
 def ensemble_can_have(ensemble: Ensemble, figure: str) -> bool:
     """The same of an ensemble of scenes; ensembles of other kinds have all."""
-    return ensemble.case.get("kind") != "scene" or OF_ENSEMBLE[figure](ensemble)
+    return ensemble.case.get("kind") != "scene" or figure not in OF_ENSEMBLE or OF_ENSEMBLE[figure](ensemble)

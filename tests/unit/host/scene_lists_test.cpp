@@ -65,10 +65,10 @@ TEST(Lists, GiveSeveralRegionsOneWeight) {
   EXPECT_EQ(read(input.resolved).fingerprint, input.fingerprint);
   const PlannedScene planned = planned_scene(input);
   for (int e = 0; e < 6; ++e) EXPECT_EQ(planned.scene.unit_weight(e), e < 2 ? 20e3 : 18e3) << e;
-  const Names lines = describe(planned);
+  const Names lines = describe(input, planned);
   for (const char* name : {"a", "b", "c"})
     EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [&](const auto& line) {
-      return line.starts_with(fmt::format("region {}: ", name));
+      return line.starts_with(fmt::format("region {}: linear elastic, 50 MPa; ", name));
     })) << name;
 }
 
@@ -112,6 +112,14 @@ TEST(Lists, NameOnceWhatIsDugOutRecordedAndHeld) {
             "support[0].boundary: names \"right\" twice");
 }
 
+/// The lines of `check` about stages.
+Names stages_of(const std::string& text) {
+  const Case input = read(text);
+  Names lines = describe(input, planned_scene(input));
+  std::erase_if(lines, [](const std::string& line) { return !line.starts_with("stage "); });
+  return lines;
+}
+
 /// Points without a name are called by their place, and are held no longer where they have been dug out.
 TEST(Points, AreNamedByTheirPlaceWhileTheyAreThere) {
   const std::string dig = R"([[stage]]
@@ -121,9 +129,7 @@ steps = 1
 region = "c"
 )";
   const std::string held = two_tables + "[[support]]\npoint = [\"2 m\", \"3 m\"]\nfix = \"y\"\n";
-  Names stages;
-  for (const std::string& line : describe(planned_scene(read(scene(held, dig)))))
-    if (line.starts_with("stage ")) stages.push_back(line);
+  const Names stages = stages_of(scene(held, dig));
   ASSERT_EQ(stages.size(), 2U);
   EXPECT_NE(stages[0].find("the point (2, 3) m y"), std::string::npos) << stages[0];
   EXPECT_EQ(stages[1].find("the point"), std::string::npos) << stages[1];
@@ -135,6 +141,27 @@ point = ["2 m", "3 m"]
 x = "1 m"
 )")),
             "stage[1].steps: the point (2, 3) m moves by 1 of an element's edge a step: more steps");
+}
+
+/// `check` does not speak of a share where no force fades, and says whom the nodes of a point belong to.
+TEST(Releases, SayWhoOwnsTheNodes) {
+  const auto words = [](const std::string& fix, const std::string& releases, const std::string& more = "") {
+    const std::string
+        support = "[[support]]\nboundary = \"right\"\nfix = \"x\"\n[[support]]\npoint = \"top_right\"\nfix = ";
+    const std::string line = stages_of(scene(two_tables, support + "\"" + fix + "\"\n[[stage]]\nname = \"off\"\n" +
+                                                             "steps = 1\nrelease = [" + releases + "]\n" + more))
+                                 .at(1);
+    const std::size_t first = line.find("; ", line.find("held: "));
+    return line.substr(first + 2);
+  };
+  const std::string point = "{point = \"top_right\", share = 0.1}";
+  EXPECT_EQ(words("x", point), "top_right is released, right owns x of its node");
+  EXPECT_EQ(words("xy", point), "top_right is released by 10 %, right owns x of its node");
+  EXPECT_EQ(words("y", point), "top_right is released by 10 %");
+  EXPECT_EQ(words("x", point + ", {boundary = \"right\"}"),
+            "top_right is released by 10 %; right is released by 100 %");
+  EXPECT_EQ(words("y", "{boundary = \"right\"}", "move = [{boundary = \"right\", x = \"0 m\"}]\n"),
+            "right is released, a motion holds x of its nodes");
 }
 
 TEST(Releases, HaveOneTarget) {

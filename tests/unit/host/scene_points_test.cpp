@@ -37,6 +37,10 @@ ReleaseCase release_of(PlaceCase point, double share = 1) {
   return {.boundary = "", .point = std::move(point), .share = share};
 }
 
+ReleaseCase release_of(const std::string& boundary, double share = 1) {
+  return {.boundary = boundary, .point = {}, .share = share};
+}
+
 StageCase moved(const std::string& name, std::vector<ReleaseCase> releases) {
   StageCase one = stage(name, 2);
   one.geometry = LossGeometry::updated_lagrangian;
@@ -121,6 +125,53 @@ TEST(Points, ThatAreDugOutAreHeldNoLonger) {
   expect_refused(scene, "stage[1].release[0].point: nothing holds top_right as a point");
 }
 
+/// What is left of a force after a release in part goes with the ground.
+TEST(Releases, OfWhatHasBeenDugOutAreRefused) {
+  Scene scene = bed();
+  scene.input.supports.push_back(support({"top"}, "y"));
+  scene.input.supports.push_back(point_support(place("top_right"), "xy"));
+  StageCase dig = moved("dig", {});
+  dig.excavations = {{.regions = {"upper"}}};
+  const auto sentence = [](int stage, int number, const std::string& rest) {
+    return "stage[" + std::to_string(stage) + "].release[" + std::to_string(number) + "]." + rest;
+  };
+  const std::vector<ReleaseCase> parts{release_of(place("top_right"), 0.5), release_of("top", 0.5)};
+  for (const ReleaseCase& rest : {release_of(place("top_right")), release_of("top")}) {
+    const std::string refused = rest.boundary.empty() ? "point: nothing holds top_right as a point"
+                                                      : "boundary: nothing holds top";
+    scene.input.stages = {dig, moved("let_go", {rest})};
+    expect_refused(scene, sentence(1, 0, refused));
+    scene.input.stages = {moved("part", parts), dig, moved("let_go", {rest})};
+    expect_refused(scene, sentence(2, 0, refused));
+    scene.input.stages = {moved("part", parts), moved("let_go", {rest})};
+    EXPECT_EQ(plan_stages(scene).size(), 2U);
+  }
+}
+
+/// Where several releases of a stage meet at a node, the share of the node's owner counts, in any order of the tables.
+TEST(Releases, ShareTheirNodesByTheOwner) {
+  Scene scene = bed();
+  scene.input.supports.push_back(support({"top", "right"}, "xy"));
+  scene.input.supports.push_back(point_support(place("top_right"), "x"));
+  const int corner = scene.mesh.point("top_right");
+  std::vector<ReleaseCase> releases{release_of(place("top_right"), 0.1), release_of("top", 0.3), release_of("right")};
+  std::vector<StagePlan> plans;
+  for (int k = 0; k < 3; ++k) {
+    std::rotate(releases.begin(), releases.begin() + 1, releases.end());
+    for (int turn = 0; turn < 2; ++turn) {
+      std::swap(releases[0], releases[1]);
+      scene.input.stages = {moved("let_go", releases)};
+      plans.push_back(plan_stages(scene).front());
+    }
+  }
+  for (const StagePlan& plan : plans) {
+    EXPECT_EQ(plan.fading.at(2 * corner), 0.1);    // of the point
+    EXPECT_EQ(plan.fading.at(2 * corner + 1), 1);  // of "right", which comes after "top"
+    EXPECT_EQ(plan.fading, plans.front().fading);
+    EXPECT_EQ(plan.part_released, plans.front().part_released);
+  }
+}
+
 /// Reactions of this force [N/m] at each of the nodes.
 Eigen::VectorXd reactions_of(const Scene& scene, const std::vector<int>& nodes, const fem::Point& force) {
   Eigen::VectorXd reactions = Eigen::VectorXd::Zero(scene.mesh.n_dofs());
@@ -131,7 +182,11 @@ Eigen::VectorXd reactions_of(const Scene& scene, const std::vector<int>& nodes, 
 using Counts = std::map<std::string, int>;
 
 Counts pulled(const Scene& scene, const StagePlan& plan, const std::vector<int>& nodes, const fem::Point& force) {
-  return tensile_nodes(scene.mesh, plan, reactions_of(scene, nodes, force), scene.mesh.coordinates);
+  Counts counts;
+  const Eigen::VectorXd reactions = reactions_of(scene, nodes, force);
+  for (const auto& [name, found] : tensile_nodes(scene.mesh, plan, reactions, scene.mesh.coordinates))
+    counts[name] = static_cast<int>(found.size());
+  return counts;
 }
 
 TEST(Tension, IsCountedOfBoundariesAndOfPoints) {
