@@ -154,7 +154,7 @@ def _told(found: Members, peak: Array, forms: list[tuple[str, float]]) -> list[s
     least = np.array([one.min() for one in found.load])
     at = ", ".join(f"{100 * d[one.argmin()]:.2f}" for d, one in zip(found.down, found.load))
     lines = [
-        f"{len(found.load)} members reach {100 * down[found.common - 1]:.2f} % of B; "
+        f"{len(found.load)} members reach {100 * down[found.common - 1]:.2f} % of B",
         f"steps that were cut: {found.cuts}; nodes that pulled: {found.pulled}",
         f"least load: {_listed(least, 3)}; {_mean(least, 3)}; at {at} % of B",
         f"least of the mean: {loads.mean(axis=0).min():.3f} at {100 * down[loads.mean(axis=0).argmin()]:.2f} %",
