@@ -78,7 +78,7 @@ def _friction(axis: Axes, frictions: Array) -> list[str]:
     axis.plot(LATERAL, np.degrees(frictions), "o-", color=CYCLE[0])
     log_axis(axis, "x")
     axis.set_xlabel("lateral stress of the element test [kPa]")
-    axis.set_ylabel("friction angle, mean over 0.5 % of strain [deg]")
+    axis.set_ylabel("friction angle [deg], mean over 0.5 %")
     axis.set_title("the scenes' packing, made at 1 kPa")
     pairs = ", ".join(f"{d:.1f} at {s} kPa" for s, d in zip(LATERAL, np.degrees(frictions), strict=True))
     return [f"friction angles: {pairs}"]
