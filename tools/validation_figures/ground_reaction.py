@@ -42,16 +42,32 @@ def trapdoors(program: Program, sand: Sand) -> Path:
     return program.ensemble(f"trapdoor{sand.suffix}", HERE / "trapdoor.toml", sand.members, weight, *sand.packing)
 
 
-def frictions(program: Program, sand: Sand) -> tuple[Array, Array]:
-    """Friction angles [rad] of the members' packings in one element, at the peak and at 6 % of strain: means over 0.5 %
-    of strain."""
+def _sheared(program: Program, sand: Sand) -> tuple[Ensemble, Array]:
+    """One element of each member's packing, which is compressed to 6 % of strain; the increments of the shearing."""
     pressures = [f"stage[0].press[{k}].pressure={ELEMENT_STRESS} kPa" for k in (0, 1)]
     name = f"element_{ELEMENT_STRESS}{sand.suffix}"
     ensemble = Ensemble(program.ensemble(name, HERE / "element.toml", sand.members, *pressures, *sand.packing))
-    sheared = ensemble.curve("q_over_p_element").members[:, ensemble.stage == "shear"]
-    angle = np.arcsin(sheared)  # q is half the difference of the principal stresses
+    return ensemble, np.flatnonzero(ensemble.stage == "shear")
+
+
+def frictions(program: Program, sand: Sand) -> tuple[Array, Array]:
+    """Friction angles [rad] of the members' packings in one element, at the peak and at 6 % of strain: means over 0.5 %
+    of strain."""
+    ensemble, rows = _sheared(program, sand)
+    angle = np.arcsin(ensemble.curve("q_over_p_element").members[:, rows])  # q: half of the stresses' difference
     smoothed = np.array([np.convolve(one, np.ones(SMOOTHED) / SMOOTHED, "valid") for one in angle])
     return smoothed.max(axis=1), smoothed[:, -1]
+
+
+def dilatancies(program: Program, sand: Sand) -> Array:
+    """Largest angles of dilatancy [rad] of the members' packings in one element, over 0.5 % of strain: the sine is the
+    gain of volume over the gain of deviatoric strain. The element is 1 m high."""
+    ensemble, rows = _sheared(program, sand)
+    volume = -ensemble.curve("volumetric_strain_element").members[:, rows]
+    along = ensemble.curve("displacement_top_y").members[:, rows]
+    steps = SMOOTHED - 1
+    gains = [one[:, steps:] - one[:, :-steps] for one in (volume, volume - 2 * along)]
+    return np.asarray(np.arcsin((gains[0] / gains[1]).max(axis=1)))
 
 
 @dataclass

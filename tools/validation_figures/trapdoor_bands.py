@@ -1,4 +1,5 @@
-"""Where the ground above the trapdoor shears, range by range of the door's displacement: mean of eight packings."""
+"""Where the ground above the trapdoor shears, range by range of the door's displacement: means of the packings of dense
+and of medium dense sand."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from voussoir.figures.style import save
 from voussoir.figures.tensors import deviatoric_strain
 from voussoir.results import Result
 
-from .ground_reaction import DENSE, frictions, trapdoors
+from .ground_reaction import DENSE, MEDIUM, Sand, dilatancies, frictions, trapdoors
 from .program import Program
 
 Array = np.ndarray
@@ -90,6 +91,13 @@ def _draw(axis: Axes, run: Result, one: Sheared, friction: float) -> PolyCollect
     return drawn
 
 
+def _finished(program: Program, sand: Sand) -> list[Result]:
+    """The members that came as far as any."""
+    runs = [Result(folder) for folder in sorted(trapdoors(program, sand).glob("member_*"))]
+    last = max(len(run.increments) for run in runs)
+    return [run for run in runs if len(run.increments) == last]
+
+
 def _told(runs: list[Result], found: list[Sheared]) -> list[str]:
     """Inclinations of the bands; the first range has none yet."""
     places = runs[0].gauss_points
@@ -109,19 +117,23 @@ def _told(runs: list[Result], found: list[Sheared]) -> list[str]:
 
 
 def draw(program: Program, path: Path) -> list[str]:
-    friction = float(frictions(program, DENSE)[0].mean())
-    runs = [Result(folder) for folder in sorted(trapdoors(program, DENSE).glob("member_*"))]
-    found = sheared(runs)
-    figure, axes = plt.subplots(1, len(found), figsize=(14, 3.8), layout="constrained", sharey=True)
-    for axis, one in zip(axes, found):
-        drawn = _draw(axis, runs[0], one, friction)
-        figure.colorbar(drawn, ax=axis, orientation="horizontal", shrink=0.9, extend="max")
-    axes[0].set_ylabel("$y$  [m]")
-    handles, labels = axes[0].get_legend_handles_labels()
+    figure, axes = plt.subplots(2, len(RANGES), figsize=(14, 7.2), layout="constrained", sharey=True)
+    lines = []
+    for row, sand in zip(axes, (DENSE, MEDIUM)):
+        friction, dilatancy = frictions(program, sand)[0].mean(), np.degrees(dilatancies(program, sand))
+        runs = _finished(program, sand)
+        found = sheared(runs)
+        for axis, one in zip(row, found):
+            drawn = _draw(axis, runs[0], one, friction)
+            figure.colorbar(drawn, ax=axis, orientation="horizontal", shrink=0.9, extend="max")
+        row[0].set_ylabel(f"{sand.name}, mean of {len(runs)}:  $y$  [m]")
+        lines.append(
+            f"{sand.name}: 45 deg - phi/2 = {np.degrees(np.pi / 4 - friction / 2):.1f} deg; largest dilatancy "
+            f"{dilatancy.mean():.1f} +- {dilatancy.std(ddof=1):.1f} deg"
+        )
+        lines += [f"{sand.name}: {line}" for line in _told(runs, found)]
+    handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, fontsize=9, ncols=2, loc="outside lower center")
-    figure.suptitle(
-        rf"Trapdoor: deviatoric strain $\varepsilon_q$ gained per displacement over the width, mean of {len(runs)}",
-        fontsize=12,
-    )
+    figure.suptitle(r"Trapdoor: deviatoric strain $\varepsilon_q$ gained per displacement over the width", fontsize=12)
     save(figure, path)
-    return [*_told(runs, found), f"45 deg - phi/2 = {np.degrees(np.pi / 4 - friction / 2):.1f} deg"]
+    return lines
