@@ -79,14 +79,9 @@ class Members:
     cuts: list[int]  # steps that were cut
     pulled: list[int]  # most nodes that pulled the ground
 
-    @property
-    def common(self) -> int:
-        """The number of increments that all members have."""
-        return min(len(one) for one in self.load)
-
     def together(self) -> Array:
-        """Loads of all members (member, increment) in the increments that all of them have."""
-        return np.array([one[: self.common] for one in self.load])
+        """Loads of all members (member, increment)."""
+        return np.array(self.load)
 
 
 def members(folder: Path) -> Members:
@@ -134,7 +129,7 @@ def three_lines(friction: float) -> tuple[Array, Array]:
 
 
 def _draw_members(axis: Axes, found: Members, medium: Members) -> None:
-    bands, x = of_members(found.together()), 100 * found.down[0][: found.common]
+    bands, x = of_members(found.together()), 100 * found.down[0]
     for half, colour, alpha, label in (
         (bands.prediction_half_width, CYCLE[1], 0.22, "95 % band of one further member"),
         (bands.mean_half_width, CYCLE[0], 0.35, "95 % band of the mean"),
@@ -145,7 +140,7 @@ def _draw_members(axis: Axes, found: Members, medium: Members) -> None:
         axis.plot(100 * down, load, color="0.45", linewidth=0.7, label=label)
     axis.plot(x, bands.mean, color=CYCLE[0], linewidth=2.2, label=f"mean of {len(found.load)}, dense")
     axis.plot(
-        100 * medium.down[0][: medium.common],
+        100 * medium.down[0],
         medium.together().mean(axis=0),
         color="black",
         linewidth=1.3,
@@ -170,7 +165,7 @@ def _told(found: Members, peak: Array, forms: list[tuple[str, float]]) -> list[s
     least = np.array([one.min() for one in found.load])
     at = ", ".join(f"{100 * d[one.argmin()]:.2f}" for d, one in zip(found.down, found.load))
     lines = [
-        f"{len(found.load)} members reach {100 * down[found.common - 1]:.2f} % of B",
+        f"{len(found.load)} members reach {100 * down[-1]:.2f} % of B",
         f"steps that were cut: {found.cuts}; nodes that pulled: {found.pulled}",
         f"least load: {_listed(least, 3)}; {_mean(least, 3)}; at {at} % of B",
         f"least of the mean: {loads.mean(axis=0).min():.3f} at {100 * down[loads.mean(axis=0).argmin()]:.2f} %",
@@ -183,7 +178,7 @@ def _told(found: Members, peak: Array, forms: list[tuple[str, float]]) -> list[s
     for width in WIDTHS:
         near = np.array([np.interp(width, d, one) for d, one in zip(found.down, found.load)])
         lines.append(f"load at {100 * width:g} % of B: {_mean(near, 3)}: {_listed(near, 3)}")
-    level = loads.mean(axis=0)[down[: found.common] > LEVEL - 1e-6]
+    level = loads.mean(axis=0)[down > LEVEL - 1e-6]
     if len(level):
         lines.append(f"mean load from {100 * LEVEL:g} % of B on: {level.min():.3f} to {level.max():.3f}")
     return lines + [f"{name}: {value:.3f}" for name, value in forms]
