@@ -112,9 +112,8 @@ WatchedBoundaries watched(const std::vector<StagePlan>& plans) {
   return boundaries;
 }
 
-std::map<std::string, std::set<int>> tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan,
-                                                   const Eigen::VectorXd& reactions,
-                                                   const fem::Coordinates& coordinates) {
+NodesByName tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan, const Eigen::VectorXd& reactions,
+                          const fem::Coordinates& coordinates) {
   std::map<Target, std::map<int, fem::Point>> owned;  // node -> its reaction
   std::map<Target, std::string> names;
   for (const auto& [dof, owner] : plan.owners) {
@@ -125,7 +124,7 @@ std::map<std::string, std::set<int>> tensile_nodes(const fem::Mesh& mesh, const 
   }
   const double floor = 1e-6 * reactions.cwiseAbs().maxCoeff();
   const std::vector<fem::Edge> outline = fem::outline_of(mesh, plan.dug_out);
-  std::map<std::string, std::set<int>> found;
+  NodesByName found;
   for (const auto& [target, nodes] : owned) {
     const Eigen::VectorXd inwards = fem::pressure_force(coordinates, edges_at(mesh, target, outline), 1.0);  // of -N
     for (const auto& [node, reaction] : nodes) {
@@ -137,7 +136,8 @@ std::map<std::string, std::set<int>> tensile_nodes(const fem::Mesh& mesh, const 
 }
 
 void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& plan, const Ground& ground,
-                          const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates, io::Quantities& to) {
+                          const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates,
+                          const NodesByName& pulled, io::Quantities& to) {
   const Eigen::VectorXd displacement = ground.total_displacement();
   for (const std::string& name : boundaries.held) {
     const std::vector<int> nodes = nodes_left(plan, ground.mesh.node_set(name));
@@ -155,9 +155,9 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
     const auto area = boundaries.with_area.find(name);
     if (area != boundaries.with_area.end()) to["area_" + name] = {lost_area(ground, name, area->second), "-"};
   }
-  std::set<int> pulled;
-  for (auto& [name, found] : tensile_nodes(ground.mesh, plan, reactions, coordinates)) pulled.merge(found);
-  to["tensile_nodes"] = {static_cast<double>(pulled.size()), "-"};
+  std::set<int> once;
+  for (const auto& [name, nodes] : pulled) once.insert(nodes.begin(), nodes.end());
+  to["tensile_nodes"] = {static_cast<double>(once.size()), "-"};
 }
 
 std::vector<std::string> column_names(const WatchedBoundaries& boundaries, const fem::Mesh& mesh) {

@@ -13,6 +13,8 @@
 
 namespace voussoir::host {
 
+using NodesByName = std::map<std::string, std::set<int>>;
+
 /// The boundaries that something holds or moves in any stage, and those whose area changes: the same columns in all
 /// stages.
 struct WatchedBoundaries {
@@ -27,9 +29,11 @@ struct WatchedBoundaries {
 ///   traction_NAME_x     the reaction over the width of the nodes that it owns [Pa]; not for curves inside the ground
 ///   area_NAME           area that the opening has lost over its first area [-]
 /// and tensile_nodes, the number of the nodes at which what holds them pulls the ground outwards, each node once.
-/// `reactions` as fem::Increment::reactions [N/m], `coordinates` those on which they were integrated [m].
+/// `reactions` as fem::Increment::reactions [N/m], `coordinates` those on which they were integrated [m], `pulled` the
+/// tensile_nodes of both.
 void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& plan, const Ground& ground,
-                          const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates, io::Quantities& to);
+                          const Eigen::VectorXd& reactions, const fem::Coordinates& coordinates,
+                          const NodesByName& pulled, io::Quantities& to);
 
 /// The names of these columns.
 [[nodiscard]] std::vector<std::string> column_names(const WatchedBoundaries& boundaries, const fem::Mesh& mesh);
@@ -42,8 +46,7 @@ void add_boundary_columns(const WatchedBoundaries& boundaries, const StagePlan& 
 /// Nodes at which a held boundary, curve or point pulls the ground outwards, by the names of these; a node that two of
 /// them own along different axes may be with both. Where the ground is on both sides, it has no outward normal, and no
 /// node is there; that changes when one side is dug out.
-[[nodiscard]] std::map<std::string, std::set<int>> tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan,
-                                                                 const Eigen::VectorXd& reactions,
-                                                                 const fem::Coordinates& coordinates);
+[[nodiscard]] NodesByName tensile_nodes(const fem::Mesh& mesh, const StagePlan& plan, const Eigen::VectorXd& reactions,
+                                        const fem::Coordinates& coordinates);
 
 }  // namespace voussoir::host

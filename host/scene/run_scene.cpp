@@ -40,11 +40,11 @@ class SceneColumns {
   SceneColumns(const PlannedScene& planned, const Ground& ground)
       : boundaries_(watched(planned.plans)), records_(planned.records), ground_(ground) {}
 
-  /// Columns of a state whose reactions were integrated on these coordinates.
+  /// Columns of a state whose reactions were integrated on these coordinates, with its tensile_nodes.
   [[nodiscard]] io::Quantities of(const StagePlan& plan, const Eigen::VectorXd& reactions,
-                                  const fem::Coordinates& coordinates) const {
+                                  const fem::Coordinates& coordinates, const NodesByName& pulled) const {
     io::Quantities columns;
-    add_boundary_columns(boundaries_, plan, ground_, reactions, coordinates, columns);
+    add_boundary_columns(boundaries_, plan, ground_, reactions, coordinates, pulled, columns);
     add_record_columns(records_, plan, reactions, ground_, columns);
     return columns;
   }
@@ -58,9 +58,10 @@ class SceneColumns {
         coordinates_ -= step.increment.last_part.reshaped(2, coordinates_.cols());
     };
     stage.on_record = [this, &plan](IncrementReport& increment) {
-      for (const auto& [name, quantity] : of(plan, reactions_, coordinates_)) increment.info.extra[name] = quantity;
-      for (const auto& [name, nodes] : tensile_nodes(ground_.mesh, plan, reactions_, coordinates_))
-        pulled_[name] = std::max(pulled_[name], nodes.size());
+      const NodesByName pulled = tensile_nodes(ground_.mesh, plan, reactions_, coordinates_);
+      for (const auto& [name, quantity] : of(plan, reactions_, coordinates_, pulled))
+        increment.info.extra[name] = quantity;
+      for (const auto& [name, nodes] : pulled) pulled_[name] = std::max(pulled_[name], nodes.size());
       if (shrinks(plan)) increment.volume_loss = increment.info.extra.at("area_" + *shrinks(plan)).value;
     };
   }
@@ -140,7 +141,9 @@ RunStatus run_all(const Case& input, PlannedScene& planned, const ColumnResult& 
   StageAdditions additions;
   additions.on_start = [&](const StagePlan& plan, const SceneLoads& loads, const FadingForces& forces) {
     const Eigen::VectorXd reactions = loads.reactions(0, forces);
-    record_stage_start(run, plan, reactions, columns.of(plan, reactions, run.ground().state.coordinates));
+    const fem::Coordinates& x = run.ground().state.coordinates;
+    const NodesByName pulled = tensile_nodes(run.ground().mesh, plan, reactions, x);
+    record_stage_start(run, plan, reactions, columns.of(plan, reactions, x, pulled));
   };
   additions.complete = [&](const StagePlan& plan, Stage& stage) { columns.complete(plan, stage); };
   const RunStatus status = run_stages(run, planned.scene, planned.plans, column.k0.empty() ? nullptr : &rest,
