@@ -25,7 +25,7 @@ set_target_properties(voussoir_c PROPERTIES OUTPUT_NAME voussoir EXPORT_NAME c L
   LINK_DEPENDS "${exported_names}")
 get_target_property(rpath_of_links voussoir INSTALL_RPATH_USE_LINK_PATH)
 set_target_properties(voussoir_c PROPERTIES INSTALL_RPATH_USE_LINK_PATH "${rpath_of_links}")
-target_link_libraries(voussoir_c PRIVATE fmt::fmt hdf5::hdf5 Kokkos::kokkos OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})
+target_link_libraries(voussoir_c PRIVATE fmt::fmt hdf5::hdf5 voussoir_kokkos OpenMP::OpenMP_CXX ${CMAKE_DL_LIBS})
 # nodelete: threads of OpenMP may run yet when a program closes the library.
 target_link_options(voussoir_c PRIVATE "-Wl,--version-script=${exported_names}" "-Wl,-z,nodelete")
 if(VOUSSOIR_SANITIZE)

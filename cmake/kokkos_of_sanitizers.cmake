@@ -1,0 +1,22 @@
+# With sanitizers the rooms are shared libraries. A test program holds 200 MB of instrumented code otherwise, and the
+# ninety of them took 12 GB of disk and half of the time to build them. A static Kokkos becomes a shared library too:
+# each room would hold a copy of its own otherwise, and each copy would construct the same static objects.
+set(BUILD_SHARED_LIBS ON)
+get_target_property(kokkos_type Kokkos::kokkoscore TYPE)
+if(NOT kokkos_type STREQUAL STATIC_LIBRARY)
+  target_link_libraries(voussoir_kokkos INTERFACE Kokkos::kokkos)
+  return()
+endif()
+
+file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/kokkos.cpp" CONTENT "// The library is made of the archives of Kokkos.\n")
+add_library(voussoir_shared_kokkos SHARED "${PROJECT_BINARY_DIR}/kokkos.cpp")
+set(archives Kokkos::kokkoscore Kokkos::kokkoscontainers Kokkos::kokkossimd)
+list(TRANSFORM archives REPLACE "(.+)" "$<TARGET_FILE:\\1>")
+list(JOIN archives "," archives)
+target_link_libraries(voussoir_shared_kokkos PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,${archives}>" ${CMAKE_DL_LIBS})
+target_link_libraries(voussoir_kokkos INTERFACE voussoir_shared_kokkos)
+foreach(property COMPILE_DEFINITIONS COMPILE_FEATURES COMPILE_OPTIONS SYSTEM_INCLUDE_DIRECTORIES)
+  set_property(TARGET voussoir_kokkos PROPERTY INTERFACE_${property} $<TARGET_PROPERTY:Kokkos::kokkos,INTERFACE_${property}>)
+endforeach()
+target_include_directories(voussoir_kokkos SYSTEM INTERFACE
+                           $<TARGET_PROPERTY:Kokkos::kokkos,INTERFACE_INCLUDE_DIRECTORIES>)
