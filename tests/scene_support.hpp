@@ -16,31 +16,31 @@
 #include "host/scene/run_stages.hpp"
 #include "host/stages/ground_record.hpp"
 
-namespace voussoir::scene_support {
+namespace voussoir::host {
 
-inline host::SupportCase support(std::vector<std::string> boundaries, const std::string& axes) {
+inline SupportCase support(std::vector<std::string> boundaries, const std::string& axes) {
   return {.boundaries = std::move(boundaries),
           .point = {},
           .x = axes.find('x') != std::string::npos,
           .y = axes.find('y') != std::string::npos};
 }
 
-inline host::SupportCase point_support(host::PlaceCase point, const std::string& axes) {
-  host::SupportCase one = support({}, axes);
+inline SupportCase point_support(PlaceCase point, const std::string& axes) {
+  SupportCase one = support({}, axes);
   one.point = std::move(point);
   return one;
 }
 
-inline host::MoveCase move_by(const std::string& boundary, std::optional<double> x, std::optional<double> y) {
-  host::MoveCase move;
+inline MoveCase move_by(const std::string& boundary, std::optional<double> x, std::optional<double> y) {
+  MoveCase move;
   move.boundary = boundary;
   move.x = x;
   move.y = y;
   return move;
 }
 
-inline host::MoveCase affine(const std::string& boundary, double rotation, double area, fem::Point about) {
-  host::MoveCase move;
+inline MoveCase affine(const std::string& boundary, double rotation, double area, fem::Point about) {
+  MoveCase move;
   move.boundary = boundary;
   move.rotation = rotation;
   move.area = area;
@@ -48,29 +48,29 @@ inline host::MoveCase affine(const std::string& boundary, double rotation, doubl
   return move;
 }
 
-inline host::PressCase pressure_on(const std::string& boundary, double pressure) {
-  return {.boundary = boundary, .kind = host::PressKind::pressure, .pressure = pressure, .traction = {}};
+inline PressCase pressure_on(const std::string& boundary, double pressure) {
+  return {.boundary = boundary, .kind = PressKind::pressure, .pressure = pressure, .traction = {}};
 }
 
-inline host::PressCase traction_on(const std::string& boundary, double tx, double ty) {
-  return {.boundary = boundary, .kind = host::PressKind::traction, .pressure = 0, .traction = {tx, ty}};
+inline PressCase traction_on(const std::string& boundary, double tx, double ty) {
+  return {.boundary = boundary, .kind = PressKind::traction, .pressure = 0, .traction = {tx, ty}};
 }
 
-inline host::PressCase at_rest_on(const std::string& boundary) {
-  return {.boundary = boundary, .kind = host::PressKind::at_rest, .pressure = 0, .traction = {}};
+inline PressCase at_rest_on(const std::string& boundary) {
+  return {.boundary = boundary, .kind = PressKind::at_rest, .pressure = 0, .traction = {}};
 }
 
 /// A stage of one step without changes; on a fixed mesh, where linear elastic ground is nearly linear.
-inline host::StageCase stage(const std::string& name, int steps = 1) {
-  host::StageCase one;
+inline StageCase stage(const std::string& name, int steps = 1) {
+  StageCase one;
   one.name = name;
   one.steps = steps;
-  one.geometry = host::LossGeometry::fixed_mesh;
+  one.geometry = LossGeometry::fixed_mesh;
   return one;
 }
 
-inline host::StageCase gravity_stage(double factor = 1.0) {
-  host::StageCase one = stage("gravity", 0);
+inline StageCase gravity_stage(double factor = 1.0) {
+  StageCase one = stage("gravity", 0);
   one.gravity = factor;
   return one;
 }
@@ -90,12 +90,12 @@ inline fem::Mesh grid(double width, double height, int columns, int rows, const 
 }
 
 /// A scene on this mesh; each region has a unit weight [N/m3].
-inline host::Scene scene_on(fem::Mesh mesh, double unit_weight, double pressure = 1e3) {
-  host::Scene scene{.input = {}, .mesh = std::move(mesh), .pressure = pressure};
+inline Scene scene_on(fem::Mesh mesh, double unit_weight, double pressure = 1e3) {
+  Scene scene{.input = {}, .mesh = std::move(mesh), .pressure = pressure};
   const std::vector<std::string> names = scene.mesh.region_names.empty() ? std::vector<std::string>{"ground"}
                                                                          : scene.mesh.region_names;
   for (const std::string& name : names) {
-    host::RegionCase region;
+    RegionCase region;
     region.names = {name};
     region.unit_weight = unit_weight;
     scene.input.regions.push_back(region);
@@ -114,50 +114,50 @@ struct StageEnd {
 
 /// Runs of a scene with linear elastic ground, under its p0 at the start.
 struct ElasticRun {
-  host::Scene scene;
+  Scene scene;
   double young = 5e7, poisson = 0.3;
   double tolerance = 1e-10;
-  const host::GroundAtRest* rest = nullptr;
+  const GroundAtRest* rest = nullptr;
   bool resume = false;
-  std::function<void(const host::StagePlan&, int increment)> on_increment = {};  ///< may throw, as a run that is killed
-  std::function<void(const host::StagePlan&)> on_start = {};                     ///< the same
+  std::function<void(const StagePlan&, int increment)> on_increment = {};  ///< may throw, as a run that is killed
+  std::function<void(const StagePlan&)> on_start = {};                     ///< the same
 
   /// Runs into a folder that is emptied before, or goes on there.
   std::vector<StageEnd> run(const std::filesystem::path& folder) {
     if (!resume) std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
-    host::Case input;
-    input.kind = host::CaseKind::scene;
+    Case input;
+    input.kind = CaseKind::scene;
     input.fingerprint = "scene_support";
     input.newton.tolerance = tolerance;
     input.newton.displacement_tolerance = 1e-6;
     input.newton.initial_tangent_fraction = 0;
     input.packing.pressure = scene.pressure;
-    host::RunLog log(folder / "run.log", resume);
-    host::RunOptions options{.folder = folder, .resume = resume, .command = "test"};
-    host::Scene now = scene;
-    const std::vector<host::StagePlan> plans = host::plan_stages(now);
-    host::GroundRun run(options, host::provenance_of(options, input, "scene"), now.mesh, host::mesh_data(now.mesh),
-                        host::stage_settings(input), log);
-    host::MaterialCase material = host::material_case(input);
-    material.kind = host::MaterialKind::linear_elastic;
+    RunLog log(folder / "run.log", resume);
+    RunOptions options{.folder = folder, .resume = resume, .command = "test"};
+    Scene now = scene;
+    const std::vector<StagePlan> plans = plan_stages(now);
+    GroundRun run(options, provenance_of(options, input, "scene"), now.mesh, mesh_data(now.mesh), stage_settings(input),
+                  log);
+    MaterialCase material = material_case(input);
+    material.kind = MaterialKind::linear_elastic;
     material.elastic = {.modulus = young, .poisson = poisson};
     material.regions = now.input.regions;
     run.open_ground(material, [](const std::string&) {});
     std::vector<StageEnd> ends;
-    const host::RunStatus status = host::run_stages(run, now, plans, rest, additions(run, ends));
-    if (status != host::RunStatus::finished) throw std::runtime_error("the scene did not finish");
+    const RunStatus status = run_stages(run, now, plans, rest, additions(run, ends));
+    if (status != RunStatus::finished) throw std::runtime_error("the scene did not finish");
     return ends;
   }
 
  private:
-  host::StageAdditions additions(host::GroundRun& run, std::vector<StageEnd>& ends) const {
-    host::StageAdditions more;
-    more.on_start = [&](const host::StagePlan& plan, const host::SceneLoads& loads, const host::FadingForces& forces) {
-      host::record_stage_start(run, plan, loads.reactions(0, forces), {});
+  StageAdditions additions(GroundRun& run, std::vector<StageEnd>& ends) const {
+    StageAdditions more;
+    more.on_start = [&](const StagePlan& plan, const SceneLoads& loads, const FadingForces& forces) {
+      record_stage_start(run, plan, loads.reactions(0, forces), {});
       if (on_start) on_start(plan);
     };
-    more.complete = [&](const host::StagePlan& plan, host::Stage& stage) {
+    more.complete = [&](const StagePlan& plan, Stage& stage) {
       ends.emplace_back();
       stage.on_step = [&run, &end = ends, last = plan.targets.back()](const fem::ConvergedStep& step) {
         if (step.to != last) return;
@@ -167,7 +167,7 @@ struct ElasticRun {
                       .external = step.increment.external_force,
                       .stress = step.increment.stress};
       };
-      stage.on_record = [this, &plan](host::IncrementReport& report) {
+      stage.on_record = [this, &plan](IncrementReport& report) {
         if (on_increment) on_increment(plan, report.info.stage_index);
       };
     };
@@ -182,4 +182,4 @@ inline fem::Point total(const Eigen::VectorXd& forces) {
   return sum;
 }
 
-}  // namespace voussoir::scene_support
+}  // namespace voussoir::host

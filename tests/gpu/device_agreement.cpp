@@ -13,9 +13,8 @@
 #include "tests/engine_support.hpp"
 #include "tests/tiled_packing.hpp"
 
+namespace voussoir::kernels {
 namespace {
-
-using namespace voussoir::kernels;
 
 constexpr std::size_t n_rves = 64;
 
@@ -28,9 +27,8 @@ std::vector<StrainRequest> motions(std::size_t n) {
   return requests;
 }
 
-const voussoir::reference::Rve& tile() {
-  static const voussoir::reference::Rve packing = voussoir::reference::consolidated_packing(
-      60, 2, 1e5, 0.0, voussoir::reference::Material{});
+const reference::Rve& tile() {
+  static const reference::Rve packing = reference::consolidated_packing(60, 2, 1e5, 0.0, reference::Material{});
   return packing;
 }
 
@@ -72,7 +70,7 @@ struct Size {
 /// @param stress, tangent largest differences that are allowed
 bool compare(const std::shared_ptr<device::Device>& on, Precision precision, const Size& size, double stress,
              double tangent) {
-  const voussoir::reference::Rve start = voussoir::reference::tiled(tile(), size.columns, size.rows);
+  const reference::Rve start = reference::tiled(tile(), size.columns, size.rows);
   const std::size_t n = size.rves;
   const EngineSettings settings{.precision = precision, .hold_tolerance = 1e-12, .tangent = TangentKind::elastic};
   RveBatch lanes = clones(start, n), device = clones(start, n), again = clones(start, n);
@@ -128,22 +126,26 @@ bool compare_networks(const std::shared_ptr<device::Device>& on) {
   return good;
 }
 
+bool compare_all(const std::shared_ptr<device::Device>& on) {
+  bool good = true;
+  for (const Size& size : {Size{1, 1, n_rves}, Size{4, 3, 6}, Size{5, 5, 3}}) {
+    good = compare(on, Precision::float64, size, 1e-8, 1e-5) && good;
+    good = compare(on, Precision::float32, size, 5e-3, 5e-3) && good;
+  }
+  return compare_networks(on) && good;
+}
+
 }  // namespace
+}  // namespace voussoir::kernels
 
 int main(int argc, char** argv) {
   const Kokkos::ScopeGuard kokkos(argc, argv);
   std::string why;
-  const std::shared_ptr<device::Device> device = device::open_device(0, why);
+  const auto device = voussoir::kernels::device::open_device(0, why);
   if (!device) {
     std::printf("no device: %s\n", why.c_str());
     return 77;
   }
   std::printf("%s\n", device->name().c_str());
-  bool good = true;
-  for (const Size& size : {Size{1, 1, n_rves}, Size{4, 3, 6}, Size{5, 5, 3}}) {
-    good = compare(device, Precision::float64, size, 1e-8, 1e-5) && good;
-    good = compare(device, Precision::float32, size, 5e-3, 5e-3) && good;
-  }
-  good = compare_networks(device) && good;
-  return good ? 0 : 1;
+  return voussoir::kernels::compare_all(device) ? 0 : 1;
 }

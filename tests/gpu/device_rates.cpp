@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <vector>
 
 #include "host/case/case.hpp"
@@ -17,9 +18,8 @@
 #include "kernels/device/device_library.hpp"
 #include "kernels/device/device_residence.hpp"
 
+namespace voussoir {
 namespace {
-
-using namespace voussoir;
 
 kernels::RveBatch clones(const host::PackedRve& rve, std::size_t n) {
   kernels::RveBatch batch = kernels::make_batch({rve.packing}, std::vector<int>(n, 0));
@@ -88,29 +88,37 @@ void measure(const std::shared_ptr<kernels::device::Device>& device, const host:
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const Kokkos::ScopeGuard kokkos(argc, argv);
-  std::string why;
-  const auto device = kernels::device::open_device(0, why);
-  if (!device) {
-    std::printf("no device: %s\n", why.c_str());
-    return 77;
-  }
+/// @param files packings
+void measure_all(const std::shared_ptr<kernels::device::Device>& device, std::span<const std::size_t> numbers,
+                 std::span<char* const> files) {
   std::printf("%s\n%5s %6s %-6s %-7s %9s %9s %9s  %8s %8s %8s  %s\n", device->name().c_str(), "N", "RVEs", "real", "on",
               "10: ms", "410: ms", "mesh: ms", "steps G", "410: G", "mesh: G", "failed");
-  const bool one_number = argc > 2 && std::strcmp(argv[1], "--rves") == 0;
-  const std::vector<std::size_t> numbers = one_number ? std::vector<std::size_t>{std::strtoul(argv[2], nullptr, 10)}
-                                                      : std::vector<std::size_t>{1, 64, 512, 3344, 8192};
-  for (int f = one_number ? 3 : 1; f < argc; ++f) {
+  for (const char* file : files) {
     host::PackingCase recipe;
-    recipe.files = {argv[f]};
+    recipe.files = {file};
     const host::PackedRve rve = host::choose_packing(host::SoilCase{}, recipe);
     for (const std::size_t n : numbers) measure(device, rve, n);
     kernels::RveBatch lanes = clones(rve, 64);
     print_rates("lanes", lanes, kernels::Precision::float32);
   }
   if (faults > 0) std::printf("%d calls or RVEs failed\n", faults);
-  return faults > 0 ? 1 : 0;
+}
+
+}  // namespace
+}  // namespace voussoir
+
+int main(int argc, char** argv) {
+  const Kokkos::ScopeGuard kokkos(argc, argv);
+  std::string why;
+  const auto device = voussoir::kernels::device::open_device(0, why);
+  if (!device) {
+    std::printf("no device: %s\n", why.c_str());
+    return 77;
+  }
+  const bool one_number = argc > 2 && std::strcmp(argv[1], "--rves") == 0;
+  const std::vector<std::size_t> numbers = one_number ? std::vector<std::size_t>{std::strtoul(argv[2], nullptr, 10)}
+                                                      : std::vector<std::size_t>{1, 64, 512, 3344, 8192};
+  const std::span<char* const> arguments(argv, static_cast<std::size_t>(argc));
+  voussoir::measure_all(device, numbers, arguments.subspan(one_number ? 3 : 1));
+  return voussoir::faults > 0 ? 1 : 0;
 }

@@ -6,7 +6,9 @@
 //   blocks_on_threads --barriers          runs itself without each barrier in turn, and says which were reported
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -37,7 +39,10 @@ struct Answer {
   std::vector<CommittedSums> sums = {};
 };
 
-bool same_bits(const CommittedSums& a, const CommittedSums& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
+bool same_bits(const CommittedSums& a, const CommittedSums& b) {
+  using Bytes = std::array<std::byte, sizeof(CommittedSums)>;
+  return std::bit_cast<Bytes>(a) == std::bit_cast<Bytes>(b);
+}
 
 /// @param what of a fault
 void expect(bool right, const char* what, int rve) {

@@ -12,8 +12,6 @@
 namespace voussoir::host {
 namespace {
 
-using namespace scene_support;
-
 constexpr double p0 = 1e3;     ///< [Pa]
 constexpr double young = 5e7;  ///< [Pa]
 constexpr double poisson = 0.3;

@@ -48,7 +48,8 @@ void expect_refused(const std::function<std::string()>& work, const std::string&
 
 TEST_F(GmshChild, HandsOverWhatItMakes) {
   EXPECT_EQ(in_child([] { return std::string(); }, usual), "");
-  std::string large(10'000'000, 'x');  // far more than a pipe holds
+  std::string large;
+  large.resize(10'000'000, 'x');  // far more than a pipe holds
   large[5] = '\0';
   EXPECT_EQ(in_child([&] { return large; }, usual), large);
 }

@@ -7,14 +7,15 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "host/library/rves.hpp"
 #include "host/library/voussoir.h"
+#include "tests/same_bits.hpp"
 
 namespace voussoir::library {
 namespace {
@@ -81,8 +82,9 @@ TEST(CInterface, AnswersWithTheBitsOfTheCppInterface) {
     batch->commit();
     const Answer c = answer_of(rves.get());
     ASSERT_EQ(voussoir_commit(rves.get()), voussoir_ok);
-    EXPECT_EQ(std::memcmp(c.data(), stress.data(), sizeof(double) * 3 * n), 0);
-    EXPECT_EQ(std::memcmp(c.data() + 3 * n, tangent.data(), sizeof(double) * 9 * n), 0);
+    const std::span<const double> numbers(c);
+    EXPECT_TRUE(same_bits(numbers.first(3 * n), {stress[0].data(), 3 * n}));
+    EXPECT_TRUE(same_bits(numbers.last(9 * n), {tangent[0].data(), 9 * n}));
   }
   EXPECT_EQ(rves.state(), batch->state());
   for (const fem::PointField& field : batch->fields()) {

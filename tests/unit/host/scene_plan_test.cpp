@@ -17,8 +17,6 @@
 namespace voussoir::host {
 namespace {
 
-using namespace scene_support;
-
 /// 4 x 2 m of two layers, held at the base and aside.
 Scene bed() {
   Scene scene = scene_on(grid(4, 2, 4, 2, {"lower", "upper"}), 20e3);

@@ -12,15 +12,6 @@
 namespace voussoir::host {
 namespace {
 
-using scene_support::ElasticRun;
-using scene_support::grid;
-using scene_support::point_support;
-using scene_support::pressure_on;
-using scene_support::scene_on;
-using scene_support::stage;
-using scene_support::StageEnd;
-using scene_support::support;
-
 constexpr double p0 = 1e3;     ///< [Pa]
 constexpr double stiff = 5e9;  ///< so that the ground stays nearly as drawn [Pa]
 

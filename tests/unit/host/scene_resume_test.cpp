@@ -5,17 +5,11 @@
 
 #include "host/scene/run_stages.hpp"
 #include "io/result_file.hpp"
+#include "tests/same_bits.hpp"
 #include "tests/scene_support.hpp"
 
 namespace voussoir::host {
 namespace {
-
-/// Bit for bit, since points that are dug out have values that are no numbers.
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
-
-using namespace scene_support;
 
 struct Killed {};
 
@@ -46,6 +40,7 @@ void expect_same_files(const std::filesystem::path& one, const std::filesystem::
     const auto others = io::read_fields(io::increment_path(other, b[k].index));
     ASSERT_EQ(fields.size(), others.size());
     for (std::size_t f = 0; f < fields.size(); ++f)
+      // Points that are dug out have values that are no numbers.
       EXPECT_TRUE(same_bits(fields[f].values, others[f].values)) << fields[f].name << " of increment " << k;
   }
 }
@@ -59,8 +54,8 @@ TEST(Resume, InEveryStageGivesTheSameBits) {
   for (const auto& [name, increments] : kills) {
     for (const int increment : increments) {  // 0: killed when the stage has just begun
       ElasticRun run{.scene = five_stages()};
-      const auto kill = [name = name, increment](const StagePlan& plan, int at) {
-        if (plan.input.name == name && at == increment) throw Killed();
+      const auto kill = [killed = name, increment](const StagePlan& plan, int at) {
+        if (plan.input.name == killed && at == increment) throw Killed();
       };
       run.on_start = [&](const StagePlan& plan) { kill(plan, 0); };
       run.on_increment = kill;

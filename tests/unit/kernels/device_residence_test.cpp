@@ -75,111 +75,111 @@ class ListedDevice final : public device::Device {
 
 class DeviceResidence : public testing::Test {
  protected:
-  Calls calls;
-  RveBatch batch;
+  Calls calls_;
+  RveBatch batch_;
 
   void SetUp() override {
     Packing two;
     two.radii = {1e-3, 1e-3};
-    batch = make_batch({two}, {0, 0});
-    device::reside(batch, std::make_shared<ListedDevice>(calls), Precision::float32);
+    batch_ = make_batch({two}, {0, 0});
+    device::reside(batch_, std::make_shared<ListedDevice>(calls_), Precision::float32);
   }
   void advance_once() {
-    const std::vector<StrainRequest> requests(batch.size());
-    std::vector<RveReport> reports(batch.size());
-    advance(batch, std::span<const StrainRequest>(requests), EngineSettings{.precision = Precision::float32}, reports);
+    const std::vector<StrainRequest> requests(batch_.size());
+    std::vector<RveReport> reports(batch_.size());
+    advance(batch_, std::span<const StrainRequest>(requests), EngineSettings{.precision = Precision::float32}, reports);
   }
 };
 
 TEST_F(DeviceResidence, BringsStatesOnlyAfterACommit) {
-  calls.may_bring.set_value();
-  bring_committed(batch);
-  EXPECT_FALSE(begin_bringing_committed(batch).valid());
+  calls_.may_bring.set_value();
+  bring_committed(batch_);
+  EXPECT_FALSE(begin_bringing_committed(batch_).valid());
   advance_once();
-  commit(batch);
-  bring_committed(batch);
-  EXPECT_EQ(batch.committed.rotation(0, 0), mark);
-  bring_committed(batch);
-  EXPECT_EQ(calls.names, "advance commit copy ");
+  commit(batch_);
+  bring_committed(batch_);
+  EXPECT_EQ(batch_.committed.rotation(0, 0), mark);
+  bring_committed(batch_);
+  EXPECT_EQ(calls_.names, "advance commit copy ");
 }
 
 TEST_F(DeviceResidence, AdvancesWhileStatesArrive) {
-  commit(batch);
-  const std::shared_future<void> arriving = begin_bringing_committed(batch);
+  commit(batch_);
+  const std::shared_future<void> arriving = begin_bringing_committed(batch_);
   advance_once();
-  EXPECT_EQ(calls.names, "commit copy advance ") << "the evaluation waited for the states";
+  EXPECT_EQ(calls_.names, "commit copy advance ") << "the evaluation waited for the states";
   EXPECT_NE(arriving.wait_for(std::chrono::seconds(0)), std::future_status::ready);
-  calls.may_bring.set_value();
+  calls_.may_bring.set_value();
   arriving.get();
-  EXPECT_EQ(batch.committed.rotation(0, 0), mark);
+  EXPECT_EQ(batch_.committed.rotation(0, 0), mark);
 }
 
 TEST_F(DeviceResidence, GivesADevicesFailureToWhoeverWaitsForTheStates) {
-  calls.fails = true;
-  calls.may_bring.set_value();
-  commit(batch);
-  const std::shared_future<void> arriving = begin_bringing_committed(batch);
+  calls_.fails = true;
+  calls_.may_bring.set_value();
+  commit(batch_);
+  const std::shared_future<void> arriving = begin_bringing_committed(batch_);
   EXPECT_THROW(arriving.get(), std::runtime_error);
-  EXPECT_THROW(bring_committed(batch), std::runtime_error) << "the arrays do not have the states";
-  calls.fails = false;
-  commit(batch);
-  EXPECT_NO_THROW(bring_committed(batch));
+  EXPECT_THROW(bring_committed(batch_), std::runtime_error) << "the arrays do not have the states";
+  calls_.fails = false;
+  commit(batch_);
+  EXPECT_NO_THROW(bring_committed(batch_));
 }
 
 TEST_F(DeviceResidence, TakesTheHostsStatesWhereTheyWereWrittenTo) {
-  calls.may_bring.set_value();
+  calls_.may_bring.set_value();
   advance_once();
-  commit(batch);
-  bring_committed(batch);
-  forget_candidates(batch);  // who writes committed states calls it
-  EXPECT_FALSE(batch.residence->is_ahead());
+  commit(batch_);
+  bring_committed(batch_);
+  forget_candidates(batch_);  // who writes committed states calls it
+  EXPECT_FALSE(batch_.residence->is_ahead());
   advance_once();
   advance_once();
-  EXPECT_EQ(calls.names, "advance commit copy upload-newer advance advance ");
+  EXPECT_EQ(calls_.names, "advance commit copy upload-newer advance advance ");
 }
 
 TEST_F(DeviceResidence, DescribesWhatItHasWhileStatesComeDown) {
-  std::vector<CommittedSummary> out(batch.size());
-  commit(batch);
-  const std::shared_future<void> arriving = begin_bringing_committed(batch);
-  describe_committed(batch, {}, out);  // nothing may be brought yet, and nobody waits for it
+  std::vector<CommittedSummary> out(batch_.size());
+  commit(batch_);
+  const std::shared_future<void> arriving = begin_bringing_committed(batch_);
+  describe_committed(batch_, {}, out);  // nothing may be brought yet, and nobody waits for it
   EXPECT_EQ(out[0].cell_area, mark * mark);
-  calls.may_bring.set_value();
+  calls_.may_bring.set_value();
   arriving.get();
-  EXPECT_EQ(calls.names, "commit copy describe ");
+  EXPECT_EQ(calls_.names, "commit copy describe ");
 }
 
 TEST_F(DeviceResidence, LetsTheHostDescribeWhatTheHostHasWritten) {
-  calls.may_bring.set_value();
-  std::vector<CommittedSummary> out(batch.size());
-  commit(batch);
-  bring_committed(batch);
-  forget_candidates(batch);
-  describe_committed(batch, {}, out);
+  calls_.may_bring.set_value();
+  std::vector<CommittedSummary> out(batch_.size());
+  commit(batch_);
+  bring_committed(batch_);
+  forget_candidates(batch_);
+  describe_committed(batch_, {}, out);
   EXPECT_NE(out[0].cell_area, mark * mark);
   advance_once();
-  describe_committed(batch, {}, out);
+  describe_committed(batch_, {}, out);
   EXPECT_EQ(out[0].cell_area, mark * mark);
-  EXPECT_EQ(calls.names, "commit copy upload-newer advance describe ");
+  EXPECT_EQ(calls_.names, "commit copy upload-newer advance describe ");
 }
 
 TEST_F(DeviceResidence, BringsOneStateWhereTheDeviceIsAhead) {
-  calls.may_bring.set_value();
-  bring_committed(batch, 0);
-  commit(batch);
-  bring_committed(batch, 0);
-  EXPECT_TRUE(batch.residence->is_ahead());
-  bring_committed(batch);
-  bring_committed(batch, 0);
-  EXPECT_EQ(calls.names, "commit download copy ");
+  calls_.may_bring.set_value();
+  bring_committed(batch_, 0);
+  commit(batch_);
+  bring_committed(batch_, 0);
+  EXPECT_TRUE(batch_.residence->is_ahead());
+  bring_committed(batch_);
+  bring_committed(batch_, 0);
+  EXPECT_EQ(calls_.names, "commit download copy ");
 }
 
 TEST_F(DeviceResidence, CountsWhatCrossesTheBus) {
-  calls.may_bring.set_value();
+  calls_.may_bring.set_value();
   advance_once();
-  commit(batch);
-  bring_committed(batch);
-  const device::DeviceWork work = device::device_work(batch);
+  commit(batch_);
+  bring_committed(batch_);
+  const device::DeviceWork work = device::device_work(batch_);
   EXPECT_EQ(work.particle_steps, 3U);
   EXPECT_EQ(work.bytes_up, 11U);
   EXPECT_EQ(work.bytes_down, 122U);
