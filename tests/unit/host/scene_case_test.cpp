@@ -228,12 +228,11 @@ TEST(SceneCase, NamesAreThoseOfTheMesh) {
   expect_said(
       in_stage("steps = 1\n[[stage.move]]\npoint = \"crown\"\nx = \"1 m\"\n"), "point",
       "stage[1].move[0].point: the mesh has no point 'crown'; it has base_left, base_right, top_left, top_right");
-  const std::string scene = head + grid + region + rest;
   for (const char* key : {"point", "region"}) {
-    const std::string record = fmt::format("[[record]]\nname = \"r\"\n{} = \"nowhere\"\n", key);
-    EXPECT_NE(
-        said_of(scene + record).find(fmt::format("record[0].{}: the mesh has no {} 'nowhere'; it has ", key, key)),
-        std::string::npos);
+    const std::string scene = fmt::format("{}{}{}{}[[record]]\nname = \"r\"\n{} = \"nowhere\"\n", head, grid, region,
+                                          rest, key);
+    EXPECT_NE(said_of(scene).find(fmt::format("record[0].{}: the mesh has no {} 'nowhere'; it has ", key, key)),
+              std::string::npos);
   }
 }
 
