@@ -1,6 +1,6 @@
-# With sanitizers the rooms are shared libraries. A test program holds 200 MB of instrumented code otherwise, and the
-# ninety of them took 12 GB of disk and half of the time to build them. A static Kokkos becomes a shared library too:
-# each room would hold a copy of its own otherwise, and each copy would construct the same static objects.
+# With sanitizers the rooms are shared libraries. A test program would otherwise hold 200 MB of instrumented code, and some
+# ninety of them 12 GB. A static Kokkos becomes a shared library as well, because each room would otherwise hold a copy of
+# its own, and each copy would construct the same static objects.
 set(BUILD_SHARED_LIBS ON)
 get_target_property(kokkos_type Kokkos::kokkoscore TYPE)
 if(NOT kokkos_type STREQUAL STATIC_LIBRARY)
@@ -15,7 +15,7 @@ list(TRANSFORM archives REPLACE "(.+)" "$<TARGET_FILE:\\1>")
 list(JOIN archives "," archives)
 target_link_libraries(voussoir_shared_kokkos PRIVATE "$<LINK_LIBRARY:WHOLE_ARCHIVE,${archives}>" ${CMAKE_DL_LIBS})
 target_link_libraries(voussoir_kokkos INTERFACE voussoir_shared_kokkos)
-foreach(property COMPILE_DEFINITIONS COMPILE_FEATURES COMPILE_OPTIONS SYSTEM_INCLUDE_DIRECTORIES)
+foreach(property COMPILE_DEFINITIONS COMPILE_FEATURES COMPILE_OPTIONS)
   set_property(TARGET voussoir_kokkos PROPERTY INTERFACE_${property} $<TARGET_PROPERTY:Kokkos::kokkos,INTERFACE_${property}>)
 endforeach()
 target_include_directories(voussoir_kokkos SYSTEM INTERFACE
